@@ -1,0 +1,68 @@
+# make demo, make test: on a machine with nothing but Python 3.11 or newer and make.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
+DEMO := slider-between-cranks
+
+# A stamp is newer than pyproject.toml when what it stands for is installed.
+BASE := $(VENV)/.stamp-base
+FOR_DEMO := $(VENV)/.stamp-demo
+FOR_TESTS := $(VENV)/.stamp-dev
+
+.DELETE_ON_ERROR:
+.PHONY: help demo test format lint types contracts catalogue-check tests catalogues benchmarks clean
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: $(FOR_DEMO) ## compute a built-in mechanism into demo-output/
+	$(BIN)/centrode run $(DEMO) --out demo-output
+
+test: lint types contracts catalogue-check tests ## everything that CI checks
+
+lint: $(FOR_TESTS) ## format and lint, without changing anything
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+
+types: $(FOR_TESTS) ## strict types
+	$(BIN)/mypy
+
+contracts: $(FOR_TESTS) ## which room may import which
+	$(BIN)/lint-imports
+
+catalogue-check: $(FOR_TESTS) ## translations complete and compiled
+	$(BIN)/python tools/catalogues.py check
+
+tests: $(FOR_TESTS) ## tests and the code blocks of the documentation
+	$(BIN)/pytest -q -n auto --dist loadgroup
+
+format: $(FOR_TESTS) ## format and mend what can be mended
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+catalogues: $(FOR_TESTS) ## take new sentences into the catalogues and compile them
+	$(BIN)/python tools/catalogues.py update
+	$(BIN)/python tools/catalogues.py compile
+
+benchmarks: $(FOR_TESTS) ## ratios against peers and against the machine
+	$(BIN)/python -m benchmarks
+
+clean: ## remove everything that make made
+	rm -rf $(VENV) demo-output build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	find src tests tools benchmarks docs -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(BASE):
+	@command -v "$(PYTHON)" >/dev/null 2>&1 || { echo "$(PYTHON) not found: install Python 3.11 or newer, or say make PYTHON=/path/to/python3" >&2; exit 1; }
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$(PYTHON) is $$($(PYTHON) --version 2>&1): centrode needs Python 3.11 or newer; say make PYTHON=/path/to/python3.11" >&2; exit 1; }
+	"$(PYTHON)" -m venv $(VENV)
+	@touch $@
+
+$(FOR_DEMO): $(BASE) pyproject.toml
+	$(PIP) install --editable '.[figures]'
+	@touch $@
+
+$(FOR_TESTS): $(BASE) pyproject.toml
+	$(PIP) install --editable '.[dev]'
+	@touch $(FOR_DEMO) $@

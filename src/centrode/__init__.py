@@ -1,0 +1,10 @@
+"""Centrode: from the description of a mechanism to its motion, forces, equations, drawings and report.
+
+The public face stands in `__init__.pyi`, in reading order; each name is imported when it is first used.
+"""
+
+import lazy_loader
+
+__version__ = "0.1.0"
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

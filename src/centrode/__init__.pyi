@@ -1,0 +1,52 @@
+# The public face of centrode in reading order, for type checkers and for lazy_loader, which imports by it.
+
+# The description
+from .model.mechanism import Mechanism as Mechanism
+from .model.mechanism import Frame as Frame
+from .model.mechanism import Link as Link
+from .model.mechanism import Guide as Guide
+from .model.mechanism import Drive as Drive
+from .model.mechanism import Assembly as Assembly
+from .model.mechanism import Study as Study
+from .model.files import read_mechanism as read_mechanism
+from .model.files import parse_mechanism as parse_mechanism
+from .model.files import mechanism_text as mechanism_text
+from .model.paths import value_at as value_at
+from .model.paths import with_value as with_value
+from .model.placing import replace_placed as replace_placed
+
+from .model.schema import mechanism_schema as mechanism_schema
+
+# Built-in mechanisms and classics
+from .model.examples.loading import load as load
+from .model.examples.loading import example as example
+from .model.examples import example_names as example_names
+from .model.examples import example_text as example_text
+from .model.classics import four_bar as four_bar
+from .model.classics import slider_crank as slider_crank
+
+# Structure and motion
+from .study.checking import check as check
+from .kinematics.motion import motion as motion
+from .study.running import study as study
+from .study.running import range_value as range_value
+from .study.summary import check_rows as check_rows
+from .study.summary import motion_rows as motion_rows
+
+# Presentations
+from .present.tables import write_motion_csv as write_motion_csv
+from .present.tables import write_motion_netcdf as write_motion_netcdf
+from .present.figures import motion_figures as motion_figures
+from .present.saving import save_figures as save_figures
+
+# Words, failures, language
+from .quantities import QUANTITIES as QUANTITIES
+from .quantities import Quantity as Quantity
+from .errors import CentrodeError as CentrodeError
+from .errors import InputError as InputError
+from .errors import NotComputedYet as NotComputedYet
+from .errors import MotionError as MotionError
+from .errors import Status as Status
+from .locale import choose_language as choose_language
+
+__version__: str

@@ -1,0 +1,60 @@
+"""Failures that carry their data and say the repair, and the statuses of samples."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class CentrodeError(Exception):
+    """A failure told to the user in a sentence: where, what, and the repair.
+
+    Attributes
+    ----------
+    where : str
+        File, table or key the message is about; empty where there is none.
+    what, repair : str
+        What is wrong, and what to do about it, already in the user's language.
+    exit_code : int
+        What the command line returns: 2 for wrong input, 3 for a mechanism that cannot do what was asked.
+    """
+
+    exit_code = 2
+
+    def __init__(self, where: str, what: str, repair: str = "") -> None:
+        self.where = where
+        self.what = what
+        self.repair = repair
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        sentence = f"{self.where}: {self.what}" if self.where else self.what
+        return f"{sentence}; {self.repair}" if self.repair else sentence
+
+
+class InputError(CentrodeError):
+    """The input is wrong: nothing was computed and nothing was written."""
+
+
+class NotComputedYet(InputError):
+    """The input is right, but names something this version does not compute."""
+
+
+class MotionError(CentrodeError):
+    """The mechanism cannot do what was asked: what could be computed stands beside the message."""
+
+    exit_code = 3
+
+
+class Status(IntEnum):
+    """What a sample of a motion is worth; every motion carries one per sample."""
+
+    OK = 0
+    OPEN = 1
+    CUT_OFF = 2
+    SINGULAR = 3
+    UNCONVERGED = 4
+
+    @property
+    def word(self) -> str:
+        """The word that tables and messages use, in English; catalogues translate it for display."""
+        return self.name.lower().replace("_", " ")

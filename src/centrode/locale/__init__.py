@@ -1,0 +1,74 @@
+"""The languages centrode speaks: gettext catalogues and the choice among them."""
+
+from __future__ import annotations
+
+import gettext
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from centrode.errors import InputError
+
+DOMAIN = "centrode"
+LANGUAGES = ("en", "ru", "uk")
+DIRECTORY = Path(__file__).parent
+
+_catalogue: gettext.NullTranslations = gettext.NullTranslations()
+
+
+def _(message: str) -> str:
+    """The sentence in the chosen language; the English text is its name."""
+    return _catalogue.gettext(message) if message else ""
+
+
+def ngettext(singular: str, plural: str, number: int) -> str:
+    """The sentence in the grammatical number that `number` asks for in the chosen language."""
+    return _catalogue.ngettext(singular, plural, number)
+
+
+def mark(message: str) -> str:
+    """Mark a sentence for the catalogues where it is written down, to be translated where it is shown."""
+    return message
+
+
+def language_of(environment: Mapping[str, str]) -> str:
+    """Language that the environment asks for (LANGUAGE, LC_ALL, LC_MESSAGES, LANG in gettext's order), else English."""
+    for name in ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG"):
+        for wish in environment.get(name, "").split(":"):
+            code = re.split(r"[._@-]", wish)[0].lower()
+            if code in LANGUAGES:
+                return code
+            if code in ("c", "posix"):
+                return "en"
+    return "en"
+
+
+def choose_language(language: str | None = None) -> str:
+    """Speak `language` ("en", "ru" or "uk") from now on; None follows the environment. Returns the choice.
+
+    Raises InputError for a language without a catalogue.
+    """
+    global _catalogue
+    if language is not None and language not in LANGUAGES:
+        raise InputError(
+            "",
+            _("language {language!r} is not one of {known}").format(
+                language=language, known=", ".join(LANGUAGES)
+            ),
+        )
+    chosen = language or language_of(os.environ)
+    _catalogue = gettext.translation(DOMAIN, DIRECTORY, languages=[chosen], fallback=True)
+    return chosen
+
+
+def choose_language_of_process(language: str | None = None) -> str:
+    """`choose_language`, and the same for libraries that ask the standard library for translations (click does).
+
+    For programs only: it sets LANGUAGE in the environment, the one place where gettext's own functions look.
+    """
+    chosen = choose_language(language)
+    os.environ["LANGUAGE"] = chosen
+    gettext.bindtextdomain(DOMAIN, DIRECTORY)
+    gettext.textdomain(DOMAIN)
+    return chosen

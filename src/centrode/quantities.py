@@ -1,0 +1,188 @@
+"""The vocabulary of results: what each variable is called, its symbol, its unit, and how units are shown.
+
+Every table, plot and report reads it. Inside the package all numbers are SI and radians; a unit is a short
+text like "m", "rad/s", "m/rad^2", and "1" where there is none.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from centrode.errors import InputError, Status
+from centrode.locale import _, mark
+
+LENGTHS: Mapping[str, float] = {
+    "m": 1.0,
+    "mm": 1e3,
+    "cm": 1e2,
+    "dm": 1e1,
+    "km": 1e-3,
+    "um": 1e6,
+    "in": 1 / 0.0254,
+    "ft": 1 / 0.3048,
+}
+"""How many of each length unit make one metre."""
+
+ANGLES: Mapping[str, float] = {"rad": 1.0, "deg": 180 / math.pi, "turn": 1 / (2 * math.pi)}
+"""How many of each angle unit make one radian."""
+
+STATUS_WORDS: Mapping[Status, str] = {
+    Status.OK: mark("ok"),
+    Status.OPEN: mark("open"),
+    Status.CUT_OFF: mark("cut off"),
+    Status.SINGULAR: mark("singular"),
+    Status.UNCONVERGED: mark("unconverged"),
+}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One variable of a result.
+
+    Attributes
+    ----------
+    name : str
+        Name of the variable, ASCII.
+    symbol : str
+        As formulas and plots write it.
+    unit : str
+        SI unit where the drive is an angle.
+    long_name : str
+        What it is, in English; `title` says it in the chosen language.
+    by_drive : int
+        How many times it is divided by the drive's unit: 1 and 2 for kinematic coefficients, -1 for the drive's
+        own value, 0 for what does not depend on the kind of drive.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    long_name: str
+    by_drive: int = 0
+
+    @property
+    def title(self) -> str:
+        """What it is, in the chosen language."""
+        return _(self.long_name)
+
+    def for_drive(self, drive_unit: str) -> Quantity:
+        """The same quantity where the drive's value is in `drive_unit`: "rad" (an angle) or "m"."""
+        powers = _powers(self.unit)
+        powers["rad"] = powers.get("rad", 0) + self.by_drive
+        powers[drive_unit] = powers.get(drive_unit, 0) - self.by_drive
+        return replace(self, unit=_unit_text(powers))
+
+    def label(self, length: str = "m", angle: str = "rad") -> str:
+        """Title, symbol and the unit it is shown in, for the axis of a plot: "angular velocity ω, deg/s"."""
+        shown = display_unit(self.unit, length, angle)[1]
+        name = f"{self.title} {self.symbol}".rstrip()
+        return name if shown == "1" else f"{name}, {typeset_unit(shown)}"
+
+
+_ALL = (
+    Quantity("time", "t", "s", mark("time")),
+    Quantity("drive_value", "q", "rad", mark("value of the drive"), by_drive=-1),
+    Quantity("position", "r", "m", mark("position")),
+    Quantity("velocity", "v", "m/s", mark("velocity")),
+    Quantity("acceleration", "a", "m/s^2", mark("acceleration")),
+    Quantity("angle", "φ", "rad", mark("angle")),
+    Quantity("angular_velocity", "ω", "rad/s", mark("angular velocity")),
+    Quantity("angular_acceleration", "ε", "rad/s^2", mark("angular acceleration")),
+    Quantity("slide", "s", "m", mark("displacement along the guide")),
+    Quantity("slide_velocity", "v_s", "m/s", mark("velocity along the guide")),
+    Quantity("slide_acceleration", "a_s", "m/s^2", mark("acceleration along the guide")),
+    Quantity("velocity_coefficient", "r′", "m/rad", mark("velocity coefficient"), by_drive=1),
+    Quantity("acceleration_coefficient", "r″", "m/rad^2", mark("acceleration coefficient"), by_drive=2),
+    Quantity("angular_velocity_coefficient", "φ′", "1", mark("angular velocity coefficient"), by_drive=1),
+    Quantity(
+        "angular_acceleration_coefficient",
+        "φ″",
+        "1/rad",
+        mark("angular acceleration coefficient"),
+        by_drive=2,
+    ),
+    Quantity(
+        "slide_velocity_coefficient", "s′", "m/rad", mark("velocity coefficient along the guide"), by_drive=1
+    ),
+    Quantity(
+        "slide_acceleration_coefficient",
+        "s″",
+        "m/rad^2",
+        mark("acceleration coefficient along the guide"),
+        by_drive=2,
+    ),
+    Quantity("status", "", "1", mark("status of the sample")),
+    Quantity("residual", "", "1", mark("closure residual over the greatest length")),
+    Quantity("event_value", "q", "rad", mark("value of the drive at the event"), by_drive=-1),
+    Quantity("event_kind", "", "1", mark("kind of the event")),
+    Quantity("event_group", "", "1", mark("group of the event")),
+)
+
+QUANTITIES: Mapping[str, Quantity] = {quantity.name: quantity for quantity in _ALL}
+"""Every variable of a motion by its name, in reading order."""
+
+
+def status_word(status: int) -> str:
+    """The word for a status in the chosen language."""
+    return _(STATUS_WORDS[Status(status)])
+
+
+def display_unit(unit: str, length: str = "m", angle: str = "rad") -> tuple[float, str]:
+    """Factor and label that turn numbers in an SI unit into the units they are shown in.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit made of m, rad and s; any other unit is shown as it is.
+    length, angle : str
+        A key of LENGTHS and a key of ANGLES; InputError for another.
+
+    Returns
+    -------
+    factor : float
+        Shown number = factor * SI number; relative error below 4 eps.
+    label : str
+        `display_unit("m/s^2", length="mm")` is `(1000.0, "mm/s^2")`.
+    """
+    if length not in LENGTHS:
+        raise _unknown_unit("display.length", _("{unit!r} is not a unit of length"), length, LENGTHS)
+    if angle not in ANGLES:
+        raise _unknown_unit("display.angle", _("{unit!r} is not a unit of angle"), angle, ANGLES)
+    powers = _powers(unit)
+    if not powers.keys() <= {"m", "rad", "s"}:
+        return 1.0, unit
+    factor = LENGTHS[length] ** powers.get("m", 0) * ANGLES[angle] ** powers.get("rad", 0)
+    renamed = {"m": length, "rad": angle}
+    return factor, _unit_text({renamed.get(base, base): power for base, power in powers.items()})
+
+
+def typeset_unit(unit: str) -> str:
+    """The unit as plots and reports write it: "mm/s²" for "mm/s^2"."""
+    return re.sub(
+        r"\^(\d+)", lambda found: found.group(1).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")), unit
+    )
+
+
+def _unknown_unit(where: str, what: str, unit: str, table: Mapping[str, float]) -> InputError:
+    return InputError(where, what.format(unit=unit), _("use one of {known}").format(known=", ".join(table)))
+
+
+def _powers(unit: str) -> dict[str, int]:
+    """{"m": 1, "s": -2} of "m/s^2"; factors are parted by spaces, each division has one factor."""
+    powers: dict[str, int] = {}
+    for sign, base, power in re.findall(r"(/?)\s*([^\s/^]+)(?:\^(\d+))?", unit):
+        if base != "1":
+            powers[base] = powers.get(base, 0) + (-1 if sign else 1) * int(power or 1)
+    return powers
+
+
+def _unit_text(powers: Mapping[str, int]) -> str:
+    def written(base: str, power: int) -> str:
+        return base if power == 1 else f"{base}^{power}"
+
+    above = [written(base, power) for base, power in powers.items() if power > 0]
+    below = ["/" + written(base, -power) for base, power in powers.items() if power < 0]
+    return (" ".join(above) or "1") + "".join(below)

@@ -1,0 +1,63 @@
+"""What the cheap commands do not import: looked up in `sys.modules` of a process of their own."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+PROBE = """
+import json, sys
+from centrode.cli.main import main
+code = main(sys.argv[1:])
+sys.stdout.flush()
+print(json.dumps([code, sorted(sys.modules)]), file=sys.__stderr__)
+"""
+HEAVY = {"numpy", "scipy", "xarray", "pandas", "matplotlib", "sympy", "pint", "rich"}
+
+
+def imported(*arguments: str) -> tuple[int, set[str]]:
+    done = subprocess.run(
+        [sys.executable, "-c", PROBE, *arguments],
+        capture_output=True,
+        encoding="utf-8",
+        check=True,
+        timeout=60,
+    )
+    code, modules = json.loads(done.stderr.splitlines()[-1])
+    return code, {module.split(".")[0] for module in modules}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (["--help"], 0),
+        (["--version"], 0),
+        (["--lang", "ru", "--help"], 0),
+        (["examples", "--help"], 0),
+        (["examples", "--lang", "fr"], 2),
+        (["examples", "--out", "x.toml"], 2),
+        (["no-such-command"], 2),
+        (["--no-such-option"], 2),
+        ([], 2),
+    ],
+)
+def test_help_and_early_rejections_import_nothing_heavy(arguments: list[str], code: int) -> None:
+    ended, modules = imported(*arguments)
+    assert ended == code
+    assert not modules & (HEAVY | {"pydantic"})
+
+
+def test_listing_and_printing_examples_imports_no_numpy() -> None:
+    code, modules = imported("examples")
+    assert code == 0
+    assert not modules & HEAVY
+    code, modules = imported("examples", "slider-between-cranks")
+    assert code == 0
+    assert not modules & HEAVY
+
+
+def test_importing_the_package_imports_nothing_heavy() -> None:
+    text = "import sys, centrode; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, encoding="utf-8", check=True)
+    assert not {module.split(".")[0] for module in done.stdout.split()} & (HEAVY | {"pydantic", "click"})

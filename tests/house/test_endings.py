@@ -1,0 +1,157 @@
+"""How the command line ends: exit codes and messages, never a traceback."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import click
+import pytest
+
+from centrode.cli import main as command_line
+from centrode.errors import InputError, MotionError
+from centrode.locale import choose_language
+
+Run = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture(autouse=True)
+def same_process(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    for name in ("LC_ALL", "LC_MESSAGES", "LANG", "CENTRODE_DEBUG"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("LANGUAGE", "en")
+    yield
+    choose_language("en")
+
+
+def ends(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], work: Callable[[], object]
+) -> tuple[int, str]:
+    command = click.Command("work", callback=work)
+    monkeypatch.setattr(command_line, "COMMANDS", (command,))
+    code = command_line.main(["work"])
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "Traceback" not in printed.err
+    return code, printed.err
+
+
+def raising(failure: BaseException) -> Callable[[], None]:
+    def work() -> None:
+        raise failure
+
+    return work
+
+
+@pytest.mark.parametrize(
+    ("failure", "code", "message"),
+    [
+        (InputError("press.toml", "no drive", "add one"), 2, "Error: press.toml: no drive; add one\n"),
+        (MotionError("", "locks at 1.8 rad"), 3, "Error: locks at 1.8 rad\n"),
+        (InputError("a\x1b[2Jb", "bad"), 2, "Error: a\\x1b[2Jb: bad\n"),
+        (KeyboardInterrupt(), 130, "interrupted\n"),
+        (
+            OSError(28, "No space left on device"),
+            2,
+            "operating system refused: [Errno 28] No space left on device\n",
+        ),
+        (ValueError("boom"), 70, "Error: this is a fault of centrode: ValueError: boom; please report it"),
+        (RecursionError("deep"), 70, "fault of centrode: RecursionError: deep"),
+        (MemoryError(), 70, "fault of centrode: MemoryError"),
+        (click.UsageError("no"), 2, "Error: no\n"),
+        (SystemExit(5), 5, ""),
+    ],
+)
+def test_every_failure_is_a_message_and_a_code(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    failure: BaseException,
+    code: int,
+    message: str,
+) -> None:
+    ended, said = ends(monkeypatch, capsys, raising(failure))
+    assert ended == code
+    assert message in said
+
+
+def test_a_command_may_return_its_exit_code(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert ends(monkeypatch, capsys, lambda: 3) == (3, "")
+    assert ends(monkeypatch, capsys, lambda: None) == (0, "")
+
+
+def test_debugging_prints_the_traceback(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("CENTRODE_DEBUG", "1")
+    monkeypatch.setattr(
+        command_line, "COMMANDS", (click.Command("work", callback=raising(ValueError("boom"))),)
+    )
+    assert command_line.main(["work"]) == 70
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_help_lists_commands_in_reading_order(centrode: Run) -> None:
+    listed = centrode("--help").stdout.partition("Commands:")[2].split("\n\n")[0]
+    names = [line.split()[0] for line in listed.splitlines() if line.strip()]
+    assert names == [command.name for command in command_line.COMMANDS]
+
+
+def test_help_of_every_command_fits_its_line(centrode: Run) -> None:
+    for language in ("en", "ru", "uk"):
+        assert "..." not in centrode("--lang", language, "--help").stdout.partition("\n  ")[2]
+
+
+@pytest.mark.parametrize(
+    "arguments", [["nothing"], ["--nothing"], ["examples", "a", "b"], ["examples", "--out"], []]
+)
+def test_usage_errors_end_with_2_and_print_nothing(centrode: Run, arguments: list[str]) -> None:
+    done = centrode(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "Usage:" in done.stderr or done.stderr.startswith("Error: ")
+
+
+def test_version(centrode: Run) -> None:
+    assert centrode("--version").stdout == "centrode, version 0.1.0\n"
+
+
+PIPED = """
+import sys
+from centrode.cli import main as command_line
+import click
+def work():
+    for line in range(100_000):
+        click.echo("x" * 80)
+command_line.COMMANDS = (click.Command("work", callback=work),)
+sys.exit(command_line.main(["work"]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such pipes")
+def test_a_reader_that_goes_away_is_no_failure() -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", PIPED], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as writer:
+        assert writer.stdout is not None
+        assert writer.stderr is not None
+        assert writer.stdout.readline() == b"x" * 80 + b"\n"
+        writer.stdout.close()
+        assert writer.stderr.read() == b""
+        assert writer.wait(timeout=30) == command_line.READER_GONE
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
+def test_a_full_disk_is_told() -> None:
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "centrode", "--lang", "en", "--help"],
+            stdout=full, stderr=subprocess.PIPE, encoding="utf-8", check=False, timeout=60,
+        )  # fmt: skip
+    assert done.returncode == 2
+    assert "operating system refused" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert "Exception ignored" not in done.stderr

@@ -1,0 +1,99 @@
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+import pytest
+
+from centrode import locale, quantities
+from centrode.errors import InputError, Status
+from centrode.quantities import QUANTITIES, display_unit, typeset_unit
+
+
+def test_every_variable_of_a_motion_is_named() -> None:
+    bases = (
+        "angle",
+        "angular_velocity",
+        "angular_acceleration",
+        "slide",
+        "slide_velocity",
+        "slide_acceleration",
+    )
+    coefficients = [
+        f"{prefix}{order}_coefficient"
+        for prefix in ("", "angular_", "slide_")
+        for order in ("velocity", "acceleration")
+    ]
+    others = ("time", "drive_value", "position", "velocity", "acceleration", "status", "residual")
+    events = ("event_value", "event_kind", "event_group")
+    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events}
+    assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
+
+
+@pytest.mark.parametrize(
+    ("name", "displacement"),
+    [
+        ("drive_value", "m"),
+        ("event_value", "m"),
+        ("velocity_coefficient", "1"),
+        ("acceleration_coefficient", "1/m"),
+        ("angular_velocity_coefficient", "rad/m"),
+        ("angular_acceleration_coefficient", "rad/m^2"),
+        ("slide_velocity_coefficient", "1"),
+        ("slide_acceleration_coefficient", "1/m"),
+        ("angular_velocity", "rad/s"),
+    ],
+)
+def test_units_follow_the_kind_of_drive(name: str, displacement: str) -> None:
+    quantity = QUANTITIES[name]
+    assert quantity.for_drive("rad") == quantity
+    assert quantity.for_drive("m").unit == displacement
+    assert quantity.for_drive("m").name == name
+
+
+DEGREE = 180 / math.pi
+
+
+@pytest.mark.parametrize(
+    ("unit", "length", "angle", "factor", "label"),
+    [
+        ("m", "mm", "deg", 1000.0, "mm"),
+        ("m/s^2", "mm", "rad", 1000.0, "mm/s^2"),
+        ("rad/s", "m", "deg", DEGREE, "deg/s"),
+        ("rad/s^2", "m", "turn", 1 / (2 * math.pi), "turn/s^2"),
+        ("m/rad", "mm", "deg", 1000 / DEGREE, "mm/deg"),
+        ("m/rad^2", "cm", "deg", 100 / DEGREE**2, "cm/deg^2"),
+        ("1/rad", "mm", "deg", 1 / DEGREE, "1/deg"),
+        ("rad/m^2", "mm", "deg", DEGREE / 1e6, "deg/mm^2"),
+        ("1", "mm", "deg", 1.0, "1"),
+        ("s", "mm", "deg", 1.0, "s"),
+        ("m", "in", "rad", float(Fraction(10000, 254)), "in"),
+        ("kg m^2", "mm", "deg", 1.0, "kg m^2"),
+    ],
+)
+def test_display_units(unit: str, length: str, angle: str, factor: float, label: str) -> None:
+    got, said = display_unit(unit, length, angle)
+    assert said == label
+    assert abs(got - factor) <= 4 * 2.0**-52 * factor
+
+
+@pytest.mark.parametrize(("length", "angle"), [("kg", "rad"), ("m", "m"), ("", "rad"), ("M", "rad")])
+def test_unknown_display_units_are_refused(length: str, angle: str) -> None:
+    with pytest.raises(InputError, match=r"display\.(length|angle): .* is not a unit of .*; use one of"):
+        display_unit("s", length, angle)
+
+
+def test_labels_of_axes() -> None:
+    assert QUANTITIES["angular_acceleration"].label(angle="deg") == "angular acceleration ε, deg/s²"
+    assert QUANTITIES["residual"].label() == "closure residual over the greatest length"
+    assert typeset_unit("mm/deg^2") == "mm/deg²"
+    locale.choose_language("ru")
+    try:
+        assert QUANTITIES["velocity_coefficient"].label("mm", "deg") == "аналог скорости r′, mm/deg"
+        assert quantities.status_word(Status.OPEN) == "не замыкается"
+    finally:
+        locale.choose_language("en")
+
+
+def test_every_status_has_its_word() -> None:
+    assert {status: quantities.status_word(status) for status in Status} == {s: s.word for s in Status}
