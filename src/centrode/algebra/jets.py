@@ -1,0 +1,188 @@
+"""Jets: truncated Taylor series whose arithmetic gives exact derivatives of any order of any formula.
+
+Rules of the coefficients: Griewank and Walther, Evaluating Derivatives (2nd ed., 2008), chapter 13.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import factorial
+from typing import Any, TypeAlias, Union
+
+Number: TypeAlias = Any
+Coefficients: TypeAlias = tuple[Number, ...]
+Operand: TypeAlias = Union["Jet", Number]
+
+
+class Jet:
+    """A value with its derivatives along one variable, as Taylor coefficients.
+
+    `coefficients[k]` is the k-th derivative divided by k!, over any algebra with `+ - * /` (arrays, mpmath
+    numbers, expression nodes). Two jets that meet have the same order; a plain number is a constant.
+    """
+
+    __slots__ = ("coefficients",)
+    __array_priority__ = 1000
+    __array_ufunc__ = None
+
+    def __init__(self, coefficients: Sequence[Number]) -> None:
+        self.coefficients: Coefficients = tuple(coefficients)
+
+    @classmethod
+    def variable(cls, value: Number, order: int) -> Jet:
+        """The variable itself at `value`: derivative one, higher derivatives zero."""
+        return cls((value, 1.0, *([0.0] * (order - 1)))[: order + 1])
+
+    @property
+    def order(self) -> int:
+        """Highest derivative carried."""
+        return len(self.coefficients) - 1
+
+    @property
+    def value(self) -> Number:
+        """The plain value."""
+        return self.coefficients[0]
+
+    def derivative(self, order: int) -> Number:
+        """The derivative of the given order; order 0 is the value."""
+        return self.coefficients[order] * factorial(order) if order > 1 else self.coefficients[order]
+
+    def slope(self) -> Jet:
+        """The derivative as a jet, one order lower."""
+        return Jet([k * c for k, c in enumerate(self.coefficients)][1:])
+
+    def lowered(self) -> Jet:
+        """The same jet one order lower, to meet a slope."""
+        return Jet(self.coefficients[:-1])
+
+    def __repr__(self) -> str:
+        return f"Jet{self.coefficients!r}"
+
+    def __add__(self, other: Operand) -> Jet:
+        if isinstance(other, Jet):
+            return Jet([a + b for a, b in zip(self.coefficients, other.coefficients, strict=True)])
+        return Jet((self.coefficients[0] + other, *self.coefficients[1:]))
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Jet:
+        return Jet([-a for a in self.coefficients])
+
+    def __pos__(self) -> Jet:
+        return self
+
+    def __sub__(self, other: Operand) -> Jet:
+        if isinstance(other, Jet):
+            return Jet([a - b for a, b in zip(self.coefficients, other.coefficients, strict=True)])
+        return Jet((self.coefficients[0] - other, *self.coefficients[1:]))
+
+    def __rsub__(self, other: Number) -> Jet:
+        return (-self) + other
+
+    def __mul__(self, other: Operand) -> Jet:
+        if isinstance(other, Jet):
+            return Jet(product(self.coefficients, other.coefficients))
+        return Jet([a * other for a in self.coefficients])
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Operand) -> Jet:
+        if isinstance(other, Jet):
+            return Jet(quotient(self.coefficients, other.coefficients))
+        return Jet([a / other for a in self.coefficients])
+
+    def __rtruediv__(self, other: Number) -> Jet:
+        return Jet(quotient((other, *([0.0] * self.order)), self.coefficients))
+
+    def __pow__(self, exponent: float) -> Jet:
+        if exponent == int(exponent) and exponent >= 0:
+            result: Operand = 1.0
+            for _ in range(int(exponent)):
+                result = self * result
+            return result if isinstance(result, Jet) else self * 0.0 + 1.0
+        return Jet(power(self.coefficients, exponent))
+
+
+def _is_zero(x: Number) -> bool:
+    # only the literal zeros that seeds and constants bring along: skipping them keeps array work to what counts
+    return type(x) is float and x == 0.0
+
+
+def product(a: Coefficients, b: Coefficients) -> list[Number]:
+    """Coefficients of the product of two series (Cauchy)."""
+    result = []
+    for k in range(len(a)):
+        total: Number = 0.0
+        for i in range(k + 1):
+            if not (_is_zero(a[i]) or _is_zero(b[k - i])):
+                term = a[i] * b[k - i]
+                total = term if _is_zero(total) else total + term
+        result.append(total)
+    return result
+
+
+def quotient(a: Coefficients, b: Coefficients) -> list[Number]:
+    """Coefficients of the quotient of two series."""
+    inverse = 1.0 / b[0]
+    result: list[Number] = [a[0] / b[0]]
+    for k in range(1, len(a)):
+        total = a[k]
+        for i in range(k):
+            if not (_is_zero(result[i]) or _is_zero(b[k - i])):
+                total = total - result[i] * b[k - i]
+        result.append(total * inverse)
+    return result
+
+
+def square_root(a: Coefficients, root: Number) -> list[Number]:
+    """Coefficients of the square root, given that of the value."""
+    result: list[Number] = [root]
+    half = 0.5 / root
+    for k in range(1, len(a)):
+        total = a[k]
+        for i in range(1, k):
+            total = total - result[i] * result[k - i]
+        result.append(total * half)
+    return result
+
+
+def power(a: Coefficients, exponent: float) -> list[Number]:
+    """Coefficients of a real power."""
+    result: list[Number] = [a[0] ** exponent]
+    for k in range(1, len(a)):
+        total: Number = 0.0
+        for j in range(1, k + 1):
+            total = total + (j * exponent - (k - j)) * a[j] * result[k - j]
+        result.append(total / (k * a[0]))
+    return result
+
+
+def exponential(a: Coefficients, value: Number) -> list[Number]:
+    """Coefficients of the exponential, given that of the value."""
+    result: list[Number] = [value]
+    for k in range(1, len(a)):
+        total: Number = 0.0
+        for j in range(1, k + 1):
+            total = total + j * a[j] * result[k - j]
+        result.append(total / k)
+    return result
+
+
+def sine_and_cosine(a: Coefficients, sine: Number, cosine: Number) -> tuple[list[Number], list[Number]]:
+    """Coefficients of sine and cosine, given those of the value."""
+    sines, cosines = [sine], [cosine]
+    for k in range(1, len(a)):
+        s: Number = 0.0
+        c: Number = 0.0
+        for j in range(1, k + 1):
+            if not _is_zero(a[j]):
+                s = s + (j / k) * a[j] * cosines[k - j]
+                c = c - (j / k) * a[j] * sines[k - j]
+        sines.append(s)
+        cosines.append(c)
+    return sines, cosines
+
+
+def integral(derivative: Sequence[Number], value: Number) -> Jet:
+    """The jet whose derivative has the given coefficients."""
+    return Jet((value, *(c / (k + 1) for k, c in enumerate(derivative))))

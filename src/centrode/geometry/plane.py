@@ -1,0 +1,149 @@
+"""Vectors, poses and meeting points in the plane, as formulas over any algebra.
+
+A vector is a pair of numbers; a rotor is a unit vector (cos, sin) and turns another vector by `turned`. A pose is
+the origin of a link's axes and their rotor. Where a formula has two answers it takes `root`, a function that gives
+the signed square root of the radicand: the sign is the branch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias
+
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+Vector: TypeAlias = tuple[Number, Number]
+Root: TypeAlias = Callable[[Number], Number]
+
+
+class Pose(NamedTuple):
+    """Where a link is: origin of its axes and their rotor."""
+
+    origin: Vector
+    rotor: Vector
+
+
+AT_REST = Pose((0.0, 0.0), (1.0, 0.0))
+"""Pose of the frame."""
+
+
+def add(a: Vector, b: Vector) -> Vector:
+    """Sum of two vectors."""
+    return a[0] + b[0], a[1] + b[1]
+
+
+def subtract(a: Vector, b: Vector) -> Vector:
+    """Vector from b to a."""
+    return a[0] - b[0], a[1] - b[1]
+
+
+def dot(a: Vector, b: Vector) -> Number:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1]
+
+
+def cross(a: Vector, b: Vector) -> Number:
+    """Normal component of the vector product; positive if b lies to the left of a."""
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def turned(a: Vector, rotor: Vector) -> Vector:
+    """Vector a turned by a rotor; of two rotors, the rotor of the summed angle."""
+    return a[0] * rotor[0] - a[1] * rotor[1], a[0] * rotor[1] + a[1] * rotor[0]
+
+
+def reversed_rotor(rotor: Vector) -> Vector:
+    """Rotor of the opposite angle."""
+    return rotor[0], -rotor[1]
+
+
+def rotor_of(m: Namespace, angle: Number) -> Vector:
+    """Rotor of an angle [rad]."""
+    return m.cos(angle), m.sin(angle)
+
+
+def along(origin: Vector, direction: Vector, distance: Number) -> Vector:
+    """Point at a distance from the origin in a unit direction."""
+    return origin[0] + distance * direction[0], origin[1] + distance * direction[1]
+
+
+def place(pose: Pose, local: Vector) -> Vector:
+    """Point of a link at its local coordinates."""
+    return add(pose.origin, turned(local, pose.rotor))
+
+
+def pose_with_point(local: Vector, at: Vector, rotor: Vector) -> Pose:
+    """Pose of a link that has the given rotor and its local point at a place."""
+    return Pose(subtract(at, turned(local, rotor)), rotor)
+
+
+def pose_by_two_points(first: Vector, second: Vector, at_first: Vector, at_second: Vector) -> Pose:
+    """Pose of a link from the places of two of its points.
+
+    The rotor is a unit vector as far as the places keep the link's own distance; the residual of a motion contains
+    the second point, so a distance that does not fit shows.
+    """
+    local = subtract(second, first)
+    rotor = turned(subtract(at_second, at_first), reversed_rotor(local))
+    squared = dot(local, local)
+    return pose_with_point(first, at_first, (rotor[0] / squared, rotor[1] / squared))
+
+
+def meet_circles(centre_1: Vector, radius_1: Number, centre_2: Vector, radius_2: Number, root: Root) -> Vector:
+    """Point where two circles meet, to the left of the line centre_1 -> centre_2 for a positive root.
+
+    The radicand is 16 times the squared area of the triangle, kept factored (Heron), so that it changes sign
+    exactly where the triangle opens: ((r1 + r2)^2 - l^2)(l^2 - (r1 - r2)^2).
+    """
+    line = subtract(centre_2, centre_1)
+    squared = dot(line, line)
+    total, difference = radius_1 + radius_2, radius_1 - radius_2
+    radicand = (total * total - squared) * (squared - difference * difference)
+    half = 0.5 / squared
+    ahead = (total * difference + squared) * half
+    left = root(radicand) * half
+    return (
+        centre_1[0] + ahead * line[0] - left * line[1],
+        centre_1[1] + ahead * line[1] + left * line[0],
+    )
+
+
+def meet_circle_and_line(centre: Vector, radius: Number, through: Vector, direction: Vector, root: Root) -> Vector:
+    """Point where a circle meets a line, ahead of the foot of its centre for a positive root.
+
+    The radicand is (r - n)(r + n), n the distance of the centre from the line.
+    """
+    offset = subtract(centre, through)
+    distance = cross(direction, offset)
+    half_chord = root((radius - distance) * (radius + distance))
+    return along(through, direction, dot(direction, offset) + half_chord)
+
+
+def meet_lines(
+    through_1: Vector, direction_1: Vector, through_2: Vector, direction_2: Vector, divisor: Root
+) -> Vector:
+    """Point where two lines meet; `divisor` is given the sine between them, whose zero sends the point to infinity."""
+    sine = divisor(cross(direction_1, direction_2))
+    return along(through_1, direction_1, cross(subtract(through_2, through_1), direction_2) / sine)
+
+
+def aim(pivot: Vector, at: Vector, through: Vector, direction: Vector, target: Vector, root: Root) -> Pose:
+    """Pose of a link with its pivot at a place, whose line passes through a target.
+
+    `pivot`, `through` and `direction` are in the link's axes. A positive root has the target ahead of the foot of the
+    pivot on the line. The radicand is w^2 - e^2, w the distance from the pivot to the target, e that
+    to the line.
+    """
+    offset = cross(direction, subtract(through, pivot))
+    to_target = subtract(target, at)
+    squared = dot(to_target, to_target)
+    half = root(squared - offset * offset)
+    line = turned(to_target, (half / squared, -offset / squared))
+    return pose_with_point(pivot, at, turned(line, reversed_rotor(direction)))
+
+
+def length_of(m: Namespace, a: Vector) -> Number:
+    """Length of a vector; exact for one along the first axis, as the vector of a two-point link is."""
+    if isinstance(a[1], float) and a[1] == 0.0:
+        return a[0]
+    return m.sqrt(dot(a, a))
