@@ -1,0 +1,190 @@
+"""The groups a plan is made of: what is known before each, what it gives.
+
+Assur groups of class II (dyads) are named by their joints, R a hinge and P a guide, in the order outer, inner, outer: RRR, RRP, RPR, PRP,
+RPP (Artobolevsky, Theory of Mechanisms and Machines, kinds 1 to 5). Rigid points, links by two points, cranks and parallel links are solved
+on the way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+
+@dataclass(frozen=True)
+class RigidPoint:
+    """A point of a link whose pose is known."""
+
+    point: str
+    link: str
+    kind = "rigid point"
+    signed = False
+
+
+@dataclass(frozen=True)
+class TwoPointLink:
+    """A link two of whose points are known."""
+
+    link: str
+    first: str
+    second: str
+    kind = "link by two points"
+    signed = False
+
+
+@dataclass(frozen=True)
+class Turning:
+    """How the angle of a link follows: from a drive or from a guide against which it does not turn.
+
+    `link` and `relative_to` are as the constraint names them; either may be the unknown one.
+    """
+
+    link: str
+    relative_to: str
+    drive: str | None = None
+    guide: str | None = None
+
+
+@dataclass(frozen=True)
+class TurnedLink:
+    """A link of known angle with a known point: a crank if a drive gives the angle, else a parallel link."""
+
+    link: str
+    pivot: str
+    turning: Turning
+    signed = False
+
+    @property
+    def kind(self) -> str:
+        return "crank" if self.turning.drive is not None else "parallel link"
+
+
+@dataclass(frozen=True)
+class Aim:
+    """RPR: a link on a known pivot whose guide passes a known target, with the guided link if there is one.
+
+    If `block` is set, the target is a known point of that link, which does not turn against the aimed link; `sliding` is its point on
+    the guide. If not, the target itself is the guide's point.
+    """
+
+    link: str
+    pivot: str
+    guide: str
+    target: str
+    block: str | None = None
+    sliding: str | None = None
+    kind = "RPR"
+    signed = True
+
+
+@dataclass(frozen=True)
+class Rod:
+    """Locus: a circle about a known centre, drawn by a link with the end of one hinge known."""
+
+    point: str
+    centre: str
+    link: str
+    letter = "R"
+
+
+@dataclass(frozen=True)
+class Rail:
+    """Locus: a known line on which a point of the unknown moves; `on` is the body that carries it."""
+
+    point: str
+    guide: str
+    on: str
+    letter = "P"
+
+
+@dataclass(frozen=True)
+class Slot:
+    """Locus: a line of the unknown (of known angle) through a known point."""
+
+    point: str
+    guide: str
+    letter = "P"
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Locus: the line square to a guide at the displacement its drive gives."""
+
+    point: str
+    guide: str
+    on: str
+    drive: str
+    letter = "P"
+
+
+Locus: TypeAlias = Rod | Rail | Slot | Stop
+
+
+@dataclass(frozen=True)
+class Meet:
+    """RRR, RRP, PRP or RPP: one unknown vector where two loci meet.
+
+    The vector is the place of `points[0]`, or, if there is a carriage (a link whose angle is known beforehand), the origin of the
+    carriage's axes; its points then follow. `loci` stand with circles first, otherwise in description order, so the sign is
+    reproducible.
+    """
+
+    points: tuple[str, ...]
+    loci: tuple[Locus, Locus]
+    carriage: str | None = None
+    turning: Turning | None = None
+
+    @property
+    def rods(self) -> tuple[Rod, ...]:
+        """The loci that are links."""
+        return tuple(locus for locus in self.loci if isinstance(locus, Rod))
+
+    @property
+    def kind(self) -> str:
+        if len(self.rods) == 2:
+            return "RRR"
+        if len(self.rods) == 1:
+            return "RRP"
+        return "RPP" if any(isinstance(locus, Slot) for locus in self.loci) else "PRP"
+
+    @property
+    def signed(self) -> bool:
+        return bool(self.rods)
+
+
+@dataclass(frozen=True)
+class Newton:
+    """A group of higher class: points and links solved together."""
+
+    points: tuple[str, ...]
+    links: tuple[str, ...]
+    kind = "higher class"
+    signed = False
+
+
+Group: TypeAlias = RigidPoint | TwoPointLink | TurnedLink | Aim | Meet | Newton
+
+
+def links_of(group: Group) -> tuple[str, ...]:
+    """Links whose pose the group gives."""
+    if isinstance(group, RigidPoint):
+        return ()
+    if isinstance(group, Newton):
+        return group.links
+    if isinstance(group, Aim):
+        return (group.link,) if group.block is None else (group.link, group.block)
+    if isinstance(group, Meet):
+        carriage = () if group.carriage is None else (group.carriage,)
+        return carriage + tuple(rod.link for rod in group.rods)
+    return (group.link,)
+
+
+def points_of(group: Group) -> tuple[str, ...]:
+    """Points whose place the group gives."""
+    if isinstance(group, RigidPoint):
+        return (group.point,)
+    if isinstance(group, (Newton, Meet)):
+        return group.points
+    if isinstance(group, Aim) and group.sliding is not None:
+        return (group.sliding,)
+    return ()

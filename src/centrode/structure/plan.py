@@ -1,0 +1,154 @@
+"""From a description to its structure and its plan: what is solved, in which order, by which closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from centrode.errors import InputError, NotComputedYet
+from centrode.locale import _, ngettext
+from centrode.model.mechanism import Mechanism
+from centrode.structure.classify import classify
+from centrode.structure.constraints import Constraint, Entity, constraints_of, is_drive, unknowns_of
+from centrode.structure.dimensions import Dimensions, dimensions_of
+from centrode.structure.groups import Group
+from centrode.structure.matching import in_order, match, strong_components
+from centrode.structure.rank import Matrix, generic_jacobian, independent_rows
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What follows from the description alone, before any position is known.
+
+    Attributes
+    ----------
+    constraints : all of them, drives first; `redundant` those that repeat others at a generic position
+    unknowns : moving points and links
+    groups : the plan, each group needing only what stands before it
+    generic_mobility : unknowns less the rank without drives at a generic position; a mechanism of special
+        dimensions (three parallel cranks) can move although this is 0
+    """
+
+    mechanism: Mechanism
+    dimensions: Dimensions
+    constraints: tuple[Constraint, ...]
+    redundant: tuple[Constraint, ...]
+    unknowns: tuple[Entity, ...]
+    groups: tuple[Group, ...]
+    generic_mobility: int
+
+    @property
+    def drives(self) -> int:
+        """Number of drives."""
+        return len(self.mechanism.drives)
+
+
+def structure_of(mechanism: Mechanism) -> Structure:
+    """Structure and plan of a mechanism.
+
+    Raises
+    ------
+    InputError
+        No drive, or fewer or more drives than the mobility (rank) has.
+    NotComputedYet
+        The description names what this version does not compute.
+    """
+    _refuse_what_is_not_computed(mechanism)
+    constraints = constraints_of(mechanism)
+    unknowns = unknowns_of(mechanism)
+    dimensions = dimensions_of(mechanism)
+    matrix = generic_jacobian(mechanism, constraints, unknowns, dimensions)
+    kept = independent_rows(matrix)
+    owners = [c for c in constraints for _row in range(c.size)]
+    drive_rows = sum(is_drive(c) for c in constraints)
+    mobility = matrix.shape[1] - int(independent_rows(matrix[drive_rows:]).sum())
+    _check_drives(mechanism, constraints, unknowns, kept, owners, mobility)
+    redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
+    groups = _groups(mechanism, constraints, unknowns, matrix, kept, owners)
+    return Structure(mechanism, dimensions, constraints, redundant, unknowns, groups, mobility)
+
+
+def _refuse_what_is_not_computed(mechanism: Mechanism) -> None:
+    refused = [
+        ("space", mechanism.space != "plane", _("spherical linkages are not computed yet")),
+        ("[[gears]]", bool(mechanism.gears), _("gears are not computed yet")),
+        ("[[rolling]]", bool(mechanism.rolling), _("rolling contacts are not computed yet")),
+        (
+            "[[drives]] distance",
+            any(drive.kind == "distance" for drive in mechanism.drives),
+            _("cylinders (distance drives) are not computed yet"),
+        ),
+    ]
+    for where, found, what in refused:
+        if found:
+            raise NotComputedYet(where, what, _("leave it out, or wait for the version that computes it"))
+
+
+def _check_drives(
+    mechanism: Mechanism,
+    constraints: Sequence[Constraint],
+    unknowns: Sequence[Entity],
+    kept: Sequence[bool],
+    owners: Sequence[Constraint],
+    mobility: int,
+) -> None:
+    """Refuse drives that repeat each other or leave something loose; special dimensions are judged at real positions."""
+    drives = len(mechanism.drives)
+    width = sum(entity.unknowns for entity in unknowns)
+    if drives == 0:
+        raise InputError("[[drives]]", _("the mechanism has no drive"), _("give one drive per degree of freedom"))
+    repeated = [c.label for c, keep in zip(owners, kept, strict=True) if is_drive(c) and not keep]
+    numbers = drives_against_mobility(drives, mobility)
+    if repeated:
+        raise InputError("[[drives]]", numbers, _("take away: {drives}").format(drives="; ".join(repeated)))
+    if sum(kept) < width:
+        raise InputError("[[drives]]", numbers, _("add drives, or constrain what moves freely"))
+
+
+def drives_against_mobility(drives: int, mobility: int) -> str:
+    """The sentence that compares the number of drives with the mobility."""
+    return (
+        ngettext("{n} drive is given", "{n} drives are given", drives).format(n=drives)
+        + _(", but the mobility (by rank) is {mobility}").format(mobility=mobility)
+    )
+
+
+def _unique(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
+    return tuple(dict.fromkeys(constraints))
+
+
+def _groups(
+    mechanism: Mechanism,
+    constraints: Sequence[Constraint],
+    unknowns: Sequence[Entity],
+    matrix: Matrix,
+    kept: Sequence[bool],
+    owners: Sequence[Constraint],
+) -> tuple[Group, ...]:
+    """Groups in an order in which each needs only what stands before it."""
+    inside = set(unknowns)
+    neighbours = {
+        (row, owners[row]): [
+            (entity, k) for entity in owners[row].bodies if entity in inside for k in range(entity.unknowns)
+        ]
+        for row in range(len(owners))
+        if kept[row]
+    }
+    owner = match(neighbours)
+    matched: dict[Entity, list[Constraint]] = {entity: [] for entity in unknowns}
+    for (entity, _k), (_row, constraint) in owner.items():
+        matched[entity].append(constraint)
+    depends = {
+        entity: list(
+            dict.fromkeys(
+                other for c in own for other in c.bodies if other != entity and other in inside
+            )
+        )
+        for entity, own in matched.items()
+    }
+    position = {constraint: k for k, constraint in enumerate(constraints)}
+    groups = []
+    for component in in_order(strong_components(depends), depends):
+        own = sorted(_unique([c for entity in component for c in matched[entity]]), key=position.__getitem__)
+        groups.append(classify(mechanism, component, own))
+    return tuple(groups)

@@ -1,0 +1,64 @@
+"""The steps of a plan in words: what is found, and from what."""
+
+from __future__ import annotations
+
+from centrode.locale import _
+from centrode.structure.groups import (
+    Aim,
+    Group,
+    Locus,
+    Meet,
+    Newton,
+    Rail,
+    RigidPoint,
+    Rod,
+    Slot,
+    TurnedLink,
+    TwoPointLink,
+)
+
+
+def step_of(group: Group) -> str:
+    """One line for one group of a plan."""
+    if isinstance(group, RigidPoint):
+        return _("point {point} of link {link}").format(point=group.point, link=group.link)
+    if isinstance(group, TwoPointLink):
+        return _("link {link} through {first} and {second}").format(
+            link=group.link, first=group.first, second=group.second
+        )
+    if isinstance(group, TurnedLink):
+        if group.turning.drive is not None:
+            return _("link {link} about {point}, turned by its drive").format(
+                link=group.link, point=group.pivot
+            )
+        return _("link {link} at {point}, kept from turning by guide {guide}").format(
+            link=group.link, point=group.pivot, guide=group.turning.guide
+        )
+    if isinstance(group, Aim):
+        return _("RPR: link {link} about {point}, its guide {guide} through {target}").format(
+            link=group.link, point=group.pivot, guide=group.guide, target=group.target
+        )
+    if isinstance(group, Newton):
+        return _("higher class: {names}").format(names=", ".join(group.points + group.links))
+    return _meeting(group)
+
+
+def _meeting(group: Meet) -> str:
+    one, other = (_locus(locus) for locus in group.loci)
+    if group.carriage is None:
+        return _("{kind}: point {point}, where {one} meets {other}").format(
+            kind=group.kind, point=group.points[0], one=one, other=other
+        )
+    return _("{kind}: link {link} of known angle, where {one} meets {other}").format(
+        kind=group.kind, link=group.carriage, one=one, other=other
+    )
+
+
+def _locus(locus: Locus) -> str:
+    if isinstance(locus, Rod):
+        return _("the circle of {link} about {point}").format(link=locus.link, point=locus.centre)
+    if isinstance(locus, Rail):
+        return _("the line of guide {guide}").format(guide=locus.guide)
+    if isinstance(locus, Slot):
+        return _("guide {guide} through {point}").format(guide=locus.guide, point=locus.point)
+    return _("the stop that the drive of guide {guide} sets").format(guide=locus.guide)
