@@ -1,0 +1,249 @@
+"""The initial position: which of a group's two assemblies is meant, and whether everything closes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import degrees, radians, remainder, tau
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
+from centrode.errors import InputError
+from centrode.kinematics.closure import shortfall
+from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.groups import solve_group
+from centrode.locale import _
+from centrode.structure.constraints import Positions
+from centrode.structure.groups import Aim, Group, Meet, links_of, points_of
+from centrode.structure.rank import residuals_at
+
+Number: TypeAlias = Any
+
+DEGENERATE = 1e-9
+"""A triangle flatter than this (sine) does not tell its side."""
+ANGLE_TOLERANCE = radians(5.0)
+"""Initial angles name an assembly; further than this from the assembled position they are taken as a mistake."""
+RESIDUAL_TOLERANCE = 1e-9
+"""Greatest residual of a closed mechanism, in units of its greatest length."""
+
+SIDES = {"left": 1.0, "right": -1.0, "ahead": 1.0, "behind": -1.0}
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """The initial position: sign of each signed group, places of everything, and how well it closes."""
+
+    signs: dict[int, float]
+    positions: Positions
+    angles: dict[str, float]
+    residual: float
+
+
+def assemble(kinematics: Kinematics) -> Assembled:
+    """Initial position of a single mechanism.
+
+    Raises
+    ------
+    InputError
+        It does not close (by how much is told), or the description does not say on which side a group is assembled.
+    """
+    initial = kinematics.path.initial
+    drives = kinematics.path.drive_values(ARRAYS, initial)
+    at = Positions.of_frame(kinematics.numbers, drives)
+    signs: dict[int, float] = {}
+    with np.errstate(all="ignore"):
+        for i, group in enumerate(kinematics.structure.groups):
+            if group.signed:
+                bound = _bound(kinematics, i, signs)
+                signs[i] = _solve_signed(kinematics, group, at, bound)
+            else:
+                _solve_plain(kinematics, group, at)
+            _check_finite(group, at)
+    residual = _check_residuals(kinematics, at)
+    return Assembled(signs, at, _angles(kinematics, at), residual)
+
+
+def _bound(kinematics: Kinematics, group: int, signs: dict[int, float]) -> float:
+    """Rounding error of a group's radicand at the initial position."""
+
+    def branch(i: int, radicand: Number) -> Number:
+        return ROUNDED.sqrt(radicand) * signs[i]
+
+    guard = kinematics.guard(ROUNDED, Rounded.of(np.float64(kinematics.path.initial)), group, branch)
+    return float(Rounded.of(guard).bound)
+
+
+def _solve_plain(kinematics: Kinematics, group: Group, at: Positions) -> None:
+    solve_group(group, ARRAYS, kinematics.numbers, at, lambda x: x, lambda x: x)
+
+
+def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: float) -> float:
+    """Solve a group on the side that the description means; returns its sign."""
+    options = {sign: _option(kinematics, group, at, sign, bound) for sign in (1.0, -1.0)}
+    stated = _stated_side(kinematics, group)
+    flat = _distance(group, *options.values()) < DEGENERATE * float(kinematics.numbers.scale)
+    if stated is None and flat:
+        raise InputError(
+            name_of(group),
+            _("its triangle is flat in the initial position, so both assemblies meet there"),
+            _("say on which side it goes on: [assembly] sides, {word}").format(word=_side_words(group)),
+        )
+    sign = stated if stated is not None else _side_by_angles(kinematics, group, options)
+    _check_angles(kinematics, group, options[sign])
+    at.points.update(options[sign].points)
+    at.poses.update(options[sign].poses)
+    return sign
+
+
+def _option(
+    kinematics: Kinematics, group: Group, at: Positions, sign: float, bound: float
+) -> Positions:
+    trial = Positions(dict(at.points), dict(at.poses), at.drives)
+
+    def root(radicand: Number) -> Number:
+        if radicand < -SAFETY * bound:
+            raise InputError(
+                name_of(group),
+                _("it does not close in the initial position: {by_how_much}").format(
+                    by_how_much=shortfall(group, kinematics.numbers, at)
+                ),
+                _("change a length, or the initial position"),
+            )
+        return sign * np.sqrt(max(radicand, 0.0))
+
+    solve_group(group, ARRAYS, kinematics.numbers, trial, root, lambda x: x)
+    return trial
+
+
+def _distance(group: Group, one: Positions, other: Positions) -> float:
+    """How far apart the two assemblies of a group are [m]."""
+    apart = [np.hypot(*np.subtract(one.points[p], other.points[p])) for p in points_of(group)]
+    if isinstance(group, Aim):
+        arm = one.points[group.target][0] - one.points[group.pivot][0]
+        arm = np.hypot(arm, one.points[group.target][1] - one.points[group.pivot][1])
+        turn = np.subtract(one.poses[group.link].rotor, other.poses[group.link].rotor)
+        apart.append(arm * np.hypot(*turn))
+    return float(max(apart, default=0.0))
+
+
+def _stated_side(kinematics: Kinematics, group: Group) -> float | None:
+    sides = kinematics.structure.mechanism.assembly.sides
+    names = side_names(group)
+    said = [(name, sides[name]) for name in names if name in sides]
+    if not said:
+        return None
+    name, word = said[0]
+    if word not in side_words(group):
+        raise InputError(
+            f"[assembly] sides.{name}",
+            _("{word} does not apply to a group {kind}").format(word=f'"{word}"', kind=group.kind),
+            _("write {words}").format(words=_side_words(group)),
+        )
+    return SIDES[word]
+
+
+def side_names(group: Group) -> tuple[str, ...]:
+    """Names under which [assembly] sides may speak of a group: its unknown points, or the guide of an RPR group."""
+    return (group.guide, group.target) if isinstance(group, Aim) else points_of(group)
+
+
+def side_words(group: Group) -> tuple[str, str]:
+    """The words that tell the sides of a group."""
+    return ("left", "right") if isinstance(group, Meet) and group.kind == "RRR" else ("ahead", "behind")
+
+
+def _side_words(group: Group) -> str:
+    first, second = side_words(group)
+    return f'{side_names(group)[0]} = "{first}" | "{second}"'
+
+
+def _side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Positions]) -> float:
+    links = kinematics.structure.mechanism.links
+    hints = {link: links[link].angle for link in links_of(group) if links[link].angle is not None}
+    if not hints:
+        raise InputError(
+            name_of(group),
+            _("nothing says on which side it is assembled"),
+            _("give the initial angle of {links}, or [assembly] sides, {words}").format(
+                links=_(" or ").join(links_of(group)), words=_side_words(group)
+            ),
+        )
+    misfit = {
+        sign: sum(abs(_difference(hint or 0.0, option, link)) for link, hint in hints.items())
+        for sign, option in options.items()
+    }
+    return min(misfit, key=misfit.__getitem__)
+
+
+def _difference(angle: float, at: Positions, link: str) -> float:
+    cosine, sine = at.poses[link].rotor
+    return remainder(float(np.arctan2(sine, cosine)) - angle, tau)
+
+
+def _check_angles(kinematics: Kinematics, group: Group, at: Positions) -> None:
+    for link in links_of(group):
+        angle = kinematics.structure.mechanism.links[link].angle
+        if angle is None or link not in at.poses:
+            continue
+        difference = _difference(angle, at, link)
+        if abs(difference) > ANGLE_TOLERANCE:
+            raise InputError(
+                f"[links.{link}] angle",
+                _("{given:.4g} deg does not assemble: the position has {found:.4g} deg, {off:.3g} deg off").format(
+                    given=degrees(angle), found=degrees(angle + difference), off=degrees(abs(difference))
+                ),
+                _("correct the angle, a length or the start of the drive"),
+            )
+
+
+def _check_finite(group: Group, at: Positions) -> None:
+    values = [x for p in points_of(group) for x in at.points[p]]
+    values += [x for link in links_of(group) for x in at.poses[link].rotor]
+    if not all(np.isfinite(float(x)) for x in values):
+        raise InputError(
+            name_of(group),
+            _("the initial position is undetermined there: two of its points coincide, or its lines are parallel"),
+            _("start the drive elsewhere, or change the dimensions"),
+        )
+
+
+def _check_residuals(kinematics: Kinematics, at: Positions) -> float:
+    """Worst residual (see `residuals_at`); refuse a position in which a constraint does not hold."""
+    residuals = residuals_at(kinematics.structure.constraints, kinematics.numbers, at)
+    worst = max(residuals, key=residuals.__getitem__)
+    value = residuals[worst]
+    if value > RESIDUAL_TOLERANCE:
+        off, unit = (value, "rad") if worst.angular else (value * float(kinematics.numbers.scale), "m")
+        raise InputError(
+            worst.label,
+            _("the initial position does not assemble: this constraint is off by {off:.3g} {unit}").format(
+                off=off, unit=unit
+            ),
+            _("it repeats other constraints, so its dimensions must fit theirs: correct them or take it away"),
+        )
+    return value
+
+
+def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:
+    """Angles of all links in the initial position, in the turn that the description names."""
+    mechanism = kinematics.structure.mechanism
+    named = {name: link.angle for name, link in mechanism.links.items()}
+    for drive in mechanism.drives:
+        if drive.kind == "angle" and drive.relative_to == "frame" and drive.link is not None:
+            named[drive.link] = float(at.drives[drive.id])
+    angles = {}
+    for link in mechanism.links:
+        near = named[link]
+        angles[link] = (near or 0.0) + _difference(near or 0.0, at, link)
+    return angles
+
+
+def name_of(group: Group) -> str:
+    """A group by its links and points, as messages and tables name it."""
+    links = "-".join(links_of(group))
+    points = ", ".join(points_of(group))
+    if links and points:
+        return _("group {links} (point {points})").format(links=links, points=points)
+    return _("group {links}").format(links=links or points)

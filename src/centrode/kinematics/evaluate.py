@@ -1,0 +1,83 @@
+"""Running a plan over any algebra: the positions of everything at values of the drives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from centrode.kinematics.groups import solve_group
+from centrode.kinematics.paths import Path
+from centrode.structure.constraints import Positions
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.plan import Structure
+
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+Branch: TypeAlias = Callable[[int, Number], Number]
+"""Given a group's place in the plan and its radicand: the signed root of it."""
+
+
+def as_it_is(_group: int, divisor: Number) -> Number:
+    """A divisor nobody looks at."""
+    return divisor
+
+
+class Reached(Exception):
+    """Carries a radicand out of an evaluation that needs to go no further."""
+
+    def __init__(self, value: Number) -> None:
+        self.value = value
+        super().__init__("radicand reached")
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """A plan with its numbers and the path of its drives: what positions are computed from."""
+
+    structure: Structure
+    numbers: Dimensions
+    path: Path
+
+    def positions(
+        self, m: Namespace, parameter: Number, branch: Branch, divisor: Branch = as_it_is
+    ) -> Positions:
+        """Positions at a parameter of the path, over any algebra."""
+        at = Positions.of_frame(self.numbers, self.path.drive_values(m, parameter))
+        for i, group in enumerate(self.structure.groups):
+            solve_group(
+                group,
+                m,
+                self.numbers,
+                at,
+                lambda radicand, i=i: branch(i, radicand),  # type: ignore[misc]
+                lambda value, i=i: divisor(i, value),  # type: ignore[misc]
+            )
+        return at
+
+    def guard(self, m: Namespace, parameter: Number, group: int, branch: Branch) -> Number:
+        """The number whose sign decides whether a group closes: its radicand, or the divisor of a group without one."""
+
+        def stop(i: int, value: Number) -> Number:
+            if i == group:
+                raise Reached(value)
+            return branch(i, value)
+
+        def stop_at_divisor(i: int, value: Number) -> Number:
+            if i == group:
+                raise Reached(value)
+            return value
+
+        try:
+            self.positions(m, parameter, stop, stop_at_divisor)
+        except Reached as reached:
+            return reached.value
+        raise ValueError(f"group {group} has neither a radicand nor a divisor")
+
+    def taken(self, lanes: Any) -> Kinematics:
+        """The same plan with the numbers of chosen mechanisms of the batch, one for each entry of `lanes`."""
+
+        def take(x: Number) -> Number:
+            return x if isinstance(x, float) else x.reshape(-1)[lanes]
+
+        return Kinematics(self.structure, self.numbers.mapped(take), self.path)

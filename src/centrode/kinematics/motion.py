@@ -1,0 +1,83 @@
+"""The motion of a mechanism as a labelled result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.errors import InputError
+from centrode.kinematics.dataset import dataset_of
+from centrode.kinematics.ready import ready
+from centrode.kinematics.solve import Progress, solve
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.structure.dimensions import Dimensions, dimensions_of
+
+Values: TypeAlias = Mapping[str, npt.ArrayLike]
+
+DEFAULT_SAMPLES = 361
+
+
+def motion(
+    mechanism: Mechanism,
+    samples: int | None = None,
+    start: float | None = None,
+    stop: float | None = None,
+    vary: Values | None = None,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Positions, velocities and accelerations of a mechanism at evenly spaced samples.
+
+    Parameters
+    ----------
+    samples : int
+        The description's own number, else 361 (with both ends).
+    start, stop : float [rad or m, or s]
+        Values of the drive; times where the drive is a law of time or there are several drives. One turn of an angle drive if left out.
+    vary : path -> (batch,) values [m or rad]
+        Dimensions that vary from mechanism to mechanism ("links.AC.length"); the signs of the initial position stay.
+    progress : called with (mechanisms done, mechanisms in all)
+
+    Returns
+    -------
+    Dataset
+        Dimensions sample, point, link, guide, drive, axis (docs: results); with `vary` a dimension mechanism in front. Absent values are NaN
+        and have a status.
+
+    Raises
+    ------
+    InputError
+        The description does not define a motion: drives against mobility, initial position, range.
+    NotComputedYet
+        It names what this version does not compute.
+    """
+    study = mechanism.study
+    prepared = ready(mechanism)
+    numbers, lanes = _batch(mechanism, vary)
+    solved = solve(
+        prepared,
+        samples if samples is not None else study.samples or DEFAULT_SAMPLES,
+        study.start if start is None else start,
+        study.stop if stop is None else stop,
+        numbers,
+        lanes,
+        progress,
+    )
+    return dataset_of(solved, vary)
+
+
+def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None, int]:
+    if not vary:
+        return None, 1
+    arrays = {path: np.asarray(values, dtype=np.float64) for path, values in vary.items()}
+    sizes = {array.size for array in arrays.values()}
+    if any(array.ndim != 1 for array in arrays.values()) or len(sizes) != 1 or 0 in sizes:
+        raise InputError("vary", _("every path needs the same number of values, in one dimension"))
+    for path, array in arrays.items():
+        if not np.isfinite(array).all():
+            raise InputError(path, _("values must be finite"))
+    return dimensions_of(mechanism, arrays), sizes.pop()

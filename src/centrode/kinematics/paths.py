@@ -1,0 +1,134 @@
+"""The path along which a mechanism is driven: the values of all drives as functions of one parameter.
+
+With one drive the parameter is the drive's own value, so results do not depend on its law; with several it is time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import tau
+from typing import Any, TypeAlias
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jet_functions import JetFunctions
+from centrode.algebra.jets import Jet
+from centrode.errors import InputError
+from centrode.laws import Law
+from centrode.locale import _
+from centrode.model.mechanism import Drive, Mechanism
+
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+
+NODES_PER_TURN = 1440
+"""Mesh on which events are looked for: two events closer than a quarter of a degree may be missed."""
+
+JETS = JetFunctions(ARRAYS)
+
+
+@dataclass(frozen=True)
+class DrivenBy:
+    """A drive with its law: value(t) = start + law(t)."""
+
+    drive: Drive
+    law: Law
+    start: float
+
+    def value(self, m: Namespace, time: Number) -> Number:
+        """The drive's value at a time [s], over any algebra."""
+        return self.law.jet(m, time) + self.start
+
+    @property
+    def initial(self) -> float:
+        """The drive's value at time zero: where the initial position is."""
+        return float(self.value(ARRAYS, 0.0))
+
+
+@dataclass(frozen=True)
+class Path:
+    """How the drives move.
+
+    Attributes
+    ----------
+    initial : float
+        Parameter of the initial position.
+    forward : +1.0 or -1.0
+        Sense in which the parameter runs from there.
+    unit : float
+        Change of the parameter that counts as large (1 rad, the mechanism's scale, or a time).
+    """
+
+    driven: tuple[DrivenBy, ...]
+    initial: float
+    forward: float
+    unit: float
+
+    @property
+    def by_time(self) -> bool:
+        """Whether the parameter is time."""
+        return len(self.driven) > 1
+
+    @property
+    def step(self) -> float:
+        """Distance of mesh nodes."""
+        return self.unit * tau / NODES_PER_TURN
+
+    def drive_values(self, m: Namespace, parameter: Number) -> dict[str, Number]:
+        """Values of all drives at a parameter, over any algebra."""
+        if not self.by_time:
+            return {self.driven[0].drive.id: parameter}
+        return {one.drive.id: one.value(m, parameter) for one in self.driven}
+
+
+def path_of(mechanism: Mechanism, scale: float) -> Path:
+    """The path that a description's drives take; `scale` is the mechanism's greatest length [m]."""
+    driven = tuple(_driven_by(mechanism, drive) for drive in mechanism.drives)
+    if len(driven) > 1:
+        return Path(driven, 0.0, 1.0, _time_unit(driven))
+    speed = _speed_at_start(driven[0])
+    unit = 1.0 if driven[0].drive.kind == "angle" else scale
+    return Path(driven, driven[0].initial, -1.0 if speed < 0.0 else 1.0, unit)
+
+
+def _speed_at_start(driven: DrivenBy) -> float:
+    jet = driven.value(JETS, Jet.variable(0.0, 1))
+    return float(jet.derivative(1)) if isinstance(jet, Jet) else 0.0
+
+
+def _time_unit(driven: tuple[DrivenBy, ...]) -> float:
+    speeds = [abs(_speed_at_start(one)) for one in driven if one.drive.kind == "angle"]
+    fastest = max(speeds, default=0.0)
+    return 1.0 / fastest if fastest > 0.0 else 1.0
+
+
+def _driven_by(mechanism: Mechanism, drive: Drive) -> DrivenBy:
+    law = drive.motion_law
+    at_zero = float(law.jet(ARRAYS, 0.0))
+    drawn = _drawn_value(mechanism, drive)
+    if drive.start is None:
+        return DrivenBy(drive, law, (0.0 if drawn is None else drawn) - at_zero)
+    _check_agreement(drive, drive.start + at_zero, drawn)
+    return DrivenBy(drive, law, drive.start)
+
+
+def _drawn_value(mechanism: Mechanism, drive: Drive) -> float | None:
+    """The value that the links' initial angles say an angle drive has."""
+    if drive.kind != "angle" or drive.link is None:
+        return None
+    angle = mechanism.links[drive.link].angle
+    reference = 0.0 if drive.relative_to == "frame" else mechanism.links[drive.relative_to].angle
+    return None if angle is None or reference is None else angle - reference
+
+
+def _check_agreement(drive: Drive, value: float, drawn: float | None) -> None:
+    if drawn is None:
+        return
+    difference = (value - drawn + tau / 2) % tau - tau / 2
+    if abs(difference) > 1e-9:
+        raise InputError(
+            _("drive of link {link}").format(link=drive.link),
+            _("it starts at {value:.9g} rad, but the initial angle says {drawn:.9g} rad").format(
+                value=value, drawn=drawn
+            ),
+            _("leave out one of the two"),
+        )

@@ -1,0 +1,120 @@
+"""A mechanism made ready to move: structure, path, assembled initial position, mobility at real positions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.errors import InputError, NotComputedYet
+from centrode.kinematics.assembly import RESIDUAL_TOLERANCE, Assembled, assemble, name_of
+from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.paths import path_of
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.structure.constraints import Positions, is_drive
+from centrode.structure.groups import Newton
+from centrode.structure.plan import Structure, drives_against_mobility, structure_of
+from centrode.structure.rank import rank_of, residuals_at, scaled_jacobian
+
+Number: TypeAlias = Any
+
+LOOKS = (0.0, 0.11, -0.13, 0.37)
+"""Places near the initial position, in the path's units, where the rank is taken: not all can be dead points."""
+
+
+@dataclass(frozen=True)
+class Ready:
+    """A mechanism with its plan and its assembled initial position.
+
+    Attributes
+    ----------
+    mobility : int
+        Unknowns less the greatest rank (drives left out) found at real positions.
+    """
+
+    kinematics: Kinematics
+    assembled: Assembled
+    mobility: int
+
+    @property
+    def structure(self) -> Structure:
+        return self.kinematics.structure
+
+    @property
+    def mechanism(self) -> Mechanism:
+        return self.kinematics.structure.mechanism
+
+
+def ready(mechanism: Mechanism) -> Ready:
+    """Make a mechanism ready to move.
+
+    Raises
+    ------
+    InputError
+        Drives and mobility differ, or the initial position does not assemble.
+    NotComputedYet
+        The description names what this version does not compute, or a group is of higher class.
+    """
+    structure = structure_of(mechanism)
+    path = path_of(mechanism, float(structure.dimensions.scale))
+    kinematics = Kinematics(structure, structure.dimensions, path)
+    for group in structure.groups:
+        if isinstance(group, Newton):
+            raise NotComputedYet(
+                name_of(group),
+                _("it is a group of higher class, which is not computed yet"),
+                _("drive another link so that only dyads remain"),
+            )
+    assembled = assemble(kinematics)
+    mobility = _mobility(kinematics, assembled)
+    return Ready(kinematics, assembled, mobility)
+
+
+def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
+    """Mobility by rank at real positions; refuse drives that differ from it."""
+    structure = kinematics.structure
+    free = [c for c in structure.constraints if not is_drive(c)]
+    width = sum(entity.unknowns for entity in structure.unknowns)
+    places = _places(kinematics, assembled)
+    ranks = [rank_of(scaled_jacobian(free, structure.unknowns, kinematics.numbers, at)) for at in places]
+    mobility = width - max(ranks)
+    if mobility != structure.drives:
+        raise InputError(
+            "[[drives]]",
+            drives_against_mobility(structure.drives, mobility),
+            _("give as many drives as the mobility"),
+        )
+    for at in places:
+        _check_redundant(kinematics, at)
+    return mobility
+
+
+def _places(kinematics: Kinematics, assembled: Assembled) -> list[Positions]:
+    """The initial position and some next to it that close."""
+
+    def branch(group: int, radicand: Number) -> Number:
+        return np.sqrt(radicand) * assembled.signs[group]
+
+    places = [assembled.positions]
+    with np.errstate(all="ignore"):
+        for look in LOOKS[1:]:
+            parameter = np.float64(kinematics.path.initial + look * kinematics.path.unit)
+            at = kinematics.positions(ARRAYS, parameter, branch)
+            if all(np.isfinite(float(x)) for v in at.points.values() for x in v):
+                places.append(at)
+    return places
+
+
+def _check_redundant(kinematics: Kinematics, at: Positions) -> None:
+    """A redundant constraint must also hold elsewhere, or the mechanism does not move at all."""
+    redundant = kinematics.structure.redundant
+    for constraint, value in residuals_at(redundant, kinematics.numbers, at).items():
+        if value > RESIDUAL_TOLERANCE:
+            raise InputError(
+                constraint.label,
+                _("it holds in the initial position only, so the mechanism cannot move"),
+                _("correct the dimensions, or take the constraint away"),
+            )

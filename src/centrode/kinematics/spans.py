@@ -1,0 +1,115 @@
+"""Which samples a motion is asked at: values of the drive, or times where the drive is a law."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.jets import Jet
+from centrode.errors import InputError
+from centrode.kinematics.paths import JETS, Path
+from centrode.locale import _
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+MAX_SAMPLES = 1_000_000
+MAX_TURNS = 500.0
+INSIDE = 0.005
+"""Share of the reachable range left out on both sides when the range is not asked for: at its ends speeds are infinite."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """Samples of a path: times, the path's parameter there, and its first two derivatives by time."""
+
+    time: Array
+    parameter: Array
+    rate: Array
+    second_rate: Array
+
+
+def is_uniform(path: Path) -> bool:
+    """Whether the only drive has a constant speed, so that samples are evenly spaced in its value."""
+    return not path.by_time and path.driven[0].drive.speed is not None
+
+
+def span_of(
+    path: Path, samples: int, start: float | None, stop: float | None, reach: tuple[float, float]
+) -> Span:
+    """Evenly spaced samples from start to stop: values of the drive [rad or m], or times [s] where the drive is a law.
+
+    `reach` are the nearest limits, the range of a displacement drive where none is asked for.
+    """
+    if isinstance(samples, bool) or not 1 <= samples <= MAX_SAMPLES:
+        raise InputError(
+            _("samples"),
+            _("{samples} samples were asked for").format(samples=samples),
+            _("ask for 1 to {most}").format(most=MAX_SAMPLES),
+        )
+    for name, value in (("from", start), ("to", stop)):
+        if value is not None and not np.isfinite(value):
+            raise InputError(name, _("the range must be finite"))
+    return _even_values(path, samples, start, stop, reach) if is_uniform(path) else _even_times(path, samples, start, stop)
+
+
+def _even_values(
+    path: Path, samples: int, start: float | None, stop: float | None, reach: tuple[float, float]
+) -> Span:
+    one = path.driven[0]
+    speed = float(one.drive.speed or 0.0)
+    if speed == 0.0:
+        raise InputError(f"[[drives]] {one.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
+    first, last = _default_range(path, reach)
+    if start is not None:
+        first = start
+        last = start + path.forward * 2.0 * np.pi if one.drive.kind == "angle" else last
+    last = last if stop is None else stop
+    if abs(last - path.initial) > MAX_TURNS * 2.0 * np.pi * path.unit:
+        raise InputError(_("range"), _("it reaches too far: {turns:.3g} turns").format(turns=(last - first) / 2 / np.pi))
+    values = np.linspace(first, last, samples)
+    ones = np.ones(samples)
+    return Span((values - one.start) / speed, values, speed * ones, 0.0 * ones)
+
+
+def _default_range(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
+    if path.driven[0].drive.kind == "angle":
+        return path.initial, path.initial + path.forward * 2.0 * np.pi
+    low, high = reach
+    if not np.isfinite(low) or not np.isfinite(high):
+        raise InputError(
+            f"[[drives]] {path.driven[0].drive.id}",
+            _("its range is unlimited"),
+            _("say from where to where: --from and --to, or [study] from and to"),
+        )
+    inside = INSIDE * (high - low)
+    return (low + inside, high - inside) if path.forward > 0 else (high - inside, low + inside)
+
+
+def _even_times(path: Path, samples: int, start: float | None, stop: float | None) -> Span:
+    spans = [one.law.span for one in path.driven if one.law.span is not None]
+    first = start if start is not None else max((span[0] for span in spans), default=0.0)
+    last = stop if stop is not None else min((span[1] for span in spans), default=None)
+    if last is None:
+        last = _one_turn(path)
+    time = np.linspace(first, last, samples)
+    if path.by_time:
+        return Span(time, time, np.ones(samples), np.zeros(samples))
+    value = path.driven[0].value(JETS, Jet.variable(time, 2))
+    if not isinstance(value, Jet):
+        value = Jet((value, 0.0, 0.0))
+    parts = [np.broadcast_to(np.asarray(value.derivative(k), dtype=np.float64), time.shape) for k in range(3)]
+    return Span(time, *parts)
+
+
+def _one_turn(path: Path) -> float:
+    speeds = [abs(one.drive.speed) for one in path.driven if one.drive.kind == "angle" and one.drive.speed]
+    if not speeds:
+        raise InputError(
+            "[study]",
+            _("the drive is a law of time, and nothing says how long it is to run"),
+            _('give to = "2 s" under [study], or --to "2 s"'),
+        )
+    return 2.0 * np.pi / min(speeds)
