@@ -1,0 +1,57 @@
+"""What can be said of a mechanism before it moves: structure, mobility, plan, initial position."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from centrode.kinematics.ready import Ready, ready
+from centrode.model.mechanism import Mechanism
+from centrode.structure.assur import AssurGroup, assur_groups, structural_formula
+from centrode.structure.mobility import Count, count
+from centrode.structure.steps import step_of
+
+
+@dataclass(frozen=True)
+class Check:
+    """Structure of a mechanism that assembles and can be driven.
+
+    Attributes
+    ----------
+    mobility : by the rank of the Jacobian at real positions; `count` gives Chebyshev's formula beside it
+    redundant : names of the constraints that repeat others
+    groups : inputs and Assur groups in the order in which they are solved
+    initial_residual : how well the initial position closes, in units of the greatest length
+    """
+
+    title: str
+    mobility: int
+    drives: tuple[str, ...]
+    count: Count
+    redundant: tuple[str, ...]
+    groups: tuple[AssurGroup, ...]
+    formula: str
+    plan: tuple[str, ...]
+    initial_residual: float
+
+
+def check(mechanism: Mechanism) -> Check:
+    """Structure, mobility and plan of a mechanism; raises as `motion` does before it computes."""
+    prepared = ready(mechanism)
+    return check_of(prepared)
+
+
+def check_of(prepared: Ready) -> Check:
+    """The same for a mechanism made ready before."""
+    structure = prepared.structure
+    mechanism = prepared.mechanism
+    return Check(
+        mechanism.title,
+        prepared.mobility,
+        tuple(drive.id for drive in mechanism.drives),
+        count(mechanism),
+        tuple(constraint.label for constraint in structure.redundant),
+        assur_groups(structure),
+        structural_formula(structure),
+        tuple(step_of(group) for group in structure.groups),
+        prepared.assembled.residual,
+    )

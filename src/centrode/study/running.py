@@ -1,0 +1,147 @@
+"""The main job: a mechanism's structure, its checked motion, and the scalars that sum them up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from centrode.errors import InputError, Status
+from centrode.kinematics.dataset import dataset_of
+from centrode.kinematics.motion import DEFAULT_SAMPLES
+from centrode.kinematics.ready import ready
+from centrode.kinematics.solve import Solved, solve
+from centrode.locale import _, ngettext
+from centrode.model.mechanism import Mechanism
+from centrode.model.units import to_si
+from centrode.study.checking import Check, check_of
+from centrode.study.wording import Words
+
+NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
+
+
+@dataclass(frozen=True)
+class Scalar:
+    """One number of a summary, in SI."""
+
+    value: float | int
+    unit: str
+
+    def as_dict(self) -> dict[str, float | int | str]:
+        """As `summary.json` holds it."""
+        return {"value": self.value, "unit": self.unit}
+
+
+@dataclass(frozen=True)
+class Study:
+    """A mechanism with everything `run` computes of it.
+
+    Attributes
+    ----------
+    check : structure, mobility, plan, initial position
+    motion : the labelled motion
+    scalars : name -> number and SI unit, as `summary.json` holds them
+    failure : why the mechanism cannot do what was asked, in a sentence; None if it can
+    notes : what a reader should know besides
+    words : sentences about the motion, in the units the description wants
+    """
+
+    mechanism: Mechanism
+    check: Check
+    motion: xr.Dataset
+    scalars: dict[str, Scalar]
+    failure: str | None
+    notes: tuple[str, ...]
+    words: Words
+
+
+def study(
+    mechanism: Mechanism, samples: int | None = None, start: float | None = None, stop: float | None = None
+) -> Study:
+    """Check a mechanism and compute its motion; the arguments are those of `motion`."""
+    asked = mechanism.study
+    prepared = ready(mechanism)
+    solved = solve(
+        prepared,
+        samples if samples is not None else asked.samples or DEFAULT_SAMPLES,
+        asked.start if start is None else start,
+        asked.stop if stop is None else stop,
+    )
+    checked = check_of(prepared)
+    data = dataset_of(solved)
+    words = Words(solved)
+    notes = tuple(_notes(mechanism, solved, words))
+    return Study(mechanism, checked, data, _scalars(checked, solved), _failure(solved, words), notes, words)
+
+
+def range_value(mechanism: Mechanism, text: str, where: str) -> float:
+    """Value of the drive, or time, that a text with a unit names: an end of the range of a motion [rad, m or s].
+
+    Raises InputError for a unit of another kind.
+    """
+    drive = mechanism.drives[0] if mechanism.drives else None
+    by_time = drive is None or len(mechanism.drives) > 1 or drive.speed is None
+    kind = "time" if by_time else "angle" if drive is not None and drive.kind == "angle" else "length"
+    try:
+        return to_si(text, kind)
+    except InputError as error:
+        raise InputError(where, error.what, error.repair) from None
+
+
+def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
+    path = solved.ready.kinematics.path
+    unit = "s" if path.by_time else "rad" if path.driven[0].drive.kind == "angle" else "m"
+    parameter = solved.span.parameter
+    found = {
+        "mobility": Scalar(checked.mobility, "1"),
+        "mobility_by_chebyshev": Scalar(checked.count.mobility, "1"),
+        "redundant_constraints": Scalar(len(checked.redundant), "1"),
+        "loops": Scalar(checked.count.loops, "1"),
+        "initial_residual": Scalar(checked.initial_residual, "1"),
+        "samples": Scalar(len(parameter), "1"),
+        "first_value": Scalar(float(parameter[0]), unit),
+        "last_value": Scalar(float(parameter[-1]), unit),
+        "duration": Scalar(float(abs(solved.span.time[-1] - solved.span.time[0])), "s"),
+        "worst_residual": Scalar(float(np.nanmax(solved.residual, initial=0.0)), "1"),
+    }
+    for status in Status:
+        found[f"samples_{status.name.lower()}"] = Scalar(int(np.sum(solved.status == status)), "1")
+    for kind in ("limit", "change point"):
+        places = dict.fromkeys(event.at for event in solved.events() if event.kind == kind)
+        for number, place in enumerate(places, start=1):
+            found[f"{kind.replace(' ', '_')}_{number}"] = Scalar(place, unit)
+    return found
+
+
+def _failure(solved: Solved, words: Words) -> str | None:
+    """The sentence for samples that the mechanism does not reach; None if it reaches all."""
+    missing = np.isin(solved.status[0], NOT_REACHED)
+    if not missing.any():
+        return None
+    count = int(missing.sum())
+    what = ngettext(
+        "the mechanism locks: {missing} of {all} samples is not reached",
+        "the mechanism locks: {missing} of {all} samples are not reached",
+        count,
+    ).format(missing=count, all=len(missing))
+    low, high = solved.branches.reach(0)
+    where = "; ".join(words.limit(at) for at in (low, high) if np.isfinite(at))
+    return f"{what} ({where})" if where else what
+
+
+def _notes(mechanism: Mechanism, solved: Solved, words: Words) -> list[str]:
+    notes = []
+    singular = int(np.sum(solved.status[0] == Status.SINGULAR))
+    if singular:
+        notes.append(
+            ngettext(
+                "{n} sample is singular: its position is given, its derivatives do not exist",
+                "{n} samples are singular: their positions are given, their derivatives do not exist",
+                singular,
+            ).format(n=singular)
+        )
+    notes += words.period()
+    if mechanism.loads or mechanism.machine is not None:
+        notes.append(_("loads and machine are read; forces are not computed yet"))
+    return notes
