@@ -13,8 +13,8 @@ Namespace = Any
 class JetFunctions:
     """Namespace `m` for jets: the same formulas give derivatives of any order.
 
-    `abs`, `sign`, `min` and `max` take the derivatives of the side the value is on. Plain numbers pass through to the base namespace,
-    so a formula may mix constants and jets.
+    `abs`, `sign`, `min` and `max` take the derivatives of the side the value is on. Plain numbers pass
+    through to the base namespace, so a formula may mix constants and jets.
     """
 
     def __init__(self, base: Namespace) -> None:

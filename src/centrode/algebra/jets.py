@@ -77,7 +77,7 @@ class Jet:
         return Jet((self.coefficients[0] - other, *self.coefficients[1:]))
 
     def __rsub__(self, other: Number) -> Jet:
-        return (-self) + other
+        return Jet((other - self.coefficients[0], *(-a for a in self.coefficients[1:])))
 
     def __mul__(self, other: Operand) -> Jet:
         if isinstance(other, Jet):
@@ -104,7 +104,7 @@ class Jet:
 
 
 def _is_zero(x: Number) -> bool:
-    # only the literal zeros that seeds and constants bring along: skipping them keeps array work to what counts
+    # only the literal zeros that seeds and constants bring along: skipping them saves work on whole arrays
     return type(x) is float and x == 0.0
 
 

@@ -1,7 +1,7 @@
 """Angles of links that run on over turns, from their rotors.
 
-An angle belongs to the value of the drive, not to the samples asked for: it is counted along the mesh of the path, outwards from the initial
-position, and a sample takes its turn from the nearest node.
+An angle belongs to the value of the drive, not to the samples asked for: it is counted along the mesh of
+the path, outwards from the initial position, and a sample takes its turn from the nearest node.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ Array: TypeAlias = npt.NDArray[np.float64]
 TURN = 2.0 * np.pi
 
 
-def node_angles(positions: Positions, links: tuple[str, ...], initial: Array, start: int, shape: tuple[int, int]) -> Array:
+def node_angles(
+    positions: Positions, links: tuple[str, ...], initial: Array, start: int, shape: tuple[int, int]
+) -> Array:
     """Continuous angles (links, lanes, nodes) on the mesh; `initial` (links,) are those at the node `start`."""
     angles = np.empty((len(links), *shape))
     for k, link in enumerate(links):
@@ -44,7 +46,9 @@ def _bridged(angle: Array) -> Array:
     return np.where(np.isfinite(filled), filled, 0.0)
 
 
-def angles_and_rates(rotors: Array, nodes: Array, nearest: npt.NDArray[np.intp]) -> tuple[Array, Array, Array]:
+def angles_and_rates(
+    rotors: Array, nodes: Array, nearest: npt.NDArray[np.intp]
+) -> tuple[Array, Array, Array]:
     """Angle and its first two derivatives from rotors (3, links, 2, lanes, n): each (links, lanes, n)."""
     cosine, sine = rotors[0, :, 0], rotors[0, :, 1]
     near = nodes[:, :, nearest]

@@ -47,36 +47,43 @@ def assemble(kinematics: Kinematics) -> Assembled:
     Raises
     ------
     InputError
-        It does not close (by how much is told), or the description does not say on which side a group is assembled.
+        It does not close (by how much is told), or the description does not say on which side a group is
+        assembled.
     """
     initial = kinematics.path.initial
     drives = kinematics.path.drive_values(ARRAYS, initial)
     at = Positions.of_frame(kinematics.numbers, drives)
+    bounded = Positions.of_frame(
+        kinematics.numbers, {k: Rounded.of(np.float64(v)) for k, v in drives.items()}
+    )
     signs: dict[int, float] = {}
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
             if group.signed:
-                bound = _bound(kinematics, i, signs)
-                signs[i] = _solve_signed(kinematics, group, at, bound)
+                signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
             else:
-                _solve_plain(kinematics, group, at)
+                solve_group(group, ARRAYS, kinematics.numbers, at, lambda x: x, lambda x: x)
             _check_finite(group, at)
+            _solve_bounded(kinematics, group, bounded, signs.get(i, 1.0))
     residual = _check_residuals(kinematics, at)
     return Assembled(signs, at, _angles(kinematics, at), residual)
 
 
-def _bound(kinematics: Kinematics, group: int, signs: dict[int, float]) -> float:
-    """Rounding error of a group's radicand at the initial position."""
+def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
+    """Rounding error of a group's radicand, from positions with bounds known before it."""
+    found: list[float] = []
 
-    def branch(i: int, radicand: Number) -> Number:
-        return ROUNDED.sqrt(radicand) * signs[i]
+    def root(radicand: Number) -> Number:
+        found.append(float(Rounded.of(radicand).bound))
+        return ROUNDED.sqrt(radicand)
 
-    guard = kinematics.guard(ROUNDED, Rounded.of(np.float64(kinematics.path.initial)), group, branch)
-    return float(Rounded.of(guard).bound)
+    trial = Positions(dict(bounded.points), dict(bounded.poses), bounded.drives)
+    solve_group(group, ROUNDED, kinematics.numbers, trial, root, lambda x: x)
+    return found[0]
 
 
-def _solve_plain(kinematics: Kinematics, group: Group, at: Positions) -> None:
-    solve_group(group, ARRAYS, kinematics.numbers, at, lambda x: x, lambda x: x)
+def _solve_bounded(kinematics: Kinematics, group: Group, bounded: Positions, sign: float) -> None:
+    solve_group(group, ROUNDED, kinematics.numbers, bounded, lambda x: ROUNDED.sqrt(x) * sign, lambda x: x)
 
 
 def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: float) -> float:
@@ -97,9 +104,7 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
     return sign
 
 
-def _option(
-    kinematics: Kinematics, group: Group, at: Positions, sign: float, bound: float
-) -> Positions:
+def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bound: float) -> Positions:
     trial = Positions(dict(at.points), dict(at.poses), at.drives)
 
     def root(radicand: Number) -> Number:
@@ -191,7 +196,9 @@ def _check_angles(kinematics: Kinematics, group: Group, at: Positions) -> None:
         if abs(difference) > ANGLE_TOLERANCE:
             raise InputError(
                 f"[links.{link}] angle",
-                _("{given:.4g} deg does not assemble: the position has {found:.4g} deg, {off:.3g} deg off").format(
+                _(
+                    "{given:.4g} deg does not assemble: the position has {found:.4g} deg, {off:.3g} deg off"
+                ).format(
                     given=degrees(angle), found=degrees(angle + difference), off=degrees(abs(difference))
                 ),
                 _("correct the angle, a length or the start of the drive"),
@@ -204,7 +211,10 @@ def _check_finite(group: Group, at: Positions) -> None:
     if not all(np.isfinite(float(x)) for x in values):
         raise InputError(
             name_of(group),
-            _("the initial position is undetermined there: two of its points coincide, or its lines are parallel"),
+            _(
+                "the initial position is undetermined there: two of its points coincide, or its lines are"
+                " parallel"
+            ),
             _("start the drive elsewhere, or change the dimensions"),
         )
 
@@ -221,7 +231,10 @@ def _check_residuals(kinematics: Kinematics, at: Positions) -> float:
             _("the initial position does not assemble: this constraint is off by {off:.3g} {unit}").format(
                 off=off, unit=unit
             ),
-            _("it repeats other constraints, so its dimensions must fit theirs: correct them or take it away"),
+            _(
+                "it repeats other constraints, so its dimensions must fit theirs: correct them or take it"
+                " away"
+            ),
         )
     return value
 

@@ -66,7 +66,7 @@ class Branches:
             self.crossings[group] = table
 
     def _behind_start(self, at: float) -> float:
-        # a given side holds from the start onwards, so a crossing at the start itself belongs to what lies behind it
+        # a given side holds from the start onwards: a crossing at the start itself belongs to what lies behind
         margin = AT_THE_START * self.unit
         return self.initial - self.forward * margin if abs(at - self.initial) <= margin else at
 

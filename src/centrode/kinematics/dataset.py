@@ -56,7 +56,7 @@ def _frame_included(solved: Solved, moving: Array, order: int) -> Array:
     return np.concatenate([frame, moving], axis=2)
 
 
-def _lanes(array: Array, batch: tuple[str, ...]) -> Array:
+def _lanes(array: npt.NDArray[Any], batch: tuple[str, ...]) -> npt.NDArray[Any]:
     return array if batch else array[0]
 
 

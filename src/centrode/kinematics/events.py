@@ -1,8 +1,9 @@
 """Limits and change points: where a group's radicand reaches zero along the path.
 
-The radicand is sampled with its derivative on a mesh that belongs to the mechanism, not to the samples asked for. A minimum of the radicand is
-refined by the root of its derivative: zero within the rounding error of the formulas is a change point, below zero a pair of limits. Other
-sign changes are limits. A divisor's sign change is a limit as well (the group's point goes to infinity).
+The radicand is sampled with its derivative on a mesh that belongs to the mechanism, not to the samples
+asked for. A minimum of the radicand is refined by the root of its derivative: zero within the rounding
+error of the formulas is a change point, below zero a pair of limits. Other sign changes are limits. A
+divisor's sign change is a limit as well (the group's point goes to infinity).
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ class Scan:
         value, slope = self._on_mesh(radicand)
         self.branches.largest[group] = np.nanmax(np.abs(np.where(np.isfinite(value), value, 0.0)), axis=1)
         self.branches.add(group, self._events(group, value, slope))
-        return JETS.sqrt(radicand) * self.branches.sign(group, self.mesh[None, :])
+        root: Jet = JETS.sqrt(radicand) * self.branches.sign(group, self.mesh[None, :])
+        return root
 
     def _divisor(self, group: int, divisor: Number) -> Number:
         if isinstance(divisor, Jet):
@@ -89,7 +91,9 @@ class Scan:
         roots = self._roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
         return found + _limits(group, lanes[rest], roots)
 
-    def _settle(self, settled: npt.NDArray[np.bool_], value: Array, lanes: Lanes, cells: Lanes, bound: Array) -> None:
+    def _settle(
+        self, settled: npt.NDArray[np.bool_], value: Array, lanes: Lanes, cells: Lanes, bound: Array
+    ) -> None:
         """Cells next to a change point whose signs are only rounding are not looked at again."""
         settled[lanes, cells] = True
         near = np.maximum(np.abs(value[lanes, cells]), np.abs(value[lanes, cells + 1])) <= 100.0 * bound
@@ -105,7 +109,9 @@ class Scan:
 
         with np.errstate(all="ignore"):
             guard = taken.guard(JETS, Jet.variable(at, order), group, branch)
-        return guard if isinstance(guard, Jet) else Jet((np.broadcast_to(guard, at.shape), *[0.0 * at] * order))
+        return (
+            guard if isinstance(guard, Jet) else Jet((np.broadcast_to(guard, at.shape), *[0.0 * at] * order))
+        )
 
     def _minima(self, group: int, lanes: Lanes, low: Array, high: Array) -> Array:
         def slope(x: Array) -> tuple[Array, Array]:

@@ -1,7 +1,8 @@
 """Closed forms of the groups of class II, over any algebra.
 
-Each takes the positions known before it and adds its own. `root` gives the signed square root of a group's radicand
-(the sign is the branch), `divisor` looks at a number that is divided by (its zero is a place the group cannot pass).
+Each takes the positions known before it and adds its own. `root` gives the signed square root of a group's
+radicand (the sign is the branch), `divisor` looks at a number that is divided by (its zero is a place the
+group cannot pass).
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ from centrode.structure.groups import (
     Rod,
     Slot,
     Stop,
-    Turning,
     TurnedLink,
+    Turning,
     TwoPointLink,
 )
 
@@ -147,9 +148,7 @@ def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions) -> li
     return [_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci]
 
 
-def _meet(
-    group: Meet, m: Namespace, numbers: Dimensions, at: Positions, root: Root, divisor: Root
-) -> None:
+def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, root: Root, divisor: Root) -> None:
     rotor = _carriage_rotor(group, m, numbers, at)
     arms = _arms(group, numbers, rotor)
     loci = [_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci]

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import ready
@@ -37,16 +38,18 @@ def motion(
     samples : int
         The description's own number, else 361 (with both ends).
     start, stop : float [rad or m, or s]
-        Values of the drive; times where the drive is a law of time or there are several drives. One turn of an angle drive if left out.
+        Values of the drive; times where the drive is a law of time or there are several drives. One turn of
+        an angle drive if left out.
     vary : path -> (batch,) values [m or rad]
-        Dimensions that vary from mechanism to mechanism ("links.AC.length"); the signs of the initial position stay.
+        Dimensions that vary from mechanism to mechanism ("links.AC.length"); the signs of the initial
+        position stay.
     progress : called with (mechanisms done, mechanisms in all)
 
     Returns
     -------
     Dataset
-        Dimensions sample, point, link, guide, drive, axis (docs: results); with `vary` a dimension mechanism in front. Absent values are NaN
-        and have a status.
+        Dimensions sample, point, link, guide, drive, axis (docs: results); with `vary` a dimension
+        mechanism in front. Absent values are NaN and have a status.
 
     Raises
     ------
@@ -80,4 +83,4 @@ def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None
     for path, array in arrays.items():
         if not np.isfinite(array).all():
             raise InputError(path, _("values must be finite"))
-    return dimensions_of(mechanism, arrays), sizes.pop()
+    return dimensions_of(mechanism, arrays, ARRAYS), sizes.pop()

@@ -1,7 +1,8 @@
 """Samples next to a change point: there the closed forms lose digits, and the motion itself is smooth.
 
-Value and derivatives are each interpolated from nodes on both sides of the change point (barycentric formula; Berrut and Trefethen, SIAM Review
-46, 2004). The nodes belong to the change point, so the result depends on the drive's value alone.
+Value and derivatives are each interpolated from nodes on both sides of the change point (barycentric
+formula; Berrut and Trefethen, SIAM Review 46, 2004). The nodes belong to the change point, so the result
+depends on the drive's value alone.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ NODES = 6
 """Chebyshev nodes on each side, between one and two half widths away."""
 
 
-def mend_change_points(kinematics: Kinematics, branches: Branches, samples: Samples, parameter: Array) -> None:
+def mend_change_points(
+    kinematics: Kinematics, branches: Branches, samples: Samples, parameter: Array
+) -> None:
     """Replace the samples next to change points by interpolation; they become `ok` (or stay cut off)."""
     if not branches.smooth:
         return

@@ -1,13 +1,16 @@
 """The path along which a mechanism is driven: the values of all drives as functions of one parameter.
 
-With one drive the parameter is the drive's own value, so results do not depend on its law; with several it is time.
+With one drive the parameter is the drive's own value, so results do not depend on its law; with several it
+is time.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import tau
+from math import isfinite, tau
 from typing import Any, TypeAlias
+
+import numpy as np
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
@@ -91,8 +94,10 @@ def path_of(mechanism: Mechanism, scale: float) -> Path:
 
 
 def _speed_at_start(driven: DrivenBy) -> float:
-    jet = driven.value(JETS, Jet.variable(0.0, 1))
-    return float(jet.derivative(1)) if isinstance(jet, Jet) else 0.0
+    with np.errstate(all="ignore"):
+        jet = driven.value(JETS, Jet.variable(np.float64(0.0), 1))
+    speed = float(jet.derivative(1)) if isinstance(jet, Jet) else 0.0
+    return speed if isfinite(speed) else 0.0
 
 
 def _time_unit(driven: tuple[DrivenBy, ...]) -> float:
@@ -103,12 +108,25 @@ def _time_unit(driven: tuple[DrivenBy, ...]) -> float:
 
 def _driven_by(mechanism: Mechanism, drive: Drive) -> DrivenBy:
     law = drive.motion_law
-    at_zero = float(law.jet(ARRAYS, 0.0))
+    at_zero = _at_zero(drive, law)
     drawn = _drawn_value(mechanism, drive)
     if drive.start is None:
         return DrivenBy(drive, law, (0.0 if drawn is None else drawn) - at_zero)
     _check_agreement(drive, drive.start + at_zero, drawn)
     return DrivenBy(drive, law, drive.start)
+
+
+def _at_zero(drive: Drive, law: Law) -> float:
+    """The law's value in the initial position."""
+    with np.errstate(all="ignore"):
+        value = float(law.jet(ARRAYS, np.float64(0.0)))
+    if not isfinite(value):
+        raise InputError(
+            f"[[drives]] {drive.id}",
+            _("its law has no finite value at t = 0, where the initial position is"),
+            _("correct the law"),
+        )
+    return value
 
 
 def _drawn_value(mechanism: Mechanism, drive: Drive) -> float | None:

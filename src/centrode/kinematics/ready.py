@@ -79,8 +79,13 @@ def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
     free = [c for c in structure.constraints if not is_drive(c)]
     width = sum(entity.unknowns for entity in structure.unknowns)
     places = _places(kinematics, assembled)
-    ranks = [rank_of(scaled_jacobian(free, structure.unknowns, kinematics.numbers, at)) for at in places]
-    mobility = width - max(ranks)
+    rank = 0
+    for at in places:
+        matrix = scaled_jacobian(free, structure.unknowns, kinematics.numbers, at)
+        rank = max(rank, rank_of(matrix))
+        if rank == matrix.shape[0]:
+            break  # it cannot be greater anywhere
+    mobility = width - rank
     if mobility != structure.drives:
         raise InputError(
             "[[drives]]",

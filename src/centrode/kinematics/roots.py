@@ -18,8 +18,8 @@ STEPS = 100
 def bracketed_roots(function: WithSlope, low: Array, high: Array) -> Array:
     """Roots of a function with sign changes between `low` and `high`, elementwise.
 
-    Newton steps, replaced by bisection where they leave the bracket. The result is exact to a few units of the last
-    place of the root, as far as the function's own rounding allows.
+    Newton steps, replaced by bisection where they leave the bracket. The result is exact to a few units of
+    the last place of the root, as far as the function's own rounding allows.
     """
     low, high = low.copy(), high.copy()
     sign_low = np.sign(function(low)[0])
@@ -34,7 +34,9 @@ def bracketed_roots(function: WithSlope, low: Array, high: Array) -> Array:
             step = x - value / slope
         inside = (step > low) & (step < high) & np.isfinite(step)
         following = np.where(inside, step, 0.5 * (low + high))
-        done = (value == 0.0) | (following == x) | (high - low <= 2.0 * np.spacing(np.abs(x)))
+        # a Newton step of the last bits may point out of the bracket: it has arrived, nothing throws it back
+        last_bits = 2.0 * np.spacing(np.abs(x))
+        done = (value == 0.0) | (np.abs(step - x) <= last_bits) | (high - low <= last_bits)
         x = np.where(active & ~done, following, x)
         active &= ~done
         if not active.any():

@@ -1,7 +1,7 @@
 """Values and derivatives at samples of the path, with a status for each.
 
-Arrays are ordered (derivative, column, lane, sample): columns are the coordinates of moving points, the rotors of links and the
-displacements of guides; lanes are the mechanisms of a batch.
+Arrays are ordered (derivative, column, lane, sample): columns are the coordinates of moving points, the
+rotors of links and the displacements of guides; lanes are the mechanisms of a batch.
 """
 
 from __future__ import annotations
@@ -80,8 +80,8 @@ def evaluate_columns(
 ) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
     """Columns at parameters by the closed forms alone, and where a group is open or at zero of its radicand.
 
-    With `lanes` None the result has shape (3, columns, lanes, n) for n parameters; otherwise the parameters have shape (k,), each
-    with its own lane, and the result (3, columns, k).
+    With `lanes` None the result has shape (3, columns, lanes, n) for n parameters; otherwise the parameters
+    have shape (k,), each with its own lane, and the result (3, columns, k).
     """
     shape = (branches.lanes, len(parameter)) if lanes is None else parameter.shape
     along = parameter[None, :] if lanes is None else parameter
@@ -177,4 +177,3 @@ def positions_from(kinematics: Kinematics, layout: Layout, values: Array) -> Pos
         point, local = next(iter(numbers.local[link].items()))
         at.poses[link] = Pose(subtract(at.points[point], turned(local, rotor)), rotor)
     return at
-

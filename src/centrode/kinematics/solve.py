@@ -37,8 +37,9 @@ SEARCH = 4.0
 class Solved:
     """Motion of a batch of mechanisms on one span of samples.
 
-    Arrays hold value, first and second derivative by the path's parameter first: `points` (3, lanes, n, points, 2) [m], `angles`
-    (3, lanes, n, links) [rad], `slides` (3, lanes, n, guides) [m]; `status` and `residual` (lanes, n).
+    Arrays hold value, first and second derivative by the path's parameter first: `points` (3, lanes, n,
+    points, 2) [m], `angles` (3, lanes, n, links) [rad], `slides` (3, lanes, n, guides) [m]; `status` and
+    `residual` (lanes, n).
     """
 
     ready: Ready
@@ -92,7 +93,8 @@ def mesh_of(path: Path, parameter: Array) -> Array:
     high = max(path.initial, float(np.max(parameter)))
     first = int(np.floor((low - path.initial) / path.step)) - 2
     last = int(np.ceil((high - path.initial) / path.step)) + 2
-    return path.initial + (np.arange(first, last + 1) + OFF_GRID) * path.step
+    nodes = np.arange(first, last + 1, dtype=np.float64)
+    return path.initial + (nodes + OFF_GRID) * path.step
 
 
 def branches_of(ready: Ready, lanes: int = 1) -> Branches:

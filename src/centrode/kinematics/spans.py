@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
-from centrode.kinematics.paths import JETS, Path
+from centrode.kinematics.paths import JETS, DrivenBy, Path
 from centrode.locale import _
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -18,7 +18,7 @@ Array: TypeAlias = npt.NDArray[np.float64]
 MAX_SAMPLES = 1_000_000
 MAX_TURNS = 500.0
 INSIDE = 0.005
-"""Share of the reachable range left out on both sides when the range is not asked for: at its ends speeds are infinite."""
+"""Share of the reachable range left out at both ends if none is asked for: there speeds are infinite."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,39 @@ def span_of(
     for name, value in (("from", start), ("to", stop)):
         if value is not None and not np.isfinite(value):
             raise InputError(name, _("the range must be finite"))
-    return _even_values(path, samples, start, stop, reach) if is_uniform(path) else _even_times(path, samples, start, stop)
+    if is_uniform(path):
+        span = _even_values(path, samples, start, stop, reach)
+    else:
+        span = _even_times(path, samples, start, stop)
+    _check_extent(path, span)
+    return span
+
+
+def _check_extent(path: Path, span: Span) -> None:
+    """Refuse what a mesh of nodes cannot cover: a law without a value, and ends too far from the initial position."""
+    for one in path.driven:
+        if not all(np.isfinite(part).all() for part in _derivatives(one, span.time)):
+            raise InputError(
+                f"[[drives]] {one.drive.id}",
+                _("its law has no finite value with two derivatives everywhere in the range"),
+                _("correct the law, or ask for another range"),
+            )
+    turns = float(np.max(np.abs(span.parameter - path.initial))) / (2.0 * np.pi * path.unit)
+    if turns > MAX_TURNS:
+        raise InputError(
+            _("range"),
+            _("it reaches too far: {turns:.3g} turns").format(turns=turns),
+            _("ask for at most {most:g}").format(most=MAX_TURNS),
+        )
+
+
+def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
+    """A drive's value and its first two derivatives by time."""
+    with np.errstate(all="ignore"):
+        value = one.value(JETS, Jet.variable(time, 2))
+    if not isinstance(value, Jet):
+        value = Jet((value, 0.0, 0.0))
+    return [np.broadcast_to(np.asarray(value.derivative(k), dtype=np.float64), time.shape) for k in range(3)]
 
 
 def _even_values(
@@ -62,21 +94,26 @@ def _even_values(
     speed = float(one.drive.speed or 0.0)
     if speed == 0.0:
         raise InputError(f"[[drives]] {one.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
-    first, last = _default_range(path, reach)
-    if start is not None:
-        first = start
-        last = start + path.forward * 2.0 * np.pi if one.drive.kind == "angle" else last
-    last = last if stop is None else stop
-    if abs(last - path.initial) > MAX_TURNS * 2.0 * np.pi * path.unit:
-        raise InputError(_("range"), _("it reaches too far: {turns:.3g} turns").format(turns=(last - first) / 2 / np.pi))
+    first, last = _range(path, start, stop, reach)
     values = np.linspace(first, last, samples)
     ones = np.ones(samples)
     return Span((values - one.start) / speed, values, speed * ones, 0.0 * ones)
 
 
-def _default_range(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
+def _range(
+    path: Path, start: float | None, stop: float | None, reach: tuple[float, float]
+) -> tuple[float, float]:
+    """First and last value of the drive; what is not asked for is one turn, or the reachable range."""
     if path.driven[0].drive.kind == "angle":
-        return path.initial, path.initial + path.forward * 2.0 * np.pi
+        first = path.initial if start is None else start
+        return first, first + path.forward * 2.0 * np.pi if stop is None else stop
+    if start is not None and stop is not None:
+        return start, stop
+    first, last = _reachable(path, reach)
+    return first if start is None else start, last if stop is None else stop
+
+
+def _reachable(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
     low, high = reach
     if not np.isfinite(low) or not np.isfinite(high):
         raise InputError(
@@ -97,11 +134,7 @@ def _even_times(path: Path, samples: int, start: float | None, stop: float | Non
     time = np.linspace(first, last, samples)
     if path.by_time:
         return Span(time, time, np.ones(samples), np.zeros(samples))
-    value = path.driven[0].value(JETS, Jet.variable(time, 2))
-    if not isinstance(value, Jet):
-        value = Jet((value, 0.0, 0.0))
-    parts = [np.broadcast_to(np.asarray(value.derivative(k), dtype=np.float64), time.shape) for k in range(3)]
-    return Span(time, *parts)
+    return Span(time, *_derivatives(path.driven[0], time))
 
 
 def _one_turn(path: Path) -> float:

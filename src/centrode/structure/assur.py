@@ -1,7 +1,7 @@
 """The plan as a structural formula: input links and Assur groups with class, order and kind.
 
-Artobolevsky's classification: a dyad has class II and order 2; its five kinds are RRR, RRP, RPR, PRP and RPP. A mechanism has the class of
-its highest group.
+Artobolevsky's classification: a dyad has class II and order 2; its five kinds are RRR, RRP, RPR, PRP and
+RPP. A mechanism has the class of its highest group.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Which closed form solves a group: rigid point, link by two points, crank, parallel link, one of the five dyads, or none."""
+"""Which closed form solves a group: rigid point, link by two points, crank, parallel link, a dyad, or none."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from centrode.structure.groups import (
     Rod,
     Slot,
     Stop,
-    Turning,
     TurnedLink,
+    Turning,
     TwoPointLink,
 )
 
@@ -185,7 +185,7 @@ def _line(group: Unsolved, constraint: Constraint, carriage: str | None) -> Locu
             return Slot(constraint.point, constraint.guide) if group.knows_point(constraint.point) else None
         known = group.knows_link(constraint.on) and not group.knows_point(constraint.point)
         return Rail(constraint.point, constraint.guide, constraint.on) if known else None
-    if isinstance(constraint, DisplacementDrive) and group.knows_link(constraint.on):
-        if not group.knows_point(constraint.point):
-            return Stop(constraint.point, constraint.guide, constraint.on, constraint.drive)
+    if isinstance(constraint, DisplacementDrive):
+        known = group.knows_link(constraint.on) and not group.knows_point(constraint.point)
+        return Stop(constraint.point, constraint.guide, constraint.on, constraint.drive) if known else None
     return None

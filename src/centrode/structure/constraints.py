@@ -1,7 +1,8 @@
 """The one list of constraints: formula and Jacobian row of each.
 
-The list serves rank and mobility, the plan, residuals, Newton groups, equations in symbols and reactions. Unknowns are
-the points (two coordinates) and the links (origin and angle); a constraint ties some of them together.
+The list serves rank and mobility, the plan, residuals, Newton groups, equations in symbols and reactions.
+Unknowns are the points (two coordinates) and the links (origin and angle); a constraint ties some of them
+together.
 """
 
 from __future__ import annotations
@@ -154,7 +155,7 @@ class PointOnGuide:
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         point, link = self.bodies
-        through, direction = line_of(numbers, at, self.guide, self.on)
+        direction = line_of(numbers, at, self.guide, self.on)[1]
         arm = subtract(at.points[self.point], at.poses[self.on].origin)
         return [
             {
@@ -245,7 +246,7 @@ class DisplacementDrive:
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         point, link = self.bodies
-        _through, direction = line_of(numbers, at, self.guide, self.on)
+        direction = line_of(numbers, at, self.guide, self.on)[1]
         arm = subtract(at.points[self.point], at.poses[self.on].origin)
         return [{point: direction, link: (-direction[0], -direction[1], cross(direction, arm))}]
 
@@ -277,4 +278,3 @@ def unknowns_of(mechanism: Mechanism) -> tuple[Entity, ...]:
     """Moving points, then links, in description order."""
     points = tuple(Entity("point", name) for name in mechanism.moving_points)
     return points + tuple(Entity("link", name) for name in mechanism.links)
-

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import cos, hypot, sin
+from functools import cached_property
+from math import hypot
 from typing import Any, TypeAlias
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.geometry.plane import Vector
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Guide, Link, Mechanism
 
 Number: TypeAlias = Any
+Namespace: TypeAlias = Any
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class Dimensions:
             vectors(self.turn),
         )
 
-    @property
+    @cached_property
     def scale(self) -> Number:
         """Greatest length in the mechanism [m]: what lengths and residuals are compared with."""
         vectors = [v for points in self.local.values() for v in points.values()]
@@ -71,15 +73,18 @@ def _larger(a: Number, b: Number) -> Number:
     return 0.5 * (a + b + abs(a - b))
 
 
-def dimensions_of(mechanism: Mechanism, varied: Mapping[str, Number] | None = None) -> Dimensions:
+def dimensions_of(
+    mechanism: Mechanism, varied: Mapping[str, Number] | None = None, m: Namespace = math
+) -> Dimensions:
     """Numbers of a description, those named in `varied` replaced.
 
     `varied` maps paths ("links.AC.length", "links.K.points.P.y", "frame.points.D.x", "guides.C.through.y",
-    "guides.C.direction") to floats or arrays, one value a mechanism [m or rad].
+    "guides.C.direction") to floats, or with a namespace `m` of arrays to arrays, one value a mechanism
+    [m or rad].
 
     Raises InputError if a guide goes through a point that is not on its body, or a path names no dimension.
     """
-    values = _Values(dict(varied or {}))
+    values = _Values(dict(varied or {}), m)
     frame = {name: values.vector(f"frame.points.{name}", at) for name, at in mechanism.frame.points.items()}
     local = {name: _local(name, link, values) for name, link in mechanism.links.items()}
     through, direction, turn = {}, {}, {}
@@ -88,7 +93,7 @@ def dimensions_of(mechanism: Mechanism, varied: Mapping[str, Number] | None = No
         through[guide.id] = _through(guide, places, values)
         direction[guide.id] = values.direction(f"guides.{guide.id}.direction", guide.unit)
         angle = mechanism.guide_turn(guide)
-        turn[guide.id] = (cos(angle), sin(angle)) if angle else (1.0, 0.0)
+        turn[guide.id] = (math.cos(angle), math.sin(angle)) if angle else (1.0, 0.0)
     values.refuse_the_rest()
     return Dimensions(frame, local, through, direction, turn)
 
@@ -117,8 +122,9 @@ def _through(guide: Guide, places: Mapping[str, Vector], values: _Values) -> Vec
 class _Values:
     """Numbers by path: the varied one where there is one, else the description's own."""
 
-    def __init__(self, varied: dict[str, Number]) -> None:
+    def __init__(self, varied: dict[str, Number], m: Namespace) -> None:
         self.varied = varied
+        self.m = m
         self.used: set[str] = set()
 
     def number(self, path: str, own: float) -> Number:
@@ -140,7 +146,7 @@ class _Values:
     def direction(self, path: str, own: Vector) -> Vector:
         self.used.add(path)
         angle = self.varied.get(path)
-        return own if angle is None else (ARRAYS.cos(angle), ARRAYS.sin(angle))
+        return own if angle is None else (self.m.cos(angle), self.m.sin(angle))
 
     def refuse_the_rest(self) -> None:
         for path in self.varied:

@@ -1,8 +1,8 @@
 """The groups a plan is made of: what is known before each, what it gives.
 
-Assur groups of class II (dyads) are named by their joints, R a hinge and P a guide, in the order outer, inner, outer: RRR, RRP, RPR, PRP,
-RPP (Artobolevsky, Theory of Mechanisms and Machines, kinds 1 to 5). Rigid points, links by two points, cranks and parallel links are solved
-on the way.
+Assur groups of class II (dyads) are named by their joints, R a hinge and P a guide, in the order outer,
+inner, outer: RRR, RRP, RPR, PRP, RPP (Artobolevsky, Theory of Mechanisms and Machines, kinds 1 to 5). Rigid
+points, links by two points, cranks and parallel links are solved on the way.
 """
 
 from __future__ import annotations
@@ -63,8 +63,8 @@ class TurnedLink:
 class Aim:
     """RPR: a link on a known pivot whose guide passes a known target, with the guided link if there is one.
 
-    If `block` is set, the target is a known point of that link, which does not turn against the aimed link; `sliding` is its point on
-    the guide. If not, the target itself is the guide's point.
+    If `block` is set, the target is a known point of that link, which does not turn against the aimed link;
+    `sliding` is its point on the guide. If not, the target itself is the guide's point.
     """
 
     link: str
@@ -124,9 +124,9 @@ Locus: TypeAlias = Rod | Rail | Slot | Stop
 class Meet:
     """RRR, RRP, PRP or RPP: one unknown vector where two loci meet.
 
-    The vector is the place of `points[0]`, or, if there is a carriage (a link whose angle is known beforehand), the origin of the
-    carriage's axes; its points then follow. `loci` stand with circles first, otherwise in description order, so the sign is
-    reproducible.
+    The vector is the place of `points[0]`, or, if there is a carriage (a link whose angle is known
+    beforehand), the origin of the carriage's axes; its points then follow. `loci` stand with circles first,
+    otherwise in description order, so the sign is reproducible.
     """
 
     points: tuple[str, ...]

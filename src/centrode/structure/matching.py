@@ -1,7 +1,8 @@
 """Order from dependence: matching of equations to unknowns, and the groups that must be solved together.
 
-Dulmage-Mendelsohn decomposition of a square structurally regular system: a perfect matching, then the strongly connected components of
-"depends on", dependencies first. Any perfect matching gives the same components.
+Dulmage-Mendelsohn decomposition of a square structurally regular system: a perfect matching, then the
+strongly connected components of "depends on", dependencies first. Any perfect matching gives the same
+components.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ def strong_components(depends: Mapping[Node, Sequence[Node]]) -> list[list[Node]
                 if work:
                     low[work[-1][0]] = min(low[work[-1][0]], low[node])
                 if low[node] == index[node]:
-                    component = []
+                    component: list[Node] = []
                     while not component or component[-1] != node:
                         component.append(stack.pop())
                         on_stack.discard(component[-1])
@@ -86,7 +87,9 @@ def strong_components(depends: Mapping[Node, Sequence[Node]]) -> list[list[Node]
     return found
 
 
-def in_order(components: Sequence[Sequence[Node]], depends: Mapping[Node, Sequence[Node]]) -> list[list[Node]]:
+def in_order(
+    components: Sequence[Sequence[Node]], depends: Mapping[Node, Sequence[Node]]
+) -> list[list[Node]]:
     """Components with dependencies first; of those that are ready, the first in the order of `depends`."""
     rank = {node: k for k, node in enumerate(depends)}
     home = {node: k for k, component in enumerate(components) for node in component}

@@ -13,8 +13,8 @@ from centrode.model.mechanism import Guide, Mechanism
 class Count:
     """Chebyshev's count of a planar mechanism (also Gruebler's): 3 n - 2 p5 - p4.
 
-    A point on a guide without a link of its own counts as a slider: one more link, hinged to the point and sliding on the guide.
-    A hinge of k links counts k - 1 times.
+    A point on a guide without a link of its own counts as a slider: one more link, hinged to the point and
+    sliding on the guide. A hinge of k links counts k - 1 times.
     """
 
     moving_links: int
@@ -51,4 +51,3 @@ def is_bare(guide: Guide) -> bool:
 def slider_of(guide: Guide) -> str:
     """The link that slides on a guide: its own, or the slider understood at its point."""
     return guide.link if guide.link is not None else _("slider {point}").format(point=guide.id)
-

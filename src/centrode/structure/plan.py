@@ -58,10 +58,12 @@ def structure_of(mechanism: Mechanism) -> Structure:
     unknowns = unknowns_of(mechanism)
     dimensions = dimensions_of(mechanism)
     matrix = generic_jacobian(mechanism, constraints, unknowns, dimensions)
-    kept = independent_rows(matrix)
+    kept = [bool(keep) for keep in independent_rows(matrix)]
     owners = [c for c in constraints for _row in range(c.size)]
     drive_rows = sum(is_drive(c) for c in constraints)
-    mobility = matrix.shape[1] - int(independent_rows(matrix[drive_rows:]).sum())
+    # with all rows independent, so are those without the drives
+    free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
+    mobility = matrix.shape[1] - free_rank
     _check_drives(mechanism, constraints, unknowns, kept, owners, mobility)
     redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
     groups = _groups(mechanism, constraints, unknowns, matrix, kept, owners)
@@ -92,11 +94,13 @@ def _check_drives(
     owners: Sequence[Constraint],
     mobility: int,
 ) -> None:
-    """Refuse drives that repeat each other or leave something loose; special dimensions are judged at real positions."""
+    """Refuse drives that repeat each other or leave something loose."""
     drives = len(mechanism.drives)
     width = sum(entity.unknowns for entity in unknowns)
     if drives == 0:
-        raise InputError("[[drives]]", _("the mechanism has no drive"), _("give one drive per degree of freedom"))
+        raise InputError(
+            "[[drives]]", _("the mechanism has no drive"), _("give one drive per degree of freedom")
+        )
     repeated = [c.label for c, keep in zip(owners, kept, strict=True) if is_drive(c) and not keep]
     numbers = drives_against_mobility(drives, mobility)
     if repeated:
@@ -107,10 +111,9 @@ def _check_drives(
 
 def drives_against_mobility(drives: int, mobility: int) -> str:
     """The sentence that compares the number of drives with the mobility."""
-    return (
-        ngettext("{n} drive is given", "{n} drives are given", drives).format(n=drives)
-        + _(", but the mobility (by rank) is {mobility}").format(mobility=mobility)
-    )
+    return ngettext("{n} drive is given", "{n} drives are given", drives).format(n=drives) + _(
+        ", but the mobility (by rank) is {mobility}"
+    ).format(mobility=mobility)
 
 
 def _unique(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
@@ -140,9 +143,7 @@ def _groups(
         matched[entity].append(constraint)
     depends = {
         entity: list(
-            dict.fromkeys(
-                other for c in own for other in c.bodies if other != entity and other in inside
-            )
+            dict.fromkeys(other for c in own for other in c.bodies if other != entity and other in inside)
         )
         for entity, own in matched.items()
     }
