@@ -1,0 +1,268 @@
+"""Formulas written as text, read into formulas over any algebra; nothing of the text is run as Python."""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from centrode.algebra.vocabulary import CONSTANTS, DERIVED, FUNCTIONS, ONE_ARGUMENT, SCALARS, Number
+from centrode.errors import InputError
+from centrode.locale import _
+
+Node = Callable[[Any, Mapping[str, Number]], Number]
+
+TEXT_LENGTH = 1000
+DEPTH = 50
+GREATEST_POWER = 100
+
+__all__ = ["SCALARS", "TextFormula", "compile_formula"]
+
+_STRANGE = re.compile(r"[^\w\s.+\-*/^(),]")
+_PASTED = re.compile(r"(?<![\w.])(?:\d++\.?+\d*+|\.\d++)(?:[eE][+-]?\d++)?+(?=[^\W\d])")
+
+
+@dataclass(frozen=True)
+class TextFormula:
+    """A formula of named variables, read from text by `compile_formula`.
+
+    Attributes
+    ----------
+    text : str
+        The text as given.
+    variables : tuple of str
+        The names it may use.
+    used : frozenset of str
+        The names it does use.
+    """
+
+    text: str
+    variables: tuple[str, ...]
+    used: frozenset[str]
+    _body: Node = field(repr=False, compare=False)
+
+    def __call__(self, m: Any, **values: Number) -> Number:
+        """Value over the algebra whose functions `m` holds; `values` gives each variable."""
+        return self._body(m, values)
+
+
+def compile_formula(text: str, variables: tuple[str, ...], where: str) -> TextFormula:
+    """Read a formula from text.
+
+    Known are + - * /, powers (`**` or `^`) with an integer or half-integer exponent, parentheses, the
+    variables, pi, e, and sin cos tan sqrt exp log abs sign min max atan2 asin acos atan.
+
+    Raises
+    ------
+    InputError
+        At `where`, naming the character of the text: not a formula, a name or a function that is not
+        known, more than 1000 characters, or more than 50 operations inside each other.
+    """
+    if len(text) > TEXT_LENGTH:
+        what = _("a formula has at most {most} characters, got {count}").format(
+            most=TEXT_LENGTH, count=len(text)
+        )
+        raise InputError(where, what, _("shorten it"))
+    return _Reader(text, variables, where).formula()
+
+
+class _Reader:
+    """Turns Python's syntax tree of one text into closures, refusing all that is not arithmetic."""
+
+    def __init__(self, text: str, variables: tuple[str, ...], where: str) -> None:
+        self.text = text
+        self.variables = variables
+        self.where = where
+        self.used: set[str] = set()
+        # A power is commonly written ^; `columns` leads from each character that Python reads to the user's.
+        self.source, self.columns = "", [0]
+        for column, character in enumerate(text):
+            read = " " if character.isspace() else character.replace("^", "**")
+            if self.source or read != " ":
+                self.columns[-1:] = [column] * (len(read) + 1)
+                self.source += read
+
+    def error(self, column: int, what: str, repair: str = "") -> InputError:
+        """Complaint about a character (from 0) of the user's text."""
+        place = _('{what}, at character {column} of "{text}"')
+        shown = "".join(c if c.isprintable() else " " for c in self.text)
+        return InputError(self.where, place.format(what=what, column=column + 1, text=shown), repair)
+
+    def at(self, node: ast.expr, what: str, repair: str = "") -> InputError:
+        """Complaint about a node, at its place in the user's text."""
+        before = self.source.encode()[: node.col_offset].decode(errors="ignore")
+        return self.error(self.columns[len(before)], what, repair)
+
+    def formula(self) -> TextFormula:
+        if not self.text.strip():
+            raise InputError(self.where, _("the formula is empty"), _("write a formula or a number"))
+        self.characters()
+        repair = _("use + - * / ** and parentheses")
+        try:
+            tree = ast.parse(self.source, mode="eval")
+        except SyntaxError as error:
+            column = self.columns[min(max((error.offset or 1) - 1, 0), len(self.columns) - 1)]
+            raise self.error(column, _("this is not a formula"), repair) from None
+        except (ValueError, MemoryError, RecursionError):
+            raise self.error(0, _("this is not a formula"), repair) from None
+        body = self.node(tree.body, 0)
+        return TextFormula(self.text, self.variables, frozenset(self.used), body)
+
+    def characters(self) -> None:
+        """Refuse what Python would read otherwise than a formula: other signs, names pasted to numbers."""
+        strange = _STRANGE.search(self.text)
+        if strange:
+            what = _("a formula has no such character")
+            raise self.error(strange.start(), what, _("use + - * / ** and parentheses"))
+        pasted = _PASTED.search(self.text)
+        if pasted:
+            repair = _('write "{number}*..."').format(number=pasted.group())
+            raise self.error(pasted.end(), _("a sign is missing after a number"), repair)
+
+    def node(self, node: ast.expr, depth: int) -> Node:
+        if depth > DEPTH:
+            raise self.at(
+                node, _("the formula nests deeper than {most}").format(most=DEPTH), _("simplify it")
+            )
+        match node:
+            case ast.Constant():
+                return _constant(self.literal(node))
+            case ast.Name():
+                return self.name(node)
+            case ast.UnaryOp(op=ast.UAdd()):
+                return self.node(node.operand, depth + 1)
+            case ast.UnaryOp(op=ast.USub()):
+                inner = self.node(node.operand, depth + 1)
+                return lambda m, v: -inner(m, v)
+            case ast.BinOp(op=ast.Pow()):
+                return self.power(node, depth)
+            case ast.BinOp():
+                return self.chain(node, depth)
+            case ast.Call():
+                return self.call(node, depth)
+        raise self.at(node, _("only arithmetic is allowed here"), _("use + - * / ** and the known functions"))
+
+    def literal(self, node: ast.Constant) -> float:
+        value = node.value
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise self.at(node, _("only numbers are allowed here"))
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if not math.isfinite(number):
+            raise self.at(node, _("the number is too large"))
+        return number
+
+    def name(self, node: ast.Name) -> Node:
+        name = node.id
+        if name in self.variables:
+            self.used.add(name)
+            return lambda m, v: v[name]
+        if name in CONSTANTS:
+            return _constant(CONSTANTS[name])
+        known = ", ".join((*self.variables, "pi", "e"))
+        what = _('unknown name "{name}"').format(name=name)
+        raise self.at(node, what, _("known are: {names}").format(names=known))
+
+    def chain(self, node: ast.BinOp, depth: int) -> Node:
+        """A run of + - * / from left to right: long sums are no deeper than short ones."""
+        steps: list[tuple[type[ast.operator], Node]] = []
+        left: ast.expr = node
+        while isinstance(left, ast.BinOp) and not isinstance(left.op, ast.Pow):
+            if not isinstance(left.op, ast.Add | ast.Sub | ast.Mult | ast.Div):
+                raise self.at(left, _("unknown operation"), _("use + - * / ** and parentheses"))
+            steps.append((type(left.op), self.node(left.right, depth + 1)))
+            left = left.left
+        first = self.node(left, depth + 1)
+        steps.reverse()
+
+        def run(m: Any, values: Mapping[str, Number]) -> Number:
+            total = first(m, values)
+            for operation, right in steps:
+                total = _apply(operation, total, right(m, values))
+            return total
+
+        return run
+
+    def power(self, node: ast.BinOp, depth: int) -> Node:
+        base = self.node(node.left, depth + 1)
+        exponent = self.exponent(node.right, depth + 1)
+        twice = exponent * 2
+        if twice != round(twice) or abs(exponent) > GREATEST_POWER:
+            what = _("an exponent is an integer or a half, at most {most}").format(most=GREATEST_POWER)
+            raise self.at(node.right, what, _("write other powers as exp(y*log(x))"))
+        if exponent == round(exponent):
+            return lambda m, v: _integer_power(base(m, v), round(exponent))
+        return lambda m, v: _integer_power(m.sqrt(base(m, v)), round(twice))
+
+    def exponent(self, node: ast.expr, depth: int) -> float:
+        try:
+            body = self.node(node, depth) if not self.names(node) else None
+            value = float("nan") if body is None else float(body(SCALARS, {}))
+        except (ArithmeticError, ValueError):
+            value = float("nan")
+        if not math.isfinite(value):
+            raise self.at(node, _("an exponent is a fixed number"), _("write other powers as exp(y*log(x))"))
+        return value
+
+    def names(self, node: ast.expr) -> bool:
+        return any(isinstance(inner, ast.Name) for inner in ast.walk(node))
+
+    def call(self, node: ast.Call, depth: int) -> Node:
+        name = node.func.id if isinstance(node.func, ast.Name) else ""
+        if name not in FUNCTIONS:
+            what = (
+                _('unknown function "{name}"').format(name=name)
+                if name
+                else _("only known functions are allowed")
+            )
+            raise self.at(node, what, _("known are: {names}").format(names=" ".join(sorted(FUNCTIONS))))
+        count = len(node.args)
+        fits = count == 1 if name in ONE_ARGUMENT else count == 2 if name == "atan2" else count >= 2
+        if not fits or node.keywords or any(isinstance(a, ast.Starred) for a in node.args):
+            raise self.at(node, _("{name} got the wrong number of arguments").format(name=name))
+        arguments = [self.node(argument, depth + 1) for argument in node.args]
+
+        def run(m: Any, values: Mapping[str, Number]) -> Number:
+            first, *others = (argument(m, values) for argument in arguments)
+            if not others:
+                return (
+                    DERIVED[name](m, first)
+                    if name in DERIVED and not hasattr(m, name)
+                    else getattr(m, name)(first)
+                )
+            for other in others:
+                first = getattr(m, name)(first, other)
+            return first
+
+        return run
+
+
+def _constant(value: float) -> Node:
+    return lambda m, v: value
+
+
+def _apply(operation: type[ast.operator], left: Number, right: Number) -> Number:
+    if operation is ast.Add:
+        return left + right
+    if operation is ast.Sub:
+        return left - right
+    return left * right if operation is ast.Mult else left / right
+
+
+def _integer_power(base: Number, exponent: int) -> Number:
+    """Power by squaring: any algebra multiplies, few raise to powers."""
+    if exponent < 0:
+        return 1.0 / _integer_power(base, -exponent)
+    result: Number = None
+    while exponent:
+        if exponent & 1:
+            result = base if result is None else result * base
+        exponent >>= 1
+        if exponent:
+            base = base * base
+    return 1.0 if result is None else result

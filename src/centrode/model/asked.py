@@ -1,0 +1,115 @@
+"""What a description asks for besides the mechanism: display, assembly, machine, study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field, PlainValidator
+
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model import limits
+from centrode.model.frozen import FrozenMap
+from centrode.model.names import read_name
+from centrode.model.part import Part
+from centrode.model.problems import KEY, Problem, shown
+from centrode.model.units import unit_factor
+from centrode.model.values import (
+    EndOfMotion,
+    PlaceOfMotion,
+    choice,
+    listed,
+    positive,
+    quantity,
+    read_text,
+    table,
+)
+
+Side = Literal["left", "right", "ahead", "behind"]
+
+
+def _unit(kind: str) -> PlainValidator:
+    def read(value: object) -> str:
+        try:
+            unit = read_text(value)
+            unit_factor(unit, kind)
+        except InputError as error:
+            raise Problem(error.what, error.repair) from None
+        return unit
+
+    return PlainValidator(read)
+
+
+def _read_samples(value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=shown(value)))
+    if not 1 <= value <= limits.SAMPLES:
+        what = _("{key} must lie between 1 and {most}, got {value}")
+        raise Problem(
+            what.format(key=KEY, most=limits.SAMPLES, value=shown(value)), _("ask for fewer samples")
+        )
+    return value
+
+
+class Display(Part):
+    """Units in which tables and figures show lengths and angles."""
+
+    length: Annotated[str, _unit("length")] = "m"
+    angle: Annotated[str, _unit("angle")] = "rad"
+
+    @property
+    def length_factor(self) -> float:
+        """Metres in one unit of length."""
+        return unit_factor(self.length, "length")
+
+    @property
+    def angle_factor(self) -> float:
+        """Radians in one unit of angle."""
+        return unit_factor(self.angle, "angle")
+
+
+class Assembly(Part):
+    """Which way groups are assembled, and what happens at change points.
+
+    Attributes
+    ----------
+    sides : mapping of a group's point, link or guide to "left", "right", "ahead" or "behind"
+        Left or right of the line between the group's two known points, in description order; ahead or
+        behind along a guide. Needed where the initial position does not tell.
+    continuation : "smooth" or "keep"
+        Run through change points smoothly, or keep the sign of the assembly.
+    """
+
+    sides: Annotated[
+        Mapping[str, Annotated[Side, choice("left", "right", "ahead", "behind")]],
+        table(read_name, limits.POINTS),
+        AfterValidator(FrozenMap[str, Side]),
+    ] = FrozenMap({})
+    continuation: Annotated[Literal["smooth", "keep"], choice("smooth", "keep")] = "smooth"
+
+
+class Machine(Part):
+    """The machine the mechanism works in: mean speed [rad/s] of the drive and its fluctuation (non-uniformity)."""
+
+    mean_speed: Annotated[float, quantity("angular speed")]
+    fluctuation: Annotated[float, quantity("ratio", positive)] | None = None
+
+
+class Study(Part):
+    """What is to be computed.
+
+    Attributes
+    ----------
+    samples : int
+        Number of samples.
+    instants : tuple of float [rad or m; s if there are several drives]
+        Values of the drive at which positions are shown.
+    start, stop : float [rad or m; s if the drive is a law of time or there are several]
+        Range of the drive's value; "from" and "to" in a file.
+    """
+
+    samples: Annotated[int, PlainValidator(_read_samples)] | None = None
+    instants: Annotated[tuple[PlaceOfMotion, ...], listed(limits.INSTANTS)] = ()
+    start: Annotated[EndOfMotion | None, Field(alias="from")] = None
+    stop: Annotated[EndOfMotion | None, Field(alias="to")] = None

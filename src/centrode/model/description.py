@@ -1,0 +1,189 @@
+"""All parts of a mechanism together, and look-ups among them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, ModelWrapValidatorHandler, PlainValidator, model_validator
+
+from centrode.algebra.text import SCALARS
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model import limits
+from centrode.model.asked import Assembly, Display, Machine, Study
+from centrode.model.bodies import Frame, Link
+from centrode.model.driving import Drive
+from centrode.model.frozen import FrozenMap
+from centrode.model.loads import Load
+from centrode.model.names import FRAME, two_points
+from centrode.model.pairs import Gear, Guide, Rolling
+from centrode.model.part import Part
+from centrode.model.problems import nearest, shown
+from centrode.model.values import (
+    READING,
+    Placed,
+    Reading,
+    Text,
+    Vector,
+    choice,
+    link_table,
+    listed,
+    numbers,
+)
+
+
+def _read_gravity(value: object) -> Vector:
+    x, y = numbers(value, ("acceleration", "acceleration"), "[x, y]")
+    return x, y
+
+
+def _filled(links: Mapping[str, Link]) -> Mapping[str, Link]:
+    """Links with the two points that a name made of two points stands for, where a link lists none."""
+    return FrozenMap({name: _with_points(name, link) for name, link in links.items()})
+
+
+def _with_points(name: str, link: Link) -> Link:
+    points = two_points(name)
+    if link.points or link.length is None or points is None:
+        return link
+    return link.model_copy(update={"points": points})
+
+
+class Description(Part):
+    """The parts of a mechanism, each right in itself, not yet checked against each other; see `Mechanism`."""
+
+    title: Text = ""
+    space: Annotated[Literal["plane", "sphere"], choice("plane", "sphere")] = "plane"
+    gravity: Annotated[Vector, PlainValidator(_read_gravity)] | None = None
+    display: Display = Display()
+    frame: Frame = Frame()
+    links: Annotated[Mapping[str, Link], link_table, AfterValidator(_filled)]
+    guides: Annotated[tuple[Guide, ...], listed(limits.GUIDES)] = ()
+    gears: Annotated[tuple[Gear, ...], listed(limits.LINKS)] = ()
+    rolling: Annotated[tuple[Rolling, ...], listed(limits.LINKS)] = ()
+    drives: Annotated[tuple[Drive, ...], listed(limits.DRIVES)] = ()
+    assembly: Assembly = Assembly()
+    loads: Annotated[tuple[Load, ...], listed(limits.LOADS)] = ()
+    machine: Machine | None = None
+    study: Study = Study()
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _in_its_space(cls, data: Any, handler: ModelWrapValidatorHandler[Description]) -> Description:
+        token = READING.set(_reading(data, READING.get().folder))
+        try:
+            return handler(data)
+        finally:
+            READING.reset(token)
+
+    @property
+    def link_names(self) -> tuple[str, ...]:
+        """Names of the moving links in description order."""
+        return tuple(self.links)
+
+    @property
+    def moving_points(self) -> tuple[str, ...]:
+        """Points that are not the frame's, in order of first mention in the links, then in the guides."""
+        named = [point for link in self.links.values() for point in link.coordinates]
+        named += [guide.point for guide in self.guides]
+        return tuple(dict.fromkeys(point for point in named if point not in self.frame.points))
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """All points: the frame's, then the moving ones."""
+        return (*self.frame.points, *self.moving_points)
+
+    def guide(self, identity: str) -> Guide:
+        """The guide of an id; raises InputError if there is none."""
+        for guide in self.guides:
+            if guide.id == identity:
+                return guide
+        what = _("there is no guide {name}").format(name=shown(identity))
+        raise InputError("", what, nearest(identity, [guide.id for guide in self.guides]))
+
+    def drive(self, identity: str) -> Drive:
+        """The drive of an id; raises InputError if there is none."""
+        for drive in self.drives:
+            if drive.id == identity:
+                return drive
+        what = _("there is no drive {name}").format(name=shown(identity))
+        raise InputError("", what, nearest(identity, [drive.id for drive in self.drives]))
+
+    def through(self, guide: Guide) -> Vector:
+        """Coordinates [m] of a point of the guide's line in the axes of `guide.on`.
+
+        Raises InputError for a line that is not placed yet.
+        """
+        if isinstance(guide.through, str):
+            return self.points_of(guide.on)[guide.through]
+        if not isinstance(guide.through, Placed):
+            return guide.through
+        if guide.through.at is None:
+            where = f"[[guides]] {guide.id}, through"
+            raise InputError(where, _("the line is not placed yet"), _("give its coordinates"))
+        return guide.through.at
+
+    def points_of(self, link: str) -> Mapping[str, Vector]:
+        """Local coordinates [m] of the points of a link or of the frame."""
+        return self.frame.coordinates if link == FRAME else self.links[link].coordinates
+
+    def initial_angle(self, link: str) -> float | None:
+        """Absolute angle [rad] of a link in the initial position, where the description tells it.
+
+        The link's `angle`; else the `start` of the drive of its angle, with its law at t = 0, from the
+        angle of the link it is relative to.
+        """
+        return self._initial_angle(link, ())
+
+    def _initial_angle(self, link: str, seen: tuple[str, ...]) -> float | None:
+        if link == FRAME:
+            return 0.0
+        angle = self.links[link].angle
+        if angle is not None or link in seen:
+            return angle
+        for drive in self.drives:
+            if drive.link == link and drive.start is not None:
+                base = self._initial_angle(drive.relative_to, (*seen, link))
+                at_zero = _at_zero(drive)
+                return None if base is None or at_zero is None else base + drive.start + at_zero
+        return None
+
+    def guide_turn(self, guide: Guide) -> float:
+        """Constant angle [rad] from `guide.on` to `guide.link`: the given one, else by the initial angles, else 0."""
+        if guide.angle is not None or guide.link is None:
+            return guide.angle or 0.0
+        turned, base = self.initial_angle(guide.link), self.initial_angle(guide.on)
+        return 0.0 if turned is None or base is None else turned - base
+
+
+def _at_zero(drive: Drive) -> float | None:
+    """The drive's law at t = 0; None where it is not defined there."""
+    try:
+        value = float(drive.motion_law.jet(SCALARS, 0.0))
+    except (ArithmeticError, ValueError):
+        return None
+    return value if math.isfinite(value) else None
+
+
+def _reading(data: object, folder: Path) -> Reading:
+    """Space and kind of the drives, from the raw data, for the values whose meaning they decide."""
+    if not isinstance(data, Mapping):
+        return Reading(folder=folder)
+    space = "sphere" if data.get("space") == "sphere" else "plane"
+    given = data.get("drives")
+    drives = given if isinstance(given, list | tuple) else ()
+    kind, by_law = _kind_and_law(drives[0] if drives else None)
+    several = len(drives) > 1
+    return Reading(space, kind, folder, several, by_law or several)
+
+
+def _kind_and_law(first: object) -> tuple[str, bool]:
+    """Kind of the first drive, and whether it is a law of time and not a speed."""
+    if isinstance(first, Drive):
+        return first.kind, first.speed is None
+    keys = first if isinstance(first, Mapping) else {}
+    kind = "displacement" if keys.get("guide") else "distance" if keys.get("distance") else "angle"
+    return kind, keys.get("speed") is None and bool({"law", "table"} & keys.keys())

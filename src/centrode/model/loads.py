@@ -1,0 +1,147 @@
+"""Loads: forces, torques, springs, dampers, weights, friction; read and checked, computed by the dynamics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import PlainValidator, ValidationInfo, field_validator
+
+from centrode.algebra.text import compile_formula
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.names import FRAME
+from centrode.model.part import Part, missing_key
+from centrode.model.problems import Problem, shown
+from centrode.model.values import Angle, Heading, Name, choice, listed, not_negative, quantity, read_text, si
+
+LOAD_VARIABLES = ("t", "q", "x", "v")
+"""Time, the drive's value, and the coordinate and the speed the load works along, in formulas of loads."""
+
+Amount = float | str
+Kinds = Literal["force", "torque", "spring", "damper", "weight", "friction"]
+KINDS = ("force", "torque", "spring", "damper", "weight", "friction")
+
+# kind -> keys that it needs, and keys that it may have; a tuple of alternatives needs exactly one of them.
+_ALTERNATIVES: dict[str, tuple[str, ...]] = {
+    "force": ("point",),
+    "torque": ("link",),
+    "spring": ("points", "link"),
+    "damper": ("points", "link"),
+    "weight": ("link", "point"),
+    "friction": ("link", "guide"),
+}
+_NEEDED: dict[str, tuple[str, ...]] = {
+    "force": ("vector",),
+    "torque": ("value",),
+    "spring": ("stiffness",),
+    "damper": ("damping",),
+    "weight": (),
+    "friction": ("value",),
+}
+_ALLOWED: dict[str, tuple[str, ...]] = {
+    "force": ("axes", "while_moving"),
+    "torque": ("relative_to",),
+    "spring": ("free_length", "free_angle", "relative_to"),
+    "damper": ("relative_to",),
+    "weight": ("value",),
+    "friction": ("relative_to",),
+}
+
+
+def _amount(value: object, kind: str) -> Amount:
+    """A quantity, or the text of a formula in `LOAD_VARIABLES` that gives it in SI."""
+    if not isinstance(value, str):
+        return si(value, kind)
+    text = read_text(value)
+    try:
+        formula = compile_formula(text, LOAD_VARIABLES, "")
+    except InputError as error:
+        try:
+            return si(text, kind)
+        except Problem as problem:
+            what = _("{what} (as a formula: {reason})").format(what=problem.what, reason=error.what)
+            raise Problem(what, problem.repair) from None
+    return text if formula.used else si(text, kind)
+
+
+def _read_force(value: object) -> tuple[Amount, Amount]:
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise Problem(_("expected {form}, got {value}").format(form="[x, y]", value=shown(value)))
+    return _amount(value[0], "force"), _amount(value[1], "force")
+
+
+class Load(Part):
+    """A load of one kind.
+
+    Attributes
+    ----------
+    kind : "force", "torque", "spring", "damper", "weight" or "friction"
+    point, link, guide, points : str, str, str, two names
+        What it acts on: a force on a point, a torque on a link, a spring or damper between two points or
+        in a link's hinge, friction in a link's hinge or a guide, a weight in a link's centre or a point.
+    vector : (x, y) [N], each a number or a formula
+    axes : "frame" or the link whose axes `vector` is given in
+    value : float or formula [N m]; of a weight [N], where it is not mass times gravity
+        Friction: the moment in a hinge [N m] or the force in a guide [N], against the motion.
+    stiffness [N/m or N m/rad], damping [N s/m or N m s/rad], free_length [m], free_angle [rad]
+    relative_to : "frame" or the link against which a torque, spring, damper or friction works
+    while_moving : (x, y)
+        The force acts only while its point moves this way.
+    """
+
+    kind: Annotated[Kinds, choice(*KINDS)]
+    point: Name | None = None
+    link: Name | None = None
+    guide: Name | None = None
+    points: Annotated[tuple[Name, ...], listed(2)] | None = None
+    vector: Annotated[tuple[Amount, Amount], PlainValidator(_read_force)] | None = None
+    axes: Name = FRAME
+    value: Amount | None = None
+    stiffness: float | None = None
+    damping: float | None = None
+    free_length: Annotated[float, quantity("length", not_negative)] | None = None
+    free_angle: Angle | None = None
+    relative_to: Name = FRAME
+    while_moving: Heading | None = None
+
+    @field_validator("value", "stiffness", "damping", mode="plain")
+    @classmethod
+    def _by_what_it_acts_on(cls, value: object, info: ValidationInfo) -> Amount | None:
+        if value is None:
+            return None
+        straight = info.data.get("link") is None or info.data.get("kind") == "weight"
+        if info.field_name == "value":
+            return _amount(value, "force" if straight else "torque")
+        return not_negative(value, f"{'' if straight else 'angular '}{info.field_name}")
+
+    @classmethod
+    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
+        """What is wrong with the keys that are given, by the rules of this part."""
+        problems = super().key_problems(given)
+        kind = given.get("kind")
+        if problems or kind not in KINDS:
+            return problems
+        present = {key for key, value in given.items() if value is not None}
+        alternatives, needed = _ALTERNATIVES[kind], _NEEDED[kind]
+        foreign = present - {"kind", *alternatives, *needed, *_ALLOWED[kind]}
+        problems += [missing_key(key) for key in needed if key not in present]
+        problems += [
+            _foreign(key, kind)
+            for key in cls.model_fields
+            if key in foreign and not _default(cls, key, given)
+        ]
+        if len(present & set(alternatives)) != 1:
+            words = ", ".join(alternatives)
+            problems.append(Problem(_("a {kind} acts on one of: {keys}").format(kind=kind, keys=words)))
+        return problems
+
+
+def _default(cls: type[Part], key: str, given: Mapping[str, Any]) -> bool:
+    return bool(given[key] == cls.model_fields[key].default)
+
+
+def _foreign(key: str, kind: str) -> Problem:
+    known = (*_ALTERNATIVES[kind], *_NEEDED[kind], *_ALLOWED[kind])
+    what = _("{key} does not belong to a {kind}").format(key=shown(key), kind=kind)
+    return Problem(what, _("it has: {keys}").format(keys=", ".join(known)))

@@ -1,0 +1,81 @@
+"""The mechanism: one frozen description that everything else is derived from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+from pydantic import model_validator
+
+from centrode.model.asked import Assembly, Display, Machine, Study
+from centrode.model.bodies import Frame, Link
+from centrode.model.checks import problems_of_parts
+from centrode.model.description import Description
+from centrode.model.driving import Drive
+from centrode.model.loads import Load
+from centrode.model.names import FRAME
+from centrode.model.pairs import Gear, Guide, Rolling, Track
+from centrode.model.placing import resolved
+from centrode.model.problems import Problems
+from centrode.model.values import Placed, Vector
+
+__all__ = [
+    "FRAME",
+    "Assembly",
+    "Display",
+    "Drive",
+    "Frame",
+    "Gear",
+    "Guide",
+    "Link",
+    "Load",
+    "Machine",
+    "Mechanism",
+    "Placed",
+    "Rolling",
+    "Study",
+    "Track",
+    "Vector",
+]
+
+
+class Mechanism(Description):
+    """A mechanism: points, links, guides, gears, drives, loads and assembly; it holds no motion.
+
+    The arguments are those of a file (docs: the description), as parts or as plain dicts, texts with
+    units included: `Mechanism(frame={"points": {"O": [0, 0]}}, links={"OA": {"length": "0.5 m"}})`.
+    All numbers it holds are SI. "placed" points and guides are put where the chain of the links'
+    initial angles puts them.
+
+    Attributes
+    ----------
+    title : str
+    space : "plane" or "sphere"
+    gravity : (x, y) [m/s^2] or None
+    display : Display
+    frame : Frame
+    links : mapping of name to Link, in description order
+    guides, gears, rolling, drives, loads : tuples
+    assembly : Assembly
+    machine : Machine or None
+    study : Study
+
+    Raises
+    ------
+    InputError
+        Anything that is not a description, with its place and the repair.
+    """
+
+    if TYPE_CHECKING:
+
+        def __init__(self, **parts: Any) -> None: ...
+
+    @model_validator(mode="after")
+    def _checked_and_placed(self) -> Self:
+        problems = problems_of_parts(self)
+        if problems:
+            raise Problems(problems)
+        frame, guides = resolved(self)
+        # The only writes to a frozen description, before anybody has seen it.
+        object.__setattr__(self, "frame", frame)
+        object.__setattr__(self, "guides", guides)
+        return self

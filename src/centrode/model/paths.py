@@ -1,0 +1,130 @@
+"""Values of a mechanism by their paths: links.AC.length, frame.points.D.x, guides.C.through.y, drives.OA.speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.document import document
+from centrode.model.files import mechanism_from
+from centrode.model.mechanism import Mechanism
+from centrode.model.names import PLACED
+from centrode.model.problems import nearest, shown
+
+_AXES = {"x": 0, "y": 1}
+Spot = tuple[Any, Any]
+"""A table or list of the document, and the key or index in it."""
+
+
+def value_at(mechanism: Mechanism, path: str) -> float:
+    """Number [SI] at a path; raises InputError where there is none.
+
+    `guides.C.direction` is an angle however it is given; `links.K.points.C.x` is a local coordinate, and
+    (0, 0), (length, 0) where the link gives its length.
+    """
+    words = _words(mechanism, path)
+    if words[0] == "guides" and words[2:] == ["direction"]:
+        return mechanism.guide(words[1]).direction_angle
+    container, key = _spot(document(mechanism), words, path)
+    value = container.get(key) if isinstance(container, dict) else container[key]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        what = _("{path} is not a number here").format(path=path)
+        raise InputError("", what, _("give it a value first"))
+    return float(value)
+
+
+def with_value(mechanism: Mechanism, path: str, value: float | str) -> Mechanism:
+    """The mechanism with another number, or text with a unit, at a path.
+
+    What was `placed` stays where it is, unless it is what the path names (then it counts as given from
+    now on); `replace_placed` places anew. Raises InputError where there is no such path, or where the
+    value does not fit.
+    """
+    words = _words(mechanism, path)
+    tables = document(mechanism)
+    container, key = _spot(tables, words, path)
+    container[key] = value
+    return mechanism_from(tables)
+
+
+def _words(mechanism: Mechanism, path: str) -> list[str]:
+    """The path's parts; a name may itself hold dots, so known names are tried first."""
+    room, _dot, rest = path.partition(".")
+    names: dict[str, list[str]] = {
+        "links": list(mechanism.links),
+        "frame": ["points"],
+        "guides": [guide.id for guide in mechanism.guides],
+        "drives": [drive.id for drive in mechanism.drives],
+    }
+    if room not in names:
+        raise _unknown(path, room, list(names))
+    name, tail = _first(rest, names[room], path)
+    if tail.startswith("points.") or name == "points":
+        inner = tail.removeprefix("points.")
+        known = list(mechanism.frame.points if room == "frame" else mechanism.links[name].coordinates)
+        point, axis = _first(inner, known, path)
+        return [room, name, point, axis] if room == "frame" else [room, name, "points", point, axis]
+    return [room, name, *tail.split(".")] if tail else [room, name]
+
+
+def _first(rest: str, known: list[str], path: str) -> tuple[str, str]:
+    for name in sorted(known, key=len, reverse=True):
+        if rest == name or rest.startswith(name + "."):
+            return name, rest[len(name) + 1 :]
+    raise _unknown(path, rest.split(".")[0], known)
+
+
+def _unknown(path: str, word: str, known: list[str]) -> InputError:
+    what = _("there is no {word} in the path {path}").format(word=shown(word), path=shown(path))
+    return InputError("", what, nearest(word, known))
+
+
+_NUMBERS = {
+    "links": ("length", "angle", "mass", "inertia", "radius"),
+    "guides": ("direction", "angle", "radius"),
+    "drives": ("start", "speed"),
+}
+
+
+def _spot(tables: dict[str, Any], words: list[str], path: str) -> Spot:
+    room, name, *rest = words
+    if room == "frame":
+        return _coordinate(tables["frame"]["points"], rest, path)
+    if room == "links":
+        link = tables["links"][name]
+        if rest[:1] == ["points"]:
+            if not isinstance(link.get("points"), dict):
+                what = _("the points of link {name} have no coordinates of their own").format(name=name)
+                raise InputError("", what, f"links.{name}.length")
+            return _coordinate(link["points"], rest[1:], path)
+        return _coordinate(link, rest, path) if rest[:1] == ["centre"] else _number(link, room, rest, path)
+    entries = tables[room]
+    entry = next(entry for entry in entries if _identity(room, entry) == name)
+    if room == "guides" and rest[:1] == ["through"]:
+        return _coordinate(entry, rest, path)
+    return _number(entry, room, rest, path)
+
+
+def _identity(room: str, entry: dict[str, Any]) -> str:
+    if room == "guides":
+        return str(entry.get("name") or entry["point"])
+    return str(entry.get("link") or entry.get("guide") or "-".join(entry.get("distance", ())))
+
+
+def _number(table: dict[str, Any], room: str, rest: list[str], path: str) -> Spot:
+    if len(rest) != 1 or rest[0] not in _NUMBERS[room]:
+        raise _unknown(path, ".".join(rest), list(_NUMBERS[room]))
+    return table, rest[0]
+
+
+def _coordinate(table: dict[str, Any], rest: list[str], path: str) -> Spot:
+    """The list of a point's coordinates and the axis; a placed one becomes given."""
+    if len(rest) != 2 or rest[1] not in _AXES:
+        raise _unknown(path, ".".join(rest[1:]), list(_AXES))
+    name, axis = rest
+    if isinstance(table.get(name), dict):
+        table[name] = table[name][PLACED]
+    if not isinstance(table.get(name), list):
+        raise InputError("", _("{path} is not a number here").format(path=path), _("give coordinates"))
+    return table[name], _AXES[axis]

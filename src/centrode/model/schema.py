@@ -1,0 +1,173 @@
+"""JSON Schema of the description, for editors that complete and check TOML files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from centrode.model import limits
+from centrode.model.asked import Assembly, Display, Machine, Study
+from centrode.model.bodies import Frame, Link
+from centrode.model.description import Description
+from centrode.model.driving import Drive
+from centrode.model.loads import KINDS, Load
+from centrode.model.pairs import Gear, Guide, Rolling, Track
+from centrode.model.part import Part
+from centrode.model.units import KINDS as QUANTITIES
+
+Schema = dict[str, Any]
+
+
+def _quantity(kind: str) -> Schema:
+    """A number in SI, or a text with a unit."""
+    named = QUANTITIES[kind]
+    text = f"{named.name} in {named.unit}, or a text with a unit" if named.unit else named.name
+    bounded = {"type": "string", "maxLength": limits.QUANTITY_LENGTH}
+    return {"description": text, "anyOf": [{"type": "number"}, bounded]}
+
+
+def _above_zero(kind: str) -> Schema:
+    schema = _quantity(kind)
+    schema["anyOf"][0] = {"type": "number", "exclusiveMinimum": 0}
+    return schema
+
+
+def _list(item: Schema, least: int, most: int) -> Schema:
+    return {"type": "array", "items": item, "minItems": least, "maxItems": most}
+
+
+def _table(entry: Schema, most: int) -> Schema:
+    return {"type": "object", "additionalProperties": entry, "maxProperties": most}
+
+
+def _ref(part: type[Part]) -> Schema:
+    return {"$ref": f"#/$defs/{part.__name__}"}
+
+
+_NAME: Schema = {"type": "string", "minLength": 1, "maxLength": limits.NAME_LENGTH}
+_TEXT: Schema = {"type": "string", "maxLength": limits.TEXT_LENGTH}
+_NAMES = _list(_NAME, 2, 2)
+_COORDINATES = _list(_quantity("length"), 2, 3)
+_PAIR = _list(_quantity("ratio"), 2, 2)
+_PLACED: Schema = {
+    "type": "object",
+    "properties": {"placed": _COORDINATES},
+    "required": ["placed"],
+    "additionalProperties": False,
+}
+_POSITION: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED]}
+_THROUGH: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED, _NAME]}
+_DIRECTION: Schema = {"anyOf": [_PAIR, *_quantity("angle")["anyOf"]]}
+_AMOUNT: Schema = {
+    "anyOf": [{"type": "number"}, _TEXT],
+    "description": "a number in SI, a text with a unit, a formula",
+}
+_POINTS: Schema = {"anyOf": [_table(_COORDINATES, limits.POINTS), _list(_NAME, 1, 2)]}
+_SIDES: Schema = {"enum": ["left", "right", "ahead", "behind"]}
+
+PROPERTIES: dict[type[Part], Schema] = {
+    Display: {"length": _TEXT, "angle": _TEXT},
+    Frame: {"points": _table(_POSITION, limits.POINTS)},
+    Link: {
+        "points": _POINTS,
+        "length": _above_zero("length"),
+        "angle": _quantity("angle"),
+        "mass": _quantity("mass"),
+        "centre": {"anyOf": [_COORDINATES, _NAME]},
+        "inertia": _quantity("inertia"),
+        "shape": {"enum": ["rod", "disc"]},
+        "radius": _above_zero("length"),
+        "reference": _NAMES,
+    },
+    Guide: {
+        "point": _NAME,
+        "on": _NAME,
+        "through": _THROUGH,
+        "direction": _DIRECTION,
+        "link": _NAME,
+        "angle": _quantity("angle"),
+        "name": _NAME,
+        "pole": _THROUGH,
+        "radius": _above_zero("arc"),
+    },
+    Gear: {"links": _NAMES, "ratio": _quantity("ratio"), "carrier": _NAME},
+    Track: {
+        "through": _COORDINATES,
+        "direction": _DIRECTION,
+        "centre": _THROUGH,
+        "radius": _above_zero("length"),
+    },
+    Rolling: {
+        "link": _NAME,
+        "centre": _NAME,
+        "radius": _above_zero("length"),
+        "along": _ref(Track),
+        "on": _NAME,
+    },
+    Drive: {
+        "link": _NAME,
+        "guide": _NAME,
+        "distance": _NAMES,
+        "relative_to": _NAME,
+        "start": _AMOUNT,
+        "speed": _AMOUNT,
+        "law": {**_TEXT, "description": "a formula in t [s], such as 0.3*sin(2*t)"},
+        "table": {"anyOf": [_TEXT, _list(_list(_AMOUNT, 2, 2), 2, limits.TABLE_ROWS)]},
+    },
+    Assembly: {"sides": _table(_SIDES, limits.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
+    Load: {
+        "kind": {"enum": list(KINDS)},
+        "point": _NAME,
+        "link": _NAME,
+        "guide": _NAME,
+        "points": _NAMES,
+        "vector": _list(_AMOUNT, 2, 2),
+        "axes": _NAME,
+        "value": _AMOUNT,
+        "stiffness": _quantity("stiffness"),
+        "damping": _quantity("damping"),
+        "free_length": _quantity("length"),
+        "free_angle": _quantity("angle"),
+        "relative_to": _NAME,
+        "while_moving": _PAIR,
+    },
+    Machine: {"mean_speed": _quantity("angular speed"), "fluctuation": _above_zero("ratio")},
+    Study: {
+        "samples": {"type": "integer", "minimum": 1, "maximum": limits.SAMPLES},
+        "instants": _list(_AMOUNT, 0, limits.INSTANTS),
+        "from": _AMOUNT,
+        "to": _AMOUNT,
+    },
+    Description: {
+        "title": _TEXT,
+        "space": {"enum": ["plane", "sphere"]},
+        "gravity": _list(_quantity("acceleration"), 2, 2),
+        "display": _ref(Display),
+        "frame": _ref(Frame),
+        "links": _table(_ref(Link), limits.LINKS),
+        "guides": _list(_ref(Guide), 0, limits.GUIDES),
+        "gears": _list(_ref(Gear), 0, limits.LINKS),
+        "rolling": _list(_ref(Rolling), 0, limits.LINKS),
+        "drives": _list(_ref(Drive), 0, limits.DRIVES),
+        "assembly": _ref(Assembly),
+        "loads": _list(_ref(Load), 0, limits.LOADS),
+        "machine": _ref(Machine),
+        "study": _ref(Study),
+    },
+}
+"""Keys of every part as a file spells them; a test compares them with the parts themselves."""
+
+
+def mechanism_schema() -> Schema:
+    """JSON Schema (draft 2020-12) of a description's file; what parts say about each other is not in it."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "centrode mechanism",
+        **_object(Description),
+        "$defs": {part.__name__: _object(part) for part in PROPERTIES if part is not Description},
+    }
+
+
+def _object(part: type[Part]) -> Schema:
+    required = [key for key, name in part.keys().items() if part.model_fields[name].is_required()]
+    schema: Schema = {"type": "object", "properties": PROPERTIES[part], "additionalProperties": False}
+    return {**schema, "required": required} if required else schema

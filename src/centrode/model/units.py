@@ -1,0 +1,192 @@
+"""Numbers and texts with a unit, read into SI: "28.6 deg", "0.5 mm", "65 rpm", "pi/2 rad"."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import lazy_loader
+
+from centrode.algebra.text import SCALARS, compile_formula
+from centrode.errors import InputError
+from centrode.locale import _, mark
+from centrode.model import limits
+from centrode.model.problems import shown
+
+# Costs three times the import of NumPy: asked for by the first unit that is not in COMMON.
+_pint = functools.partial(lazy_loader.load, "pint")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of quantity: its name in a sentence, SI unit, an example, other SI units that also fit."""
+
+    name: str
+    unit: str
+    example: str
+    also: tuple[str, ...] = ()
+
+
+KINDS = {
+    "length": Kind(mark("a length"), "m", "5 mm"),
+    "angle": Kind(mark("an angle"), "rad", "28.6 deg"),
+    "arc": Kind(mark("an arc"), "rad", "30 deg"),
+    "time": Kind(mark("a time"), "s", "20 ms"),
+    "speed": Kind(mark("a speed"), "m/s", "20 mm/s"),
+    "angular speed": Kind(mark("an angular speed"), "rad/s", "65 rpm"),
+    "acceleration": Kind(mark("an acceleration"), "m/s^2", "9.81 m/s^2"),
+    "mass": Kind(mark("a mass"), "kg", "90 g"),
+    "inertia": Kind(mark("a moment of inertia"), "kg*m^2", "450 kg*mm^2"),
+    "force": Kind(mark("a force"), "N", "9 kN"),
+    "torque": Kind(mark("a torque"), "N*m", "3 N*mm"),
+    "stiffness": Kind(mark("a stiffness"), "N/m", "2 N/mm"),
+    "damping": Kind(mark("a damping"), "N*s/m", "2 N*s/mm"),
+    "angular stiffness": Kind(mark("an angular stiffness"), "N*m/rad", "2 N*m/deg", ("N*m",)),
+    "angular damping": Kind(mark("an angular damping"), "N*m*s/rad", "2 N*mm*s/rad", ("N*m*s",)),
+    "ratio": Kind(mark("a number"), "", "-40/20"),
+}
+
+COMMON: dict[str, dict[str, float]] = {
+    "m": {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3},
+    "rad": {"rad": 1.0, "deg": math.pi / 180, "°": math.pi / 180, "turn": 2 * math.pi},
+    "s": {"s": 1.0, "ms": 1e-3, "min": 60.0},
+    "m/s": {"m/s": 1.0, "mm/s": 1e-3},
+    "rad/s": {"rad/s": 1.0, "deg/s": math.pi / 180, "rpm": math.pi / 30},
+    "1/s": {"Hz": 1.0},
+    "kg": {"kg": 1.0, "g": 1e-3},
+    "N": {"N": 1.0, "kN": 1e3},
+    "N*m": {"N*m": 1.0},
+}
+"""SI unit -> unit -> factor, of the units nearly every file uses; a test compares them with pint's."""
+
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+_FACTOR = r"[^\W\d]+(?:(?:\^|\*\*)-?\d)?"
+_UNIT = re.compile(rf"°|%|{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
+
+
+def to_si(value: object, kind: str) -> float:
+    """Value in SI of a number (already SI) or of a text with a unit.
+
+    Raises
+    ------
+    InputError
+        Not a number, not finite, or a unit of another kind; without a place, which the caller knows.
+    """
+    if isinstance(value, str):
+        return _text_to_si(value, kind)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise _wrong(value, kind)
+    try:
+        return _finite(float(value), value)
+    except OverflowError:
+        raise _wrong(value, kind) from None
+
+
+def unit_factor(unit: str, kind: str) -> float:
+    """SI value of one `unit` of a kind; raises InputError for an unknown unit or one of another kind."""
+    unit = unit.strip()
+    if len(unit) > limits.UNIT_LENGTH or not _UNIT.fullmatch(unit):
+        raise InputError("", _("{unit} is not a unit").format(unit=shown(unit)), _example(kind))
+    accepted = (KINDS[kind].unit, *KINDS[kind].also)
+    for si, units in COMMON.items():
+        if unit in units:
+            if si in accepted:
+                return units[unit]
+            raise _other_kind(unit, kind, frequency=si == "1/s")
+    return _pint_factor(unit, kind, accepted)
+
+
+def _text_to_si(text: str, kind: str) -> float:
+    if len(text) > limits.QUANTITY_LENGTH:
+        what = _("expected {kind}, got a text of {count} characters")
+        raise InputError("", what.format(kind=_(KINDS[kind].name), count=len(text)), _example(kind))
+    number, unit = _split(text, kind)
+    if not unit:
+        return _finite(number, text)
+    try:
+        factor = unit_factor(unit, kind)
+    except InputError as error:
+        raise InputError("", _wrong(text, kind).what, error.repair) from None
+    return _finite(_scaled(number, factor), text)
+
+
+def _split(text: str, kind: str) -> tuple[float, str]:
+    """Number and unit of a text: the shortest formula from the left with a unit, or nothing, behind."""
+    simple = _NUMBER.fullmatch(text.strip())
+    if simple and (not simple.group(2) or _UNIT.fullmatch(simple.group(2))):
+        return float(simple.group(1)), simple.group(2)
+    words = text.split()
+    for count in range(1, len(words) + 1):
+        unit = " ".join(words[count:])
+        if unit and not _UNIT.fullmatch(unit):
+            continue
+        try:
+            return float(compile_formula(" ".join(words[:count]), (), "")(SCALARS)), unit
+        except (InputError, ArithmeticError, ValueError):
+            continue
+    raise _wrong(text, kind)
+
+
+def _scaled(value: float, factor: float) -> float:
+    """Value times factor; a whole fraction (mm: 1/1000) divides, so that "850 mm" is 0.85 to the last bit."""
+    inverse = round(1 / factor) if 0 < factor < 1 else 0
+    return value / inverse if inverse and abs(inverse * factor - 1) < 1e-15 else value * factor
+
+
+def _finite(value: float, given: object) -> float:
+    if not math.isfinite(value):
+        raise InputError("", _("expected a finite number, got {value}").format(value=shown(given)))
+    return value
+
+
+def _example(kind: str) -> str:
+    named = KINDS[kind]
+    if not named.unit:
+        return _("write a number without a unit")
+    return _('write a number in {unit}, or a text with a unit such as "{example}"').format(
+        unit=named.unit, example=named.example
+    )
+
+
+def _wrong(value: object, kind: str) -> InputError:
+    named = KINDS[kind]
+    if not named.unit:
+        return InputError("", _("expected a number, got {value}").format(value=shown(value)), _example(kind))
+    what = _("expected {kind} ({unit}), got {value}")
+    return InputError(
+        "", what.format(kind=_(named.name), unit=named.unit, value=shown(value)), _example(kind)
+    )
+
+
+def _other_kind(unit: str, kind: str, frequency: bool = False) -> InputError:
+    if frequency and kind == "angular speed":
+        repair = _("{unit} does not tell turns from radians: write rpm or rad/s").format(unit=unit)
+        return InputError("", _wrong(unit, kind).what, repair)
+    return _wrong(unit, kind)
+
+
+def _pint_factor(unit: str, kind: str, accepted: tuple[str, ...]) -> float:
+    registry = _registry()
+    try:
+        factor, base = registry.get_base_units(registry.parse_units(unit.replace("·", "*")))
+        for si in accepted:
+            own, own_base = registry.get_base_units(registry.parse_units(si))
+            if base == own_base:
+                return float(factor / own)
+        frequency = base == registry.get_base_units("1/s")[1]
+    except (_pint().errors.PintError, AttributeError, ValueError, ArithmeticError, TypeError):
+        what = _("{unit} is not a known unit").format(unit=shown(unit))
+        raise InputError("", what, what + ", " + _example(kind)) from None
+    raise _other_kind(unit, kind, frequency)
+
+
+@functools.cache
+def _registry() -> Any:
+    """The one registry, with pint's cache on disk; without it where the home folder cannot be written."""
+    try:
+        return _pint().UnitRegistry(cache_folder=":auto:")
+    except OSError:
+        return _pint().UnitRegistry()

@@ -1,0 +1,420 @@
+"""Descriptions in files: everything of the grammar comes back exactly, and bad files are told plainly."""
+
+import math
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from centrode.errors import InputError
+from centrode.model import limits
+from centrode.model.files import mechanism_from, mechanism_text, parse_mechanism, read_mechanism
+from centrode.model.mechanism import Mechanism, Placed
+
+from .conftest import FOUR_BAR, FULL, SPHERE
+
+Complaint = Callable[[str], str]
+NUMBER = st.floats(-1e6, 1e6, allow_nan=False)
+LENGTH = st.floats(1e-6, 1e6)
+"""Lengths of six decades either way."""
+
+
+@pytest.mark.parametrize("text", [FULL, SPHERE, FOUR_BAR])
+def test_round_trip_of_the_whole_grammar(text: str) -> None:
+    mechanism = parse_mechanism(text)
+    again = mechanism_text(mechanism)
+    assert parse_mechanism(again) == mechanism
+    assert mechanism_text(parse_mechanism(again)) == again
+    assert list(parse_mechanism(again).links) == list(mechanism.links)
+
+
+def test_values_of_the_grammar() -> None:
+    m = parse_mechanism(FULL)
+    assert m.links["OA"].points == ("O", "A")
+    assert m.links["CH"].length == 0.85
+    assert m.links["rocker"].coordinates == {"C": (0, 0), "B": (0.85, 0), "D": (1.7, 0)}
+    assert m.guide("way").unit == pytest.approx((math.sqrt(3) / 2, 0.5))
+    assert m.gears[0].ratio == -2.0
+    assert m.drives[0].start == pytest.approx(math.pi / 2)
+    assert m.drives[2].table == ((0, 0), (0.5, 0.1), (1.5, 0.2))
+    assert [drive.id for drive in m.drives] == ["OA", "A-H", "C"]
+    assert [drive.kind for drive in m.drives] == ["angle", "distance", "displacement"]
+    assert m.loads[0].vector == (-9000.0, 1000.0)
+    assert m.loads[1].value == "-0.1*v*abs(v)"
+    assert m.loads[2].stiffness == 2000.0
+    assert m.study.instants == (math.radians(99.1), 2.0)
+    assert m.study.stop == 2 * math.pi
+    assert m.points == ("O", "D", "A", "C", "B", "H", "A’")
+    assert m.moving_points == ("A", "C", "B", "H", "A’")
+
+
+def test_sphere_measures_in_arcs() -> None:
+    m = parse_mechanism(SPHERE)
+    assert m.links["AB"].length == math.radians(15)
+    assert m.frame.coordinates == {"A": (0, 0), "D": (math.pi / 2, 0), "E": (0, math.pi / 2)}
+    assert m.guides[0].pole == "D"
+
+
+def test_sphere_and_plane_do_not_mix(complaint: Complaint) -> None:
+    assert "expected an arc (rad)" in complaint(SPHERE.replace("15 deg", "15 mm"))
+    assert '"pole" is missing' in complaint(SPHERE.replace('pole = "D"', ""))
+    assert "unit vector" in complaint(SPHERE.replace("[1, 0, 0]", "[1, 1, 0]"))
+    assert "through belongs to the plane" in complaint(
+        SPHERE.replace('pole = "D"', 'pole = "D"\nthrough = [0, 0]')
+    )
+    assert "expected a length" in complaint(FOUR_BAR.replace("3.5", '"30 deg"'))
+
+
+@st.composite
+def mechanisms(draw: st.DrawFn) -> Mechanism:
+    """Chains of random links with random extras."""
+    count = draw(st.integers(1, 5))
+    names = ["P0", *(f"P{i}" for i in range(1, count + 1))]
+    links: dict[str, dict[str, object]] = {}
+    for i in range(count):
+        link: dict[str, object] = {"length": draw(LENGTH)}
+        if draw(st.booleans()):
+            link = {"points": {names[i]: (0, 0), names[i + 1]: (draw(NUMBER), draw(NUMBER))}}
+        link["angle"] = draw(NUMBER)
+        if draw(st.booleans()):
+            link |= {"mass": draw(LENGTH), "centre": (draw(NUMBER), draw(NUMBER))}
+        links[f"{names[i]}{names[i + 1]}"] = link
+    guides = [
+        {"point": names[-1], "through": draw(st.sampled_from(["placed", (1, 2)])), "direction": draw(NUMBER)}
+    ]
+    drives = [{"link": next(iter(links)), "start": draw(NUMBER), "speed": draw(NUMBER)}]
+    return Mechanism(
+        title=draw(st.text(st.characters(categories=["L", "P", "Zs"]), max_size=20)),
+        frame={"points": {"P0": (draw(NUMBER), draw(NUMBER)), "F": draw(st.sampled_from(["placed", (0, 0)]))}}
+        if draw(st.booleans())
+        else {"points": {"P0": (0, 0)}},
+        links=links if draw(st.booleans()) else dict(reversed(links.items())),
+        guides=guides,
+        drives=drives,
+    )
+
+
+@given(st.data())
+def test_round_trip_of_random_mechanisms(data: st.DataObject) -> None:
+    try:
+        mechanism = data.draw(mechanisms())
+    except InputError as error:
+        assert "cannot be placed" in str(error)
+        return
+    again = parse_mechanism(mechanism_text(mechanism))
+    assert again == mechanism
+    assert list(again.links) == list(mechanism.links)
+    assert hash(again) == hash(mechanism)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("length = 3.5", "length = -0.85", "press.toml, [links.AB]: length must be positive, got -0.85"),
+        ("length = 3.5", "length = 0", "press.toml, [links.AB]: length must be positive, got 0"),
+        (
+            "length = 3.5",
+            "lenght = 3.5",
+            'press.toml, [links.AB]: unknown key "lenght"; did you mean "length"?',
+        ),
+        (
+            "length = 3.5",
+            'length = "0.5 kg"',
+            'press.toml, [links.AB] length: expected a length (m), got "0.5 kg"',
+        ),
+        ("length = 3.5", "length = nan", "press.toml, [links.AB] length: expected a finite number, got nan"),
+        ("length = 3.5", "length = inf", "press.toml, [links.AB] length: expected a finite number, got inf"),
+        ("length = 3.5", "length = 1e200", "press.toml, [links.AB] length: 1e+200 is beyond"),
+        ("length = 3.5", "length = 1e-200", "press.toml, [links.AB] length: 1e-200 is beyond"),
+        ("length = 3.5", "length = true", "[links.AB] length: expected a length (m), got true"),
+        ("length = 3.5", "length = [1]", "[links.AB] length: expected a length (m), got a list of 1 value"),
+        (
+            "length = 3.5",
+            "length = 1979-05-27",
+            "[links.AB] length: expected a length (m), got a value of another",
+        ),
+        (
+            "length = 3.5",
+            "angle = 1",
+            "press.toml, [links.AB]: length is missing; give the distance of A and B",
+        ),
+        ("length = 3.5", 'points = ["A", "B"]', "press.toml, [links.AB]: length is missing"),
+        ("length = 3.5", 'points = ["A", "B", "C"]', "three or more points need coordinates"),
+        ("length = 3.5", 'points = ["A", "A"]\nlength = 1', "a point is named twice"),
+        ("length = 3.5", 'points = ["A"]\nlength = 1', "a link of one point has no length"),
+        ("length = 3.5", "points = {}", "the link has no points"),
+        (
+            "length = 3.5",
+            "points = { A = [0] }",
+            "press.toml, [links.AB.points] A: expected [x, y], got a list of 1",
+        ),
+        ("length = 3.5", "points = 3", 'expected names ["A", "B"] or coordinates { A = [x, y] }, got 3'),
+        ("length = 3.5", "points = { A = [0, 0], B = [1, 0] }\nlength = 1", "has no length of its own"),
+        ("length = 3.5", 'length = 1\ncentre = "Z"', "press.toml, [links.AB] centre: AB has no point"),
+        (
+            "length = 3.5",
+            'length = 1\nshape = "rods"',
+            '[links.AB] shape: expected one of "rod", "disc", got "rods"',
+        ),
+        ("length = 3.5", "length = 1\nmass = -1", "[links.AB]: mass must not be negative, got -1"),
+        ("[links.AB]", "[links.coupler]", "press.toml, [links.coupler]: points are missing"),
+        ("[links.AB]", "[links.frame]", '"frame" is the fixed link'),
+        ("[links.AB]", '[links."A/B"]', "characters a name may not have"),
+        ("[links.AB]", '[links."A\\nB"]', "characters a name may not have"),
+        ("[links.AB]", '[links.".AB"]', "characters a name may not have"),
+        ("[links.AB]", '[links."A,B"]', "characters a name may not have"),
+        ("[links.AB]", "[links.'A\"B']", "characters a name may not have"),
+        ("[links.AB]", "[links." + "A" * 41 + "]", "a name has at most 40 characters, got 41"),
+        ("[links.AB]", '[links.""]', "is not a name"),
+        ("O = [0, 0]", 'O = "plcaed"', 'press.toml, [frame.points] O: expected coordinates or "placed"'),
+        (
+            "O = [0, 0]",
+            "O = [0, 0, 0]",
+            "press.toml, [frame.points] O: expected [x, y], got a list of 3 values",
+        ),
+        ("O = [0, 0]", 'O = ["1 m", "1 kg"]', "[frame.points] O: expected a length (m)"),
+        ("O = [0, 0]", "placed = [0, 0]", '"placed" cannot be a name'),
+        (
+            'link = "OA"',
+            'link = "AO"',
+            'press.toml, [[drives]] 1, link: unknown link "AO"; did you mean "OA"?',
+        ),
+        ('link = "OA"', 'guide = "B"', 'press.toml, [[drives]] 1, guide: unknown guide "B"'),
+        ('link = "OA"', 'distance = ["A", "Z"]', 'press.toml, [[drives]] 1, distance: unknown point "Z"'),
+        ('link = "OA"', 'distance = ["A", "A"]', "two different points are needed"),
+        ('link = "OA"', "", "press.toml, [[drives]] 1: one of link, guide, distance is missing"),
+        ('link = "OA"', 'link = "OA"\nguide = "B"', "[[drives]] 1: link, guide are given together; keep one"),
+        ("speed = 1", "", "press.toml, [[drives]] 1: one of speed, law, table is missing"),
+        ("speed = 1", "speed = 1\nlaw = 't'", "[[drives]] 1: speed, law are given together"),
+        ("speed = 1", 'speed = "3 Hz"', "write rpm or rad/s"),
+        (
+            "speed = 1",
+            'law = "2*q"',
+            'press.toml, [[drives]] 1, law: unknown name "q", at character 3 of "2*q"',
+        ),
+        ("speed = 1", "table = [[0, 0]]", "press.toml, [[drives]] 1, table: a table needs at least two rows"),
+        ("speed = 1", "table = [[0, 0], [0, 1]]", "row 2 does not"),
+        ("speed = 1", "table = [[0, 0], [1]]", "expected [time, value]"),
+        ("speed = 1", 'table = "none.csv"', '[[drives]] 1, table: "none.csv": there is no such file'),
+        ("speed = 1", 'table = "../../etc/passwd"', "does not lie beside the description"),
+        ("speed = 1", 'table = "/etc/passwd"', "does not lie beside the description"),
+        ("speed = 1", 'speed = 1\nrelative_to = "OA"', "a link cannot be driven relative to itself"),
+        ("[[drives]]", "[drives]", "press.toml, drives: expected a list, got a table"),
+        (
+            "[frame.points]",
+            "[frame.point]",
+            'press.toml, [frame]: unknown key "point"; did you mean "points"?',
+        ),
+    ],
+)
+def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, message: str) -> None:
+    told = complaint(FOUR_BAR.replace(old, new, 1))
+    assert message in told
+    assert told.startswith("press.toml")
+    assert "pydantic" not in told
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", 'press.toml: "links" is missing'),
+        ("links = {}", "there are no links"),
+        ("x = ", "press.toml, line 1, column 5: not TOML: Invalid value"),
+        ("a = 1\n[links\n", "press.toml, line 2, column 7: not TOML"),
+        ('a = "', "press.toml, line 1, column 6: not TOML"),
+        ("a = " + "[" * 20_000, "press.toml: the text nests too deeply"),
+        ("a = " + "[" * 20 + "]" * 20, "press.toml: the text nests too deeply"),
+        ("a = " + "{a=" * 5000, "press.toml: the text nests too deeply"),
+        (".".join("a" * 100_000) + " = 1", "press.toml: the text nests too deeply"),
+        ("[" + ".".join(["'a'"] * 50_000) + "]", "press.toml: the text nests too deeply"),
+        ("a = 2000-13-45", "not TOML"),
+        ("a = " + "9" * 5000, "press.toml: not TOML"),
+        ("x" * (limits.FILE_SIZE + 1), "press.toml: the text has 1000001 characters"),
+        (
+            FOUR_BAR + "[study]\nsamples = 1000000000",
+            "[study]: samples must lie between 1 and 1000000, got 1000000000",
+        ),
+        (FOUR_BAR + "[study]\nsamples = 0", "samples must lie between"),
+        (FOUR_BAR + "[study]\nsamples = 3.5", "samples must be a whole number, got 3.5"),
+        (FOUR_BAR + '[study]\ninstants = ["3 mm"]', "[study] instants: expected an angle (rad)"),
+        (FOUR_BAR + '[display]\nlength = "kg"', "press.toml, [display] length: expected a length (m)"),
+        (FOUR_BAR + '[assembly]\nsides = { B = "up" }', '[assembly.sides] B: expected one of "left"'),
+        (FOUR_BAR + '[assembly]\nsides = { Z = "left" }', "unknown point, link or guide"),
+        (FOUR_BAR + '[[loads]]\nkind = "push"', "[[loads]] 1, kind: expected one of"),
+        (FOUR_BAR + '[[loads]]\nkind = "force"\npoint = "A"', '[[loads]] 1: "vector" is missing'),
+        (
+            FOUR_BAR + '[[loads]]\nkind = "force"\npoint = "A"\nvector = [0, "2*z"]',
+            'expected a force (N), got "2*z" (as a formula: unknown name "z", at character 3',
+        ),
+        (FOUR_BAR + '[[loads]]\nkind = "torque"\nlink = "OA"\nvalue = "3 N"', "expected a torque"),
+        (
+            FOUR_BAR + '[[loads]]\nkind = "force"\npoint = "A"\nvector = [0, 1]\nstiffness = 3',
+            "does not belong to a force",
+        ),
+        (
+            FOUR_BAR + '[[loads]]\nkind = "weight"\nlink = "OA"\npoint = "A"',
+            "a weight acts on one of: link, point",
+        ),
+        (FOUR_BAR + '[[gears]]\nlinks = ["OA", "OA"]\nratio = 2', "a gear needs two links"),
+        (FOUR_BAR + '[[gears]]\nlinks = ["OA", "AB"]\nratio = 0', "[[gears]] 1: ratio must not be zero"),
+        (FOUR_BAR + '[[guides]]\npoint = "B"\nthrough = [0, 0]', '[[guides]] 1: "direction" is missing'),
+        (
+            FOUR_BAR + '[[guides]]\npoint = "B"\nthrough = "Z"\ndirection = 0',
+            "[[guides]] 1, through: frame has no point",
+        ),
+        (
+            FOUR_BAR + '[[guides]]\npoint = "B"\non = "BD"\nthrough = [0, 0]\ndirection = 0',
+            "[[guides]] 1, on: unknown link",
+        ),
+        (
+            FOUR_BAR + '[[guides]]\npoint = "B"\nthrough = [0, 0]\ndirection = [0, 0]',
+            "a direction is not zero",
+        ),
+        (
+            FOUR_BAR + '[[guides]]\npoint = "B"\nthrough = [0, 0]\ndirection = 0\nlink = "OA"',
+            'link OA does not contain the guided point "B"',
+        ),
+        (
+            FOUR_BAR + '[[guides]]\npoint = "B"\non = "AB"\nthrough = [0, 0]\ndirection = 0',
+            "is a point of AB already",
+        ),
+        (
+            FOUR_BAR + '[[guides]]\npoint = "B"\nthrough = [0, 0]\ndirection = 0\n' * 2,
+            'there are two guides "B"',
+        ),
+        (FOUR_BAR + '[[drives]]\nlink = "OA"\nspeed = 1', '"OA" is driven twice'),
+        (FOUR_BAR + "[links.EF]\nlength = 1", "[links.EF]: EF: nothing connects this to the frame; hinge it"),
+        (
+            FOUR_BAR
+            + '[[guides]]\npoint = "Z"\non = "EF"\nthrough = [0, 0]\ndirection = 0\n[links.EF]\nlength = 1',
+            "nothing",
+        ),
+        ('title = "a\\u001bb"\n' + FOUR_BAR, "press.toml, title: "),
+        ('title = "' + "a" * 1001 + '"\n' + FOUR_BAR, "a text has at most 1000 characters, got 1001"),
+        ('space = "plain"\n' + FOUR_BAR, '"sphere", got "plain"; did you mean "plane"?'),
+        ("gravity = 9.81\n" + FOUR_BAR, "press.toml, gravity: expected [x, y], got 9.81"),
+        ("links = 3", "press.toml, links: expected a table, got 3"),
+        ("links = { OA = 3 }", "press.toml, [links.OA]: expected a table, got 3"),
+        ("guides = [3]\n" + FOUR_BAR, "press.toml, [[guides]] 1: expected a table, got 3"),
+    ],
+)
+def test_bad_texts_are_told(complaint: Complaint, text: str, message: str) -> None:
+    assert message in complaint(text)
+
+
+def test_first_problems_of_a_file_are_told_together(complaint: Complaint) -> None:
+    told = complaint("\n".join(f"[links.L{i}]\nlength = -1" for i in range(9))).splitlines()
+    assert len(told) == limits.PROBLEMS_SHOWN + 1
+    assert told[-1] == "and 4 more problems"
+
+
+def test_too_many_links_are_refused(complaint: Complaint) -> None:
+    assert "at most 500 entries" in complaint("\n".join(f"[links.L{i}]\nlength = 1" for i in range(501)))
+
+
+def test_missing_file_folder_pipe_and_binary(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"none.toml: there is no such file; check the path"):
+        read_mechanism(tmp_path / "none.toml")
+    with pytest.raises(InputError, match="this is not a file"):
+        read_mechanism(tmp_path)
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match=r"binary.toml: the file is not text in UTF-8 \(byte 0\)"):
+        read_mechanism(tmp_path / "binary.toml")
+    with pytest.raises(InputError, match="cannot be read"):
+        read_mechanism("a\0b")
+    with pytest.raises(InputError, match="cannot be read"):
+        read_mechanism("a" * 5000)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes here")
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="this is not a file"):
+        read_mechanism(tmp_path / "pipe")
+
+
+def test_a_huge_file_is_refused_unread(tmp_path: Path) -> None:
+    with (tmp_path / "huge.toml").open("wb") as stream:
+        stream.truncate(100_000_000)
+    started = time.perf_counter()
+    with pytest.raises(
+        InputError, match=r"huge.toml: the file has 100000000 bytes, at most 1000000 are allowed"
+    ):
+        read_mechanism(tmp_path / "huge.toml")
+    assert time.perf_counter() - started < 0.1  # reading it alone takes longer
+
+
+def test_tables_of_drives_lie_beside_the_file(tmp_path: Path) -> None:
+    (tmp_path / "press.toml").write_text(
+        FOUR_BAR.replace("speed = 1", 'table = "crank.csv"'), encoding="utf-8-sig"
+    )
+    (tmp_path / "crank.csv").write_text("time [ms],angle [deg]\n0,0\n\n500,90\n1000,360\n", encoding="utf-8")
+    mechanism = read_mechanism(tmp_path / "press.toml")
+    rows = mechanism.drives[0].table or ()
+    assert [time for time, _ in rows] == [0, 0.5, 1]
+    assert [value for _, value in rows] == pytest.approx([0, math.pi / 2, 2 * math.pi], rel=4e-16)
+    assert parse_mechanism(mechanism_text(mechanism)) == mechanism
+    (tmp_path / "crank.csv").write_text("0,0\n1,x\n", encoding="utf-8")
+    with pytest.raises(
+        InputError, match=r'press.toml, \[\[drives\]\] 1, table: row 2 of "crank.csv": expected an angle'
+    ):
+        read_mechanism(tmp_path / "press.toml")
+    (tmp_path / "crank.csv").write_text("0,0\n1,2,3\n", encoding="utf-8")
+    with pytest.raises(InputError, match="has 3 values"):
+        read_mechanism(tmp_path / "press.toml")
+    (tmp_path / "crank.csv").write_text("t [kg],angle\n0,0\n1,2\n", encoding="utf-8")
+    with pytest.raises(InputError, match="expected a time"):
+        read_mechanism(tmp_path / "press.toml")
+
+
+def test_placed_is_written_with_its_place() -> None:
+    mechanism = parse_mechanism(FULL)
+    assert isinstance(mechanism.frame.points["D"], Placed)
+    assert "placed = [" in mechanism_text(mechanism)
+
+
+def test_names_are_composed(complaint: Complaint) -> None:
+    text = '[frame.points]\nO = [0, 0]\n[links."И\u0306"]\npoints = ["O", "E\u0301"]\nlength = 1\n'
+    mechanism = parse_mechanism(text)
+    assert mechanism.link_names == ("Й",)
+    assert mechanism.moving_points == ("É",)
+    assert "is named twice" in complaint(text + '[links."Й"]\npoints = ["O"]\n')
+
+
+def test_mechanism_from_plain_data() -> None:
+    with pytest.raises(InputError, match=r"^sent, \[links.OA\]: length must be positive, got -1$"):
+        mechanism_from({"links": {"OA": {"length": -1}}}, "sent")
+
+
+@given(st.data())
+def test_mutated_files_are_read_or_told(data: st.DataObject) -> None:
+    text = data.draw(st.sampled_from([FULL, SPHERE, FOUR_BAR]))
+    for _ in range(data.draw(st.integers(1, 4))):
+        start = data.draw(st.integers(0, len(text)))
+        stop = start + data.draw(st.integers(0, 12))
+        other = data.draw(
+            st.sampled_from(["", '"', "]", "[", "=", "nan", "-", "1e400", "\n", "{}", "true", '"x y"', "A"])
+        )
+        text = text[:start] + other + text[stop:]
+    try:
+        mechanism = parse_mechanism(text, "press.toml")
+    except InputError as error:
+        assert str(error).startswith("press.toml")
+        return
+    assert parse_mechanism(mechanism_text(mechanism)) == mechanism
+
+
+@pytest.mark.parametrize(
+    "piece", ["a", "a.", '"', "a . ", "a.a.a.a.a.a.a.a=1\n", "[[guides]]\n", "a='a'\n", "[", "{a="]
+)
+def test_hostile_texts_are_refused_soon(piece: str) -> None:
+    started = time.perf_counter()
+    with pytest.raises(InputError):
+        parse_mechanism(piece * (200_000 // len(piece)))
+    assert (
+        time.perf_counter() - started < 5
+    )  # linear readers take a tenth of a second, quadratic ones minutes
