@@ -1,0 +1,55 @@
+"""Presentations of results: tables, drawings and figures. They read results and compute nothing.
+
+Everything is loaded when first used, so that a run without figures imports no matplotlib.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import lazy_loader
+
+from centrode.errors import InputError
+from centrode.locale import _
+
+if TYPE_CHECKING:
+    from centrode.present.drawing import draw_mechanism
+    from centrode.present.figures import motion_figures
+    from centrode.present.saving import save_figures
+    from centrode.present.scene import scene_of
+    from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
+
+__all__ = [
+    "draw_mechanism",
+    "motion_figures",
+    "motion_table",
+    "save_figures",
+    "scene_of",
+    "write_motion_csv",
+    "write_motion_netcdf",
+]
+
+_attached, __dir__, _names = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "drawing": ["draw_mechanism"],
+        "figures": ["motion_figures"],
+        "saving": ["save_figures"],
+        "scene": ["scene_of"],
+        "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
+    },
+)
+
+
+def __getattr__(name: str) -> Any:
+    """Load a presentation when it is first asked for; a missing matplotlib is told with its repair."""
+    try:
+        return _attached(name)
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").partition(".")[0] != "matplotlib":
+            raise
+        raise InputError(
+            "",
+            _("figures need matplotlib, which is not installed"),
+            _('install it with pip install "centrode[figures]", or pass --no-figures'),
+        ) from missing

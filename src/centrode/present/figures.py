@@ -1,0 +1,85 @@
+"""The figures of a planar motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
+
+from centrode.locale import _
+from centrode.present.abscissa import Abscissa, main_abscissa, over_drive
+from centrode.present.curves import sheet
+from centrode.present.panels import Motion, Rows, of_coefficients, of_guides, of_links, of_points
+from centrode.present.pictures import mechanism_figure, paths_figure
+from centrode.present.scene import scene_of
+from centrode.present.style import house_style, pens
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+
+
+def motion_figures(
+    mechanism: Mechanism, dataset: xarray.Dataset, instants: Sequence[float] = ()
+) -> dict[str, Figure]:
+    """Figures of a planar motion, by name.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The description, with every "placed" resolved.
+    dataset : Dataset
+        Its motion, without batch dimensions.
+    instants : sequence of float [rad or m; s with several drives]
+        Values of the drive at which the mechanism is drawn, each at the nearest sample; left out, it is drawn in
+        the initial position over fading pictures of others.
+
+    Returns
+    -------
+    dict of name -> Figure
+        "mechanism", "paths", "angles", "angular-velocities", "angular-accelerations", "velocities",
+        "accelerations", "slides", "kinematic-coefficients": those that have something to show.
+    """
+    with house_style():
+        scene = scene_of(mechanism, dataset)
+        kept = {
+            "link": pens(mechanism.link_names),
+            "point": pens(mechanism.moving_points),
+            "guide": pens(guide.id for guide in mechanism.guides),
+        }
+        motion = Motion(mechanism, dataset, scene, main_abscissa(mechanism, dataset), kept)
+        figures = {
+            "mechanism": mechanism_figure(scene, dataset, instants),
+            "paths": paths_figure(scene, dataset, motion.abscissa, kept["point"]),
+        }
+        for name, (title, rows, abscissa) in sheets(motion).items():
+            if any(panel.curves for row in rows for panel in row):
+                figures[name] = sheet(title, mechanism.title, rows, abscissa)
+    return figures
+
+
+def sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:
+    """Title, panels and abscissa of every figure of curves."""
+    main = motion.abscissa
+    found = {
+        "angles": (_("Angles of the links"), of_links(motion, "angle"), main),
+        "angular-velocities": (
+            _("Angular velocities of the links"),
+            of_links(motion, "angular_velocity"),
+            main,
+        ),
+        "angular-accelerations": (
+            _("Angular accelerations of the links"),
+            of_links(motion, "angular_acceleration"),
+            main,
+        ),
+        "velocities": (_("Velocities of the points"), of_points(motion, "velocity"), main),
+        "accelerations": (_("Accelerations of the points"), of_points(motion, "acceleration"), main),
+        "slides": (_("Motion along the guides"), of_guides(motion), main),
+    }
+    if len(motion.mechanism.drives) == 1 and "velocity_coefficient" in motion.dataset:
+        over = over_drive(motion.mechanism, motion.dataset)
+        found["kinematic-coefficients"] = (_("Kinematic coefficients"), of_coefficients(motion), over)
+    return found

@@ -1,0 +1,125 @@
+"""From a motion to the panels of its figures: which curves stand together, with which texts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from centrode.present.abscissa import Abscissa
+from centrode.present.curves import Panel
+from centrode.present.scene import Scene
+from centrode.present.shown import formula, labelled, shown_as
+from centrode.present.style import Pen, in_panels
+from centrode.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+Rows = list[list[Panel]]
+COMPONENTS = ("x", "y")
+MAGNITUDE = "magnitude"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion and what its figures share: a pen for each link, point and guide, and the abscissa."""
+
+    mechanism: Mechanism
+    dataset: xarray.Dataset
+    scene: Scene
+    abscissa: Abscissa
+    pens: Mapping[str, Mapping[str, Pen]]
+
+
+def of_links(motion: Motion, variable: str) -> Rows:
+    """One panel below another, with as many links each as can be told apart."""
+    return [[panel(motion, variable, "link", names)] for names in in_panels(turning_links(motion.mechanism))]
+
+
+def of_points(motion: Motion, variable: str) -> Rows:
+    """Components and magnitude below each other; further points in further columns."""
+    groups = in_panels(motion.pens["point"])
+    parts = (*COMPONENTS, MAGNITUDE)
+    return [
+        [panel(motion, variable, "point", names, part, part == "x") for names in groups] for part in parts
+    ]
+
+
+def of_guides(motion: Motion) -> Rows:
+    """Displacement, velocity and acceleration along the guides below each other."""
+    groups = in_panels(motion.pens["guide"])
+    variables = ("slide", "slide_velocity", "slide_acceleration")
+    return [
+        [panel(motion, name, "guide", names, legend=name == "slide") for names in groups]
+        for name in variables
+    ]
+
+
+def of_coefficients(motion: Motion) -> Rows:
+    """Velocity coefficients at the left, acceleration coefficients at the right: links, points, guides."""
+    points = in_panels(motion.pens["point"])
+    rows = [
+        *(both(motion, "angular_", "link", names) for names in in_panels(turning_links(motion.mechanism))),
+        *(both(motion, "", "point", names, part) for part in COMPONENTS for names in points),
+        *(both(motion, "slide_", "guide", names) for names in in_panels(motion.pens["guide"])),
+    ]
+    return [row for row in rows if row[0].curves]
+
+
+def both(motion: Motion, prefix: str, dim: str, names: Sequence[str], part: str = "") -> list[Panel]:
+    """A panel of velocity coefficients and one of acceleration coefficients, with one legend."""
+    return [
+        panel(motion, f"{prefix}velocity_coefficient", dim, names, part, legend=False),
+        panel(motion, f"{prefix}acceleration_coefficient", dim, names, part),
+    ]
+
+
+def turning_links(mechanism: Mechanism) -> list[str]:
+    """The links without those that a guide of the frame keeps from turning."""
+    still = {guide.link for guide in mechanism.guides if guide.on == "frame"}
+    return [name for name in mechanism.link_names if name not in still]
+
+
+def panel(
+    motion: Motion, variable: str, dim: str, names: Iterable[str], part: str = "", legend: bool = True
+) -> Panel:
+    """Curves of one variable along `dim` ("link", "point" or "guide"), of one component or the magnitude."""
+    values = motion.dataset[variable]
+    unit = str(values.attrs.get("units", QUANTITIES[variable].unit))
+    factor, shown = shown_as(unit, motion.mechanism.display)
+    curves = {name: factor * one_part(values.sel({dim: name}), part) for name in names}
+    text = formula(QUANTITIES[variable].symbol, part if part in COMPONENTS else "")
+    scale = factor * scale_of(motion.dataset, variable)
+    return Panel(labelled(text, shown), shown, curves, motion.pens[dim], scale, legend)
+
+
+def one_part(values: xarray.DataArray, part: str) -> Array:
+    """A curve of a scalar, or of a vector's component or magnitude."""
+    if part == MAGNITUDE:
+        return np.asarray(np.hypot(values.sel(axis="x").to_numpy(), values.sel(axis="y").to_numpy()))
+    return np.asarray((values.sel(axis=part) if part else values).to_numpy())
+
+
+def scale_of(dataset: xarray.Dataset, variable: str) -> float:
+    """A great value of a variable: its greatest, or for angular accelerations the squared angular velocity.
+
+    So a link that translates shows accelerations of zero, not noise.
+    """
+    greatest = peak(dataset, variable)
+    if "angular_acceleration" in variable:
+        greatest = max(greatest, peak(dataset, variable.replace("acceleration", "velocity")) ** 2)
+    return greatest
+
+
+def peak(dataset: xarray.Dataset, variable: str) -> float:
+    """The greatest magnitude of a variable; 0 if it has no value."""
+    values = dataset[variable].to_numpy()
+    known = np.abs(values[np.isfinite(values)])
+    return float(known.max()) if known.size else 0.0

@@ -1,0 +1,157 @@
+"""Figures that show the mechanism itself: at chosen instants, and with the paths of its points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from centrode.errors import Status
+from centrode.locale import _
+from centrode.present.abscissa import Abscissa
+from centrode.present.curves import (
+    CUT_DASHES,
+    draw_parts,
+    legend_width,
+    say_nothing_known,
+    write_legend,
+    write_title,
+)
+from centrode.present.drawing import MARGIN, draw_mechanism
+from centrode.present.scene import Scene
+from centrode.present.shown import drive_unit, formula, labelled, shown_as
+from centrode.present.style import MUTED, Decimals, Pen, pens
+from centrode.quantities import QUANTITIES, status_word, typeset_unit
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+
+GHOSTS = 7  # fading pictures behind the initial position
+COLUMNS = 3
+FAINT = "#B4B4B4"
+
+
+def mechanism_figure(scene: Scene, dataset: xarray.Dataset, instants: Sequence[float]) -> Figure:
+    """The mechanism at the chosen values of the drive, or initially over fading pictures of its motion."""
+    samples = [nearest_sample(dataset, instant) for instant in instants] or [initial_sample(scene, dataset)]
+    columns = 2 if len(samples) == 4 else min(COLUMNS, len(samples))
+    rows = -(-len(samples) // columns)
+    scene, figure = picture(scene, scene.mechanism.link_names, rows, columns)
+    grid = figure.subplots(rows, columns, squeeze=False).ravel()
+    faded = [] if instants else ghosts(scene, dataset, samples[0])
+    for axes, sample in zip(grid, samples, strict=False):
+        draw_mechanism(axes, scene, sample, faded=faded)
+        axes.set_title(caption(scene.mechanism, dataset, sample))
+        label_lengths(axes, scene)
+    for axes in grid[len(samples) :]:
+        axes.set_axis_off()
+    write_legend(grid[columns - 1], link_key(scene.mechanism), inches=figure.get_figheight() - 1.0)
+    write_title(figure, _("Mechanism"), scene.mechanism.title)
+    return figure
+
+
+def paths_figure(
+    scene: Scene, dataset: xarray.Dataset, abscissa: Abscissa, points: Mapping[str, Pen]
+) -> Figure:
+    """Paths of all moving points, with the mechanism faint in its initial position."""
+    scene, figure = picture(scene, list(points))
+    axes = figure.subplots()
+    draw_mechanism(axes, scene, initial_sample(scene, dataset), colour=FAINT)
+    drawn = []
+    for name, pen in points.items():
+        x, y = (abscissa.parts(scene.tracks[name][:, axis]) for axis in (0, 1))
+        drawn.append((draw_parts(axes, x, y, name, pen, level=7.0), name))
+    label_lengths(axes, scene)
+    key = []
+    if abscissa.cut.any():
+        key.append((Line2D([], [], color=MUTED, linewidth=1.0, linestyle=CUT_DASHES), _("cut off")))
+    write_legend(axes, drawn, key, figure.get_figheight() - 1.0)
+    if not any(np.isfinite(scene.tracks[name]).any() for name in points):
+        say_nothing_known(axes)
+    write_title(figure, _("Paths of the points"), scene.mechanism.title)
+    return figure
+
+
+def picture(scene: Scene, names: Sequence[str], rows: int = 1, columns: int = 1) -> tuple[Scene, Figure]:
+    """The scene at the size that it gets on paper, and an empty figure in its proportions."""
+    inches = 5.2 if columns == 1 else 3.6
+    wide, high = inches * ((scene.high - scene.low) / scene.extent + 2 * MARGIN)
+    height = rows * (high + 0.75) + 0.55
+    width = max(6.0, columns * (wide + 0.9) + legend_width(names, height - 1.0))
+    return replace(scene, inches=inches), Figure(figsize=(width, height), layout="constrained")
+
+
+def label_lengths(axes: Axes, scene: Scene) -> None:
+    """Coordinates along both axes, in the unit of the display."""
+    unit = shown_as("m", scene.mechanism.display)[1]
+    axes.set_xlabel(labelled(formula("x"), unit))
+    axes.set_ylabel(labelled(formula("y"), unit))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(Decimals())
+
+
+def link_key(mechanism: Mechanism) -> list[tuple[Line2D, str]]:
+    """Entries of the legend for the links."""
+    return [
+        (Line2D([], [], color=pen.colour, linestyle=pen.dashes, linewidth=2.4), name)
+        for name, pen in pens(mechanism.link_names).items()
+    ]
+
+
+def caption(mechanism: Mechanism, dataset: xarray.Dataset, sample: int) -> str:
+    """The instant, and why there is nothing to see where there is not."""
+    if len(mechanism.drives) == 1:
+        factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
+        symbol = {"angle": "φ", "displacement": "s", "distance": "l"}[mechanism.drives[0].kind]
+        values = dataset["drive_value"].isel(drive=0).to_numpy()
+        value = factor * float(values[sample])
+        if abs(value) < 1e-9 * factor * float(np.nanmax(np.abs(values))):
+            value = 0.0  # rounding of the range's middle or end
+    else:
+        symbol, unit, value = QUANTITIES["time"].symbol, "s", float(dataset["time"][sample])
+    text = f"{formula(symbol)} = {value:.5g} {typeset_unit(unit)}".replace("-", "−")
+    status = int(dataset["status"][sample])
+    return text if status == Status.OK else f"{text} ({status_word(status)})"
+
+
+def instants_of(dataset: xarray.Dataset) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """What an instant is given by: the value of the only drive, else time."""
+    one = dataset.sizes["drive"] == 1
+    return np.asarray(dataset["drive_value"].isel(drive=0) if one else dataset["time"], dtype=float)
+
+
+def nearest_sample(dataset: xarray.Dataset, instant: float) -> int:
+    """The sample nearest to an instant."""
+    return int(np.argmin(np.abs(instants_of(dataset) - instant)))
+
+
+def initial_sample(scene: Scene, dataset: xarray.Dataset) -> int:
+    """The sample nearest to the start, at time zero, among those with every point in place."""
+    known = complete(scene)
+    if not known.any():
+        return 0
+    distance = np.abs(dataset["time"].to_numpy())
+    worth = np.where(dataset["status"].to_numpy() == Status.OK, 0.0, 1.0)
+    return int(np.lexsort((distance, worth, ~known))[0])
+
+
+def ghosts(scene: Scene, dataset: xarray.Dataset, sample: int) -> list[int]:
+    """Samples evenly spread over the motion's regular part, the nearest to the given one last."""
+    regular = np.flatnonzero(complete(scene) & (dataset["status"].to_numpy() == Status.OK))
+    if regular.size < 2:
+        return []
+    chosen = regular[np.linspace(0, regular.size - 1, GHOSTS + 1).astype(int)]
+    return sorted({int(k) for k in chosen} - {sample}, key=lambda k: -abs(k - sample))
+
+
+def complete(scene: Scene) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """True where every moving point has a position."""
+    moving = [scene.tracks[name] for name in scene.mechanism.moving_points]
+    return np.asarray(np.isfinite(np.stack(moving)).all(axis=(0, 2)))

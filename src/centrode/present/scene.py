@@ -1,0 +1,168 @@
+"""Where everything stands, in the units of the display: what the drawings read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from centrode.present.shown import shown_as
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Guide, Link, Mechanism
+
+Array = NDArray[np.float64]
+Samples = int | slice
+SIGN_INCHES = 0.07  # radius of a hinge's circle on paper
+FLATTEST = 0.3  # least ratio of the sides of a drawing
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Positions over a motion, ready to draw.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+        The description.
+    tracks : mapping of point -> (sample, 2) [display unit of length]
+        NaN where a point has no position; points of the frame are rows without change.
+    turns : mapping of link -> (sample) [rad]
+    travels : mapping of guide -> (2) [display unit of length]
+        The least and the greatest displacement along the guide.
+    low, high : (2) [display unit of length]
+        Corners of the box around everything.
+    factor : float
+        Display units of length in a metre.
+    inches : float
+        Length on paper of the longer side of the box.
+    """
+
+    mechanism: Mechanism
+    tracks: Mapping[str, Array]
+    turns: Mapping[str, Array]
+    travels: Mapping[str, Array]
+    low: Array
+    high: Array
+    factor: float
+    inches: float = 6.0
+
+    @property
+    def extent(self) -> float:
+        """The longer side of the box around everything."""
+        return float(np.max(self.high - self.low))
+
+    @property
+    def sign(self) -> float:
+        """Radius of a hinge's circle; the other signs are measured by it."""
+        return SIGN_INCHES / self.inches * self.extent
+
+    def at(self, sample: int) -> dict[str, Array]:
+        """Positions at a sample, of the points that have one."""
+        places = {name: track[sample] for name, track in self.tracks.items()}
+        return {name: place for name, place in places.items() if np.isfinite(place).all()}
+
+    def carried(self, link: str, local: Sequence[float], sample: Samples) -> Array | None:
+        """Where a place in a link's own axes is at a sample or samples; nothing if the link has no position."""
+        if link == "frame":
+            return self.factor * np.asarray(local, dtype=float)
+        for name, own in self.mechanism.links[link].coordinates.items():
+            offset = turned(np.subtract(local, own), self.turns[link][sample])
+            place = self.tracks[name][sample] + self.factor * offset
+            if np.isfinite(place).any():
+                return np.asarray(place)
+        return None
+
+    def guide_line(self, guide: Guide, sample: Samples) -> tuple[Array, Array] | None:
+        """The part of a guide that its point travels, as two ends; nothing if its link has no position."""
+        start = self.carried(guide.on, self.mechanism.through(guide), sample)
+        if start is None:
+            return None
+        turn = np.zeros(()) if guide.on == "frame" else self.turns[guide.on][sample]
+        along = turned(np.asarray(guide.unit, dtype=float), turn)
+        least, most = self.travels[guide.id]
+        return start + least * along, start + most * along
+
+
+def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene:
+    """Read a motion for drawing.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        The description, with every "placed" resolved.
+    dataset : Dataset
+        Its motion, without batch dimensions.
+    """
+    factor = shown_as("m", mechanism.display)[0]
+    samples = dataset.sizes["sample"]
+    tracks = {
+        name: np.tile(factor * np.asarray(place, dtype=float), (samples, 1))
+        for name, place in mechanism.frame.coordinates.items()
+    }
+    for name in dataset["point"].to_numpy().tolist():
+        if name not in tracks:
+            tracks[name] = factor * dataset["position"].sel(point=name).to_numpy()
+    turns = {name: dataset["angle"].sel(link=name).to_numpy() for name in dataset["link"].to_numpy().tolist()}
+    travels = {
+        guide.id: factor * span(dataset["slide"].sel(guide=guide.id).to_numpy()) for guide in mechanism.guides
+    }
+    scene = Scene(mechanism, tracks, turns, travels, *box(list(tracks.values())), factor)
+    lines = [scene.guide_line(guide, slice(None)) for guide in mechanism.guides if guide.on != "frame"]
+    ends = [end for line in lines if line is not None for end in line]
+    low, high = box([*tracks.values(), *ends])
+    return replace(scene, low=low, high=high)
+
+
+def turned(vector: Array, angle: Array | float) -> Array:
+    """A vector turned by an angle, or by each of several."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.stack([cosine * vector[0] - sine * vector[1], sine * vector[0] + cosine * vector[1]], axis=-1)
+
+
+def span(values: Array) -> Array:
+    """The least and the greatest of the values that exist; zeros if none does."""
+    known = values[np.isfinite(values)]
+    return np.array([known.min(), known.max()]) if known.size else np.zeros(2)
+
+
+def box(tracks: Sequence[Array]) -> tuple[Array, Array]:
+    """Corners of a box around the places that exist, of a shape that can be drawn: never empty nor very flat."""
+    places = np.concatenate([*tracks, np.empty((0, 2))])
+    places = places[np.isfinite(places).all(axis=1)]
+    if not len(places):
+        return np.array([-0.5, -0.5]), np.array([0.5, 0.5])
+    low, high = places.min(axis=0), places.max(axis=0)
+    extent = float(np.max(high - low)) or max(1.0, float(np.abs(low).max()))
+    room = np.maximum(0.0, FLATTEST * extent - (high - low)) / 2
+    return low - room, high + room
+
+
+def corners(link: Link) -> list[str]:
+    """The points of a link that its outline passes, around; two for points in a row."""
+    names = list(link.coordinates)
+    places = np.array([link.coordinates[name] for name in names], dtype=float)
+    if len(names) <= 2:
+        return names
+    order = sorted(range(len(names)), key=lambda k: (places[k, 0], places[k, 1]))
+    lower, upper = half_hull(order, places), half_hull(order[::-1], places)
+    return [names[k] for k in lower[:-1] + upper[:-1]]
+
+
+def half_hull(order: list[int], places: Array) -> list[int]:
+    """One side of the convex hull of places in order (Andrew's monotone chain)."""
+    slack = 1e-9 * float(np.ptp(places, axis=0).max()) ** 2
+    chain: list[int] = []
+    for k in order:
+        while len(chain) >= 2:
+            first, second = places[chain[-1]] - places[chain[-2]], places[k] - places[chain[-2]]
+            if first[0] * second[1] - first[1] * second[0] > slack:
+                break
+            chain.pop()
+        chain.append(k)
+    return chain

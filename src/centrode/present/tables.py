@@ -1,0 +1,133 @@
+"""Tables of a motion: CSV for spreadsheets and people, netCDF for programs."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from centrode.errors import Status
+from centrode.present.shown import shown_as
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Display
+
+VARIABLES = (
+    "angle",
+    "angular_velocity",
+    "angular_acceleration",
+    "position",
+    "velocity",
+    "acceleration",
+    "slide",
+    "slide_velocity",
+    "slide_acceleration",
+    "angular_velocity_coefficient",
+    "angular_acceleration_coefficient",
+    "velocity_coefficient",
+    "acceleration_coefficient",
+    "slide_velocity_coefficient",
+    "slide_acceleration_coefficient",
+)
+
+
+def motion_table(
+    dataset: xarray.Dataset, display: Display | None = None, points: Sequence[str] | None = None
+) -> tuple[list[str], list[list[float] | list[str]]]:
+    """Headers and columns of a motion's table, one row a sample.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Result of a motion without batch dimensions.
+    display : Display, optional
+        Units of lengths and angles; SI and radians if left out, and then the numbers are the dataset's own.
+    points : sequence of names, optional
+        The points to show, usually the moving ones; all if left out.
+
+    Returns
+    -------
+    headers : list of str
+        Name and unit: "angle_AC [rad]", "position_C_x [m]".
+    columns : list of lists
+        Floats; words for the status.
+    """
+    if extra := set(dataset["status"].dims) - {"sample"}:
+        raise ValueError(f"a table shows one motion: select along {sorted(map(str, extra))} first")
+    chosen = dataset if points is None else dataset.sel(point=list(points))
+    headers: list[str] = []
+    columns: list[list[float] | list[str]] = []
+    for header, unit, values in numeric_columns(chosen):
+        factor, shown = shown_as(unit, display)
+        headers.append(f"{header} [{shown}]" if shown else header)
+        columns.append((values if factor == 1.0 else values * factor).to_numpy().tolist())
+    headers += ["status", "residual"]
+    columns.append([Status(code).word for code in dataset["status"].to_numpy().tolist()])
+    columns.append(dataset["residual"].to_numpy().tolist())
+    return headers, columns
+
+
+def numeric_columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.DataArray]]:
+    """Header without unit, SI unit and values of every column of numbers, in the order of the table."""
+    yield "time", unit_of(dataset["time"]), dataset["time"]
+    drives = [str(name) for name in dataset["drive"].to_numpy()]
+    for number, name in enumerate(drives):
+        yield f"drive_{name}", drive_units(dataset)[number], dataset["drive_value"].isel(drive=number)
+    for variable in VARIABLES:
+        if variable in dataset:
+            yield from columns_of(dataset[variable], variable)
+
+
+def columns_of(values: xarray.DataArray, variable: str) -> Iterator[tuple[str, str, xarray.DataArray]]:
+    """One column for each link, guide, or axis of a point."""
+    dims = [str(dim) for dim in values.dims if dim != "sample"]
+    for labels in product(*(values[dim].to_numpy().tolist() for dim in dims)):
+        header = "_".join([variable, *map(str, labels)])
+        yield header, unit_of(values), values.sel(dict(zip(dims, labels, strict=True)))
+
+
+def unit_of(values: xarray.DataArray) -> str:
+    """SI unit of a variable; none for a plain number."""
+    unit = str(values.attrs.get("units", ""))
+    return "" if unit == "1" else unit
+
+
+def drive_units(dataset: xarray.Dataset) -> list[str]:
+    """SI unit of each drive's value: `units` names one for all, or one for each drive."""
+    units = unit_of(dataset["drive_value"]).split() or [""]
+    return units * dataset.sizes["drive"] if len(units) == 1 else units
+
+
+def write_motion_csv(
+    dataset: xarray.Dataset, path: Path, display: Display | None = None, points: Sequence[str] | None = None
+) -> None:
+    """Write a motion's table as CSV: UTF-8, one line end everywhere, numbers that read back bit for bit.
+
+    Parameters are those of `motion_table`. A number that does not exist is an empty field.
+    """
+    headers, columns = motion_table(dataset, display, points)
+    with Path(path).open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(headers)
+        writer.writerows(map(field, row) for row in zip(*columns, strict=True))
+
+
+def field(value: float | str) -> str:
+    """A value as a field: the shortest digits that read back as the same number, nothing for NaN."""
+    if isinstance(value, str):
+        return value
+    return "" if value != value else repr(value)
+
+
+def write_motion_netcdf(dataset: xarray.Dataset, path: Path) -> None:
+    """Write a motion as netCDF, in SI, through scipy; the same dataset gives the same bytes.
+
+    A dimension without entries (no events, no guides) cannot be told from an unlimited one in the file format:
+    what has such a dimension is left out.
+    """
+    empty = [name for name, size in dataset.sizes.items() if size == 0]
+    dataset.drop_dims(empty).to_netcdf(path, engine="scipy")
