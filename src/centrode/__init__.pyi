@@ -34,10 +34,10 @@ from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
 # Presentations
-from .present.tables import write_motion_csv as write_motion_csv
-from .present.tables import write_motion_netcdf as write_motion_netcdf
-from .present.figures import motion_figures as motion_figures
-from .present.saving import save_figures as save_figures
+from .present import write_motion_csv as write_motion_csv
+from .present import write_motion_netcdf as write_motion_netcdf
+from .present import motion_figures as motion_figures
+from .present import save_figures as save_figures
 
 # Words, failures, language
 from .quantities import QUANTITIES as QUANTITIES

@@ -53,8 +53,8 @@ class Quantity:
     long_name : str
         What it is, in English; `title` says it in the chosen language.
     by_drive : int
-        How many times it is divided by the drive's unit: 1 and 2 for kinematic coefficients, -1 for the drive's
-        own value, 0 for what does not depend on the kind of drive.
+        How many times it is divided by the drive's unit: 1 and 2 for kinematic coefficients, -1 for the
+        drive's own value, 0 for what does not depend on the kind of drive.
     """
 
     name: str

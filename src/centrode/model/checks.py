@@ -161,7 +161,7 @@ def _rest(mechanism: Description) -> Iterator[Problem]:
 def _loose(mechanism: Description) -> Iterator[Problem]:
     for part in disconnected_parts(mechanism):
         at: Place = ("links", part.links[0]) if part.links else ()
-        what = _("{names}: nothing connects this to the frame").format(names=part)
+        what = _("nothing connects {names} to the frame").format(names=part)
         yield Problem(what, _("hinge it to a link that is connected, or give it a guide"), at)
 
 

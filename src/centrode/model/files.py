@@ -85,8 +85,9 @@ def _tables(text: str, where: str) -> dict[str, Any]:
         raise nested from None
     except tomllib.TOMLDecodeError as error:
         raise _not_toml(str(error), text, where) from None
-    except ValueError as error:  # a date or a number that Python cannot hold
-        raise InputError(where, _("not TOML: {reason}").format(reason=error)) from None
+    except ValueError:  # a date or a number that Python cannot hold
+        reason = _("a date is impossible, or a number has too many digits")
+        raise InputError(where, _("not TOML: {reason}").format(reason=reason)) from None
     if _depth(tables) > limits.NESTING:
         raise nested
     return tables

@@ -9,6 +9,7 @@ from centrode.locale import _
 from centrode.model.examples import example_names, example_text
 from centrode.model.files import parse_mechanism, read_mechanism
 from centrode.model.mechanism import Mechanism
+from centrode.model.problems import likely, shown
 
 
 def example(name: str) -> Mechanism:
@@ -23,12 +24,13 @@ def load(file_or_example: str | Path) -> Mechanism:
     """
     path = Path(file_or_example)
     name = str(file_or_example)
-    if not path.exists() and path.suffix != ".toml" and path.name == name:
-        if name not in example_names():
-            raise InputError(
-                name,
-                _("no such file, and no built-in mechanism of this name"),
-                _("give a TOML file, or a name that centrode examples lists"),
-            )
+    if path.suffix == ".toml" or path.name != name or path.exists():
+        return read_mechanism(path)
+    if name in example_names():
         return example(name)
-    return read_mechanism(path)
+    near = likely(name, example_names())
+    raise InputError(
+        shown(name)[1:-1],
+        _("no such file, and no built-in mechanism of this name"),
+        near or _("give a TOML file, or a name that centrode examples lists"),
+    )

@@ -1,0 +1,24 @@
+"""`centrode check`: what can be said of a mechanism before it moves."""
+
+from __future__ import annotations
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.locale import _, mark
+
+
+@click.command(help=mark("Check a mechanism: mobility, loops, groups, plan."))
+@click.argument(
+    "mechanism",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in mechanism."),
+)
+def check(mechanism: str) -> None:
+    """Print the structure of a mechanism; exit code 2 if it cannot be driven or does not assemble."""
+    checked = ct.check(ct.load(mechanism))
+    steps = [(_("plan") if not i else "", f"{i + 1}. {step}") for i, step in enumerate(checked.plan)]
+    click.echo(_(checked.title) or mechanism)
+    click.echo()
+    click.echo(output.table([*ct.check_rows(checked), *steps]))

@@ -1,0 +1,45 @@
+"""`centrode examples`: the built-in mechanisms, listed or printed."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.locale import _, mark, ngettext
+
+
+@click.command(help=mark("List the built-in mechanisms, or print one as TOML."))
+@click.argument("name", required=False, metavar=mark("[NAME]"), help=mark("Name of a built-in mechanism."))
+@click.option(
+    "--out",
+    "out",
+    type=click.Path(path_type=Path),
+    metavar=mark("FILE"),
+    help=mark("Write the TOML to FILE instead of printing it."),
+)
+@click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
+def examples(name: str | None, out: Path | None, force: bool) -> None:
+    """List the built-in mechanisms, or print or write the one called `name`."""
+    if name is None:
+        if out is not None:
+            raise click.UsageError(_("--out needs the NAME of a built-in mechanism"))
+        click.echo(_listing())
+        return
+    text = ct.example_text(name)
+    if out is None:
+        click.echo(text, nl=not text.endswith("\n"))
+        return
+    output.write_file(out, text, force=force)
+    click.echo(_("wrote {file}").format(file=out))
+
+
+def _listing() -> str:
+    names = ct.example_names()
+    rows = [(name, _(str(tomllib.loads(ct.example_text(name)).get("title", "")))) for name in names]
+    count = ngettext("{count} mechanism", "{count} mechanisms", len(names)).format(count=len(names))
+    use = _("print one with: centrode examples NAME; compute it with: centrode run NAME")
+    return f"{output.table(rows)}\n\n{count}; {use}"

@@ -1,0 +1,128 @@
+"""The command line: one group of commands, and how every failure ends.
+
+Exit codes: 0 done; 2 wrong input or usage; 3 the mechanism cannot do what was asked; 70 a fault of centrode;
+130 interrupted; 141 the reader of the output went away.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import click
+
+import centrode as ct
+from centrode.cli.check import check
+from centrode.cli.examples import examples
+from centrode.cli.run import run
+from centrode.cli.schema import schema
+from centrode.cli.translation import language_option, translated, wished_language, with_language
+from centrode.errors import CentrodeError
+from centrode.locale import _, choose_language_of_process, mark
+
+COMMANDS: tuple[click.Command, ...] = (run, check, examples, schema)
+"""In the order that `centrode --help` lists them."""
+
+FAULT, INTERRUPTED, READER_GONE = 70, 130, 141
+
+
+class ReadingOrder(click.Group):
+    """A group that lists its commands in the order they were given."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of the commands, unsorted."""
+        return list(self.commands)
+
+
+def build_app() -> click.Command:
+    """The command line in the language chosen at the moment."""
+    app = ReadingOrder(
+        "centrode",
+        help=mark("Compute mechanisms: from the description of a linkage to its checked motion."),
+        epilog=mark("A first step: centrode run slider-between-cranks --out result"),
+        params=[language_option()],
+        no_args_is_help=True,
+    )
+    click.version_option(ct.__version__, prog_name="centrode")(app)
+    for command in COMMANDS:
+        app.add_command(with_language(command))
+    return translated(app)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code; every failure ends in a message, none in a traceback."""
+    arguments = sys.argv[1:] if arguments is None else list(arguments)
+    for stream in (sys.stdout, sys.stderr):
+        # A terminal without Cyrillic shows question marks instead of failing.
+        reconfigure: Callable[..., Any] | None = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors="replace")
+    choose_language_of_process(wished_language(arguments))
+    try:
+        result = _run(build_app(), list(arguments))
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BaseException as failure:
+        return _ending(failure)
+    return result if isinstance(result, int) else 0
+
+
+def _run(app: click.Command, arguments: list[str]) -> object:
+    """What `app.main` does, less its own idea of how a program ends."""
+    try:
+        with app.make_context("centrode", arguments) as context:
+            return app.invoke(context)
+    except click.exceptions.Exit as done:
+        return done.exit_code
+
+
+def _ending(failure: BaseException) -> int:
+    """Say in one message how the program ends, and return its exit code."""
+    if os.environ.get("CENTRODE_DEBUG") == "1":
+        traceback.print_exception(failure)
+    match failure:
+        case click.ClickException():
+            failure.show()
+            return failure.exit_code
+        case CentrodeError():
+            _say(str(failure))
+            return failure.exit_code
+        case click.Abort() | KeyboardInterrupt():
+            click.echo(_("interrupted"), err=True)
+            return INTERRUPTED
+        case BrokenPipeError():
+            _drop_unwritable_output()
+            return READER_GONE
+        case OSError():
+            _drop_unwritable_output()
+            _say(_("the operating system refused: {reason}").format(reason=failure))
+            return CentrodeError.exit_code
+        case SystemExit():
+            return failure.code if isinstance(failure.code, int) else 1
+    fault = "".join(traceback.format_exception_only(failure)).strip()
+    _say(
+        _(
+            "this is a fault of centrode: {fault}; please report it with the command and its files"
+            " (CENTRODE_DEBUG=1 prints the details)"
+        ).format(fault=fault)
+    )
+    return FAULT
+
+
+def _drop_unwritable_output() -> None:
+    """What is left in a buffer that nothing takes must not fail once more when Python closes the stream."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _say(message: str) -> None:
+    """Print an error; control characters that came with names or files are shown, not obeyed."""
+    safe = "".join(
+        letter if letter.isprintable() or letter == "\n" else ascii(letter)[1:-1] for letter in message
+    )
+    click.echo(_("Error: {message}").format(message=safe), err=True)

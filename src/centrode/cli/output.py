@@ -1,0 +1,125 @@
+"""What commands write: tables in plain text, single files, and folders that appear whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import textwrap
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from centrode.errors import InputError
+from centrode.locale import _
+
+WIDTH = 100
+"""Columns of a paragraph."""
+
+
+def table(rows: Sequence[Sequence[str]], header: Sequence[str] = (), right: Sequence[int] = ()) -> str:
+    """Rows as plain text, columns aligned and two spaces apart; the columns numbered in `right` align right."""
+    lines = [list(header), *rows] if header else list(rows)
+    widths = [max(len(cell) for cell in column) for column in zip(*lines, strict=True)]
+    texts = []
+    for line in lines:
+        cells = [
+            cell.rjust(width) if number in right else cell.ljust(width)
+            for number, (cell, width) in enumerate(zip(line, widths, strict=True))
+        ]
+        texts.append("  ".join(cells).rstrip())
+    return "\n".join(texts)
+
+
+def paragraph(heading: str, items: Sequence[str]) -> str:
+    """A heading with items behind it, or indented below it where one line does not hold them."""
+    line = ", ".join(items)
+    if len(heading) + 1 + len(line) <= WIDTH:
+        return f"{heading} {line}"
+    wrap = textwrap.TextWrapper(
+        WIDTH, initial_indent="  ", subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
+    )
+    return f"{heading}\n{wrap.fill(line)}"
+
+
+@contextmanager
+def output_folder(path: Path) -> Iterator[Path]:
+    """Folder to write into; its files appear in `path` when the block ends, and not at all when it raises.
+
+    Raises InputError at once where `path` cannot be written, before anything is computed. Files of the same
+    name that stand in `path` are replaced, others are left alone.
+    """
+    with _refusals(path):
+        base = _existing_part(path)
+        draft = Path(tempfile.mkdtemp(prefix=".centrode-", dir=base))
+    try:
+        yield draft
+        with _refusals(path):
+            _move_files(draft, path)
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def write_file(path: Path, text: str, *, force: bool = False) -> None:
+    """Write one UTF-8 file whole or not at all; InputError where it cannot be, or stands already without `force`."""
+    with _refusals(path):
+        if path.is_dir():
+            raise InputError(str(path), _("is a folder"), _("name a file"))
+        if path.exists() and not force:
+            raise InputError(str(path), _("exists already"), _("say --force to replace it"))
+        base = _existing_part(path.parent)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, draft = tempfile.mkstemp(prefix=".centrode-", dir=base)
+        try:
+            with open(handle, "w", encoding="utf-8", newline="\n") as stream:
+                stream.write(text)
+            _share(Path(draft))
+            os.replace(draft, path)
+        except BaseException:
+            with suppress(OSError):
+                os.unlink(draft)
+            raise
+
+
+def _existing_part(path: Path) -> Path:
+    """The folder itself, or the nearest one above it that exists: drafts stand there, on the same file system."""
+    for part in (path, *path.parents):
+        if part.is_dir():
+            return part
+        if part.exists() or part.is_symlink():
+            where = "" if part == path else str(path)
+            raise InputError(where, _("{part} is not a folder").format(part=part), _("name another folder"))
+    raise InputError(str(path), _("no part of this path exists"), _("name another folder"))
+
+
+def _move_files(draft: Path, path: Path) -> None:
+    files = sorted(file.relative_to(draft) for file in draft.rglob("*") if file.is_file())
+    for file in files:
+        _existing_part((path / file).parent)
+        if (path / file).is_dir():
+            raise InputError(
+                str(path / file), _("is a folder, and a file has to go there"), _("name another folder")
+            )
+    path.mkdir(parents=True, exist_ok=True)
+    for file in files:
+        (path / file).parent.mkdir(parents=True, exist_ok=True)
+        os.replace(draft / file, path / file)
+
+
+def _share(file: Path) -> None:
+    """Give a temporary file the permissions that a file opened in the usual way has."""
+    mask = os.umask(0)
+    os.umask(mask)
+    file.chmod(0o666 & ~mask)
+
+
+@contextmanager
+def _refusals(path: Path) -> Iterator[None]:
+    """Say what the operating system refuses as an InputError about `path`."""
+    try:
+        yield
+    except OSError as refusal:
+        reason = refusal.strerror or str(refusal)
+        raise InputError(
+            str(path), _("cannot be written: {reason}").format(reason=reason), _("name another place")
+        ) from refusal

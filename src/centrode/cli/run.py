@@ -1,0 +1,95 @@
+"""`centrode run`: the motion of a mechanism as tables, pictures and a summary."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.progress import Progress
+from centrode.errors import MotionError
+from centrode.locale import _, mark, ngettext
+
+if TYPE_CHECKING:
+    from centrode.study.running import Study
+
+DEFAULT_FOLDER = "{name}-result"
+
+
+@click.command(help=mark("Compute the motion of a mechanism and write tables and pictures."))
+@click.argument(
+    "mechanism",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in mechanism."),
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Folder for the results; named after the mechanism if left out."),
+)
+@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
+@click.option(
+    "--from",
+    "start",
+    metavar=mark("A"),
+    help=mark('First value of the drive ("0 deg"); a time ("0 s") where the drive is a law.'),
+)
+@click.option("--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time."))
+@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+def run(
+    mechanism: str,
+    out: Path | None,
+    samples: int | None,
+    start: str | None,
+    stop: str | None,
+    no_figures: bool,
+) -> None:
+    """Compute and write; exit code 3 if the mechanism locks in the range asked for (the rest is written)."""
+    description = ct.load(mechanism)
+    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    with output.output_folder(folder) as draft, Progress() as progress:
+        progress.say(_("solving"))
+        first = None if start is None else ct.range_value(description, start, "--from")
+        last = None if stop is None else ct.range_value(description, stop, "--to")
+        study = ct.study(description, samples, first, last)
+        write(study, draft, progress, figures=not no_figures)
+        names = sorted(path.name for path in draft.iterdir())
+    click.echo(summary_text(study, mechanism))
+    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
+        n=len(names), folder=folder
+    )
+    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    if study.failure is not None:
+        raise MotionError(
+            mechanism, study.failure, _("ask for a range between the limits, or change the dimensions")
+        )
+
+
+def write(study: Study, folder: Path, progress: Progress, *, figures: bool) -> None:
+    """Write everything about a study into a folder."""
+    mechanism = study.mechanism
+    progress.say(_("writing tables"))
+    ct.write_motion_csv(study.motion, folder / "motion.csv", mechanism.display, mechanism.moving_points)
+    ct.write_motion_netcdf(study.motion, folder / "motion.nc")
+    scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
+    text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
+    (folder / "summary.json").write_text(text, encoding="utf-8")
+    if figures:
+        progress.say(_("drawing"))
+        drawn = ct.motion_figures(mechanism, study.motion, mechanism.study.instants)
+        for number, (name, figure) in enumerate(drawn.items(), start=1):
+            progress.say(_("drawing {name}").format(name=name), number, len(drawn))
+            ct.save_figures({name: figure}, folder)
+
+
+def summary_text(study: Study, name: str) -> str:
+    """What a run prints: structure, range, limits, change points, statuses, worst residual, notes."""
+    rows = [*ct.check_rows(study.check), *ct.motion_rows(study)]
+    lines = [_(study.mechanism.title) or name, "", output.table(rows)]
+    lines += [_("note: {note}").format(note=note) for note in study.notes]
+    return "\n".join(lines)
