@@ -118,9 +118,9 @@ mean_speed = "65 rpm"
 fluctuation = 0.11
 [study]
 samples = 361
-instants = ["99.1 deg", 2]
+instants = ["99 ms", 2]
 from = 0
-to = "360 deg"
+to = "6 s"
 """
 
 SPHERE = """

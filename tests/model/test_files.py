@@ -46,8 +46,8 @@ def test_values_of_the_grammar() -> None:
     assert m.loads[0].vector == (-9000.0, 1000.0)
     assert m.loads[1].value == "-0.1*v*abs(v)"
     assert m.loads[2].stiffness == 2000.0
-    assert m.study.instants == (math.radians(99.1), 2.0)
-    assert m.study.stop == 2 * math.pi
+    assert m.study.instants == (0.099, 2.0)
+    assert m.study.stop == 6.0
     assert m.points == ("O", "D", "A", "C", "B", "H", "A’")
     assert m.moving_points == ("A", "C", "B", "H", "A’")
 
@@ -223,7 +223,7 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
     [
         ("", 'press.toml: "links" is missing'),
         ("links = {}", "there are no links"),
-        ("x = ", "press.toml, line 1, column 5: not TOML: Invalid value"),
+        ("x = ", "press.toml, line 1, column 5: not TOML: a value is missing, or a text without quotes"),
         ("a = 1\n[links\n", "press.toml, line 2, column 7: not TOML"),
         ('a = "', "press.toml, line 1, column 6: not TOML"),
         ("a = " + "[" * 20_000, "press.toml: the text nests too deeply"),
@@ -241,7 +241,7 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
         (FOUR_BAR + "[study]\nsamples = 0", "samples must lie between"),
         (FOUR_BAR + "[study]\nsamples = 3.5", "samples must be a whole number, got 3.5"),
         (FOUR_BAR + '[study]\ninstants = ["3 mm"]', "[study] instants: expected an angle (rad)"),
-        (FOUR_BAR + '[display]\nlength = "kg"', "press.toml, [display] length: expected a length (m)"),
+        (FOUR_BAR + '[display]\nlength = "kg"', 'press.toml, [display] length: expected one of "m", "mm"'),
         (FOUR_BAR + '[assembly]\nsides = { B = "up" }', '[assembly.sides] B: expected one of "left"'),
         (FOUR_BAR + '[assembly]\nsides = { Z = "left" }', "unknown point, link or guide"),
         (FOUR_BAR + '[[loads]]\nkind = "push"', "[[loads]] 1, kind: expected one of"),
@@ -287,7 +287,7 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
             'there are two guides "B"',
         ),
         (FOUR_BAR + '[[drives]]\nlink = "OA"\nspeed = 1', '"OA" is driven twice'),
-        (FOUR_BAR + "[links.EF]\nlength = 1", "[links.EF]: EF: nothing connects this to the frame; hinge it"),
+        (FOUR_BAR + "[links.EF]\nlength = 1", "[links.EF]: nothing connects EF to the frame; hinge it"),
         (
             FOUR_BAR
             + '[[guides]]\npoint = "Z"\non = "EF"\nthrough = [0, 0]\ndirection = 0\n[links.EF]\nlength = 1',

@@ -179,7 +179,7 @@ def test_loose_parts_are_found() -> None:
         (("EF", "FG"), ("E", "F", "G")),
         (("PQ",), ("P", "Q")),
     ]
-    with pytest.raises(InputError, match=r"(?s)EF, FG: nothing connects this to the frame.*PQ: nothing"):
+    with pytest.raises(InputError, match=r"(?s)nothing connects EF, FG to the frame.*nothing connects PQ"):
         Mechanism(frame={"points": {"O": (0, 0)}}, links=links)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import gettext
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from centrode.errors import InputError
@@ -20,6 +21,18 @@ _catalogue: gettext.NullTranslations = gettext.NullTranslations()
 def _(message: str) -> str:
     """The sentence in the chosen language; the English text is its name."""
     return _catalogue.gettext(message) if message else ""
+
+
+@contextmanager
+def speaking(language: str) -> Iterator[None]:
+    """Speak another language for a while: what results keep is English, whoever computes them."""
+    global _catalogue
+    before = _catalogue
+    choose_language(language)
+    try:
+        yield
+    finally:
+        _catalogue = before
 
 
 def ngettext(singular: str, plural: str, number: int) -> str:

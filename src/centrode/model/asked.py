@@ -7,14 +7,12 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, PlainValidator
 
-from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
 from centrode.model.frozen import FrozenMap
 from centrode.model.names import read_name
 from centrode.model.part import Part
 from centrode.model.problems import KEY, Problem, shown
-from centrode.model.units import unit_factor
 from centrode.model.values import (
     EndOfMotion,
     PlaceOfMotion,
@@ -22,23 +20,11 @@ from centrode.model.values import (
     listed,
     positive,
     quantity,
-    read_text,
     table,
 )
+from centrode.quantities import ANGLES, LENGTHS
 
 Side = Literal["left", "right", "ahead", "behind"]
-
-
-def _unit(kind: str) -> PlainValidator:
-    def read(value: object) -> str:
-        try:
-            unit = read_text(value)
-            unit_factor(unit, kind)
-        except InputError as error:
-            raise Problem(error.what, error.repair) from None
-        return unit
-
-    return PlainValidator(read)
 
 
 def _read_samples(value: object) -> int:
@@ -55,18 +41,18 @@ def _read_samples(value: object) -> int:
 class Display(Part):
     """Units in which tables and figures show lengths and angles."""
 
-    length: Annotated[str, _unit("length")] = "m"
-    angle: Annotated[str, _unit("angle")] = "rad"
+    length: Annotated[str, choice(*LENGTHS)] = "m"
+    angle: Annotated[str, choice(*ANGLES)] = "rad"
 
     @property
     def length_factor(self) -> float:
         """Metres in one unit of length."""
-        return unit_factor(self.length, "length")
+        return 1.0 / LENGTHS[self.length]
 
     @property
     def angle_factor(self) -> float:
         """Radians in one unit of angle."""
-        return unit_factor(self.angle, "angle")
+        return 1.0 / ANGLES[self.angle]
 
 
 class Assembly(Part):

@@ -18,6 +18,7 @@ from centrode.model.document import document
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import input_error
 from centrode.model.reading import read_file
+from centrode.model.toml_words import toml_reason
 from centrode.model.values import READING, Reading
 
 _KEY = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
@@ -95,7 +96,7 @@ def _tables(text: str, where: str) -> dict[str, Any]:
 
 def _not_toml(message: str, text: str, where: str) -> InputError:
     match = _PLACE.fullmatch(message)
-    reason = match.group(1) if match else message
+    reason = toml_reason(match.group(1) if match else message)
     lines = text.splitlines() or [""]
     line, column = (
         (match.group(2), match.group(3)) if match and match.group(2) else (len(lines), len(lines[-1]) + 1)

@@ -20,8 +20,8 @@ Spot = tuple[Any, Any]
 def value_at(mechanism: Mechanism, path: str) -> float:
     """Number [SI] at a path; raises InputError where there is none.
 
-    `guides.C.direction` is an angle however it is given; `links.K.points.C.x` is a local coordinate, and
-    (0, 0), (length, 0) where the link gives its length.
+    `guides.C.direction` is an angle however it is given; `links.K.points.C.x` is a local coordinate of a
+    link whose points have coordinates.
     """
     words = _words(mechanism, path)
     if words[0] == "guides" and words[2:] == ["direction"]:

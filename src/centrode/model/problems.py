@@ -62,7 +62,8 @@ def likely(name: str, known: Iterable[str]) -> str:
     """Repair of a misspelt name: the nearest known one, if one is near."""
     names = list(known)
     folded = [other for other in names if other.casefold() == name.casefold()]
-    close = folded or difflib.get_close_matches(name[: limits.NAME_LENGTH], names, n=1, cutoff=0.5)
+    cutoff = 0.5 if len(name) <= 3 else 0.6  # AO is near OA; "angle" is not near "machine"
+    close = folded or difflib.get_close_matches(name[: limits.NAME_LENGTH], names, n=1, cutoff=cutoff)
     return _("did you mean {name}?").format(name=shown(close[0])) if close else ""
 
 

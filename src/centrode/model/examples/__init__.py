@@ -24,6 +24,10 @@ def example_text(name: str) -> str:
     names = example_names()
     if name not in names:
         near = get_close_matches(name, names, n=1)
-        repair = _('did you mean "{name}"?').format(name=near[0]) if near else _("list them with: centrode examples")
+        repair = (
+            _('did you mean "{name}"?').format(name=near[0])
+            if near
+            else _("list them with: centrode examples")
+        )
         raise InputError("", _('there is no built-in mechanism called "{name}"').format(name=name), repair)
     return (DIRECTORY / f"{name}.toml").read_text(encoding="utf-8")
