@@ -60,8 +60,8 @@ class Jet:
 
     def __add__(self, other: Operand) -> Jet:
         if isinstance(other, Jet):
-            return Jet([a + b for a, b in zip(self.coefficients, other.coefficients, strict=True)])
-        return Jet((self.coefficients[0] + other, *self.coefficients[1:]))
+            return Jet([_sum(a, b) for a, b in zip(self.coefficients, other.coefficients, strict=True)])
+        return self if _is_zero(other) else Jet((self.coefficients[0] + other, *self.coefficients[1:]))
 
     __radd__ = __add__
 
@@ -73,8 +73,10 @@ class Jet:
 
     def __sub__(self, other: Operand) -> Jet:
         if isinstance(other, Jet):
-            return Jet([a - b for a, b in zip(self.coefficients, other.coefficients, strict=True)])
-        return Jet((self.coefficients[0] - other, *self.coefficients[1:]))
+            return Jet(
+                [_difference(a, b) for a, b in zip(self.coefficients, other.coefficients, strict=True)]
+            )
+        return self if _is_zero(other) else Jet((self.coefficients[0] - other, *self.coefficients[1:]))
 
     def __rsub__(self, other: Number) -> Jet:
         return Jet((other - self.coefficients[0], *(-a for a in self.coefficients[1:])))
@@ -82,7 +84,7 @@ class Jet:
     def __mul__(self, other: Operand) -> Jet:
         if isinstance(other, Jet):
             return Jet(product(self.coefficients, other.coefficients))
-        return Jet([a * other for a in self.coefficients])
+        return Jet([a if _is_zero(a) else a * other for a in self.coefficients])
 
     __rmul__ = __mul__
 
@@ -108,6 +110,14 @@ def _is_zero(x: Number) -> bool:
     return type(x) is float and x == 0.0
 
 
+def _sum(a: Number, b: Number) -> Number:
+    return b if _is_zero(a) else a if _is_zero(b) else a + b
+
+
+def _difference(a: Number, b: Number) -> Number:
+    return -b if _is_zero(a) else a if _is_zero(b) else a - b
+
+
 def product(a: Coefficients, b: Coefficients) -> list[Number]:
     """Coefficients of the product of two series (Cauchy)."""
     result = []
@@ -115,8 +125,8 @@ def product(a: Coefficients, b: Coefficients) -> list[Number]:
         total: Number = 0.0
         for i in range(k + 1):
             if not (_is_zero(a[i]) or _is_zero(b[k - i])):
-                term = a[i] * b[k - i]
-                total = term if _is_zero(total) else total + term
+                # the new product stays unnamed, so that NumPy adds in its place
+                total = a[i] * b[k - i] if _is_zero(total) else total + a[i] * b[k - i]
         result.append(total)
     return result
 
@@ -174,12 +184,15 @@ def sine_and_cosine(a: Coefficients, sine: Number, cosine: Number) -> tuple[list
     for k in range(1, len(a)):
         s: Number = 0.0
         c: Number = 0.0
+        # j / k is exact for powers of two; other quotients would cut numbers of many digits to a float's
+        exact = k & (k - 1) == 0
         for j in range(1, k + 1):
             if not _is_zero(a[j]):
-                s = s + (j / k) * a[j] * cosines[k - j]
-                c = c - (j / k) * a[j] * sines[k - j]
-        sines.append(s)
-        cosines.append(c)
+                part = (j / k if exact else j) * a[j]
+                s = s + part * cosines[k - j]
+                c = c - part * sines[k - j]
+        sines.append(s if exact else s / k)
+        cosines.append(c if exact else c / k)
     return sines, cosines
 
 

@@ -1,7 +1,7 @@
 """Numbers that carry a bound of their own rounding error: formulas tell how exact their results are.
 
-Running error analysis after Wilkinson; Higham, Accuracy and Stability of Numerical Algorithms (2nd ed., 2002),
-section 3.3. First order in the unit roundoff; `SAFETY` covers what that leaves out.
+Running error analysis after Wilkinson; Higham, Accuracy and Stability of Numerical Algorithms (2nd ed.,
+2002), section 3.3. First order in the unit roundoff; `SAFETY` covers what that leaves out.
 """
 
 from __future__ import annotations

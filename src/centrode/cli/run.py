@@ -15,7 +15,7 @@ from centrode.errors import MotionError
 from centrode.locale import _, mark, ngettext
 
 if TYPE_CHECKING:
-    from centrode.study.running import Study
+    from centrode.study.running import StudyResults
 
 DEFAULT_FOLDER = "{name}-result"
 
@@ -70,24 +70,28 @@ def run(
         )
 
 
-def write(study: Study, folder: Path, progress: Progress, *, figures: bool) -> None:
+def write(study: StudyResults, folder: Path, progress: Progress, *, figures: bool) -> None:
     """Write everything about a study into a folder."""
     mechanism = study.mechanism
     progress.say(_("writing tables"))
     ct.write_motion_csv(study.motion, folder / "motion.csv", mechanism.display, mechanism.moving_points)
+    if study.instants is not None:
+        ct.write_motion_csv(
+            study.instants, folder / "instants.csv", mechanism.display, mechanism.moving_points
+        )
     ct.write_motion_netcdf(study.motion, folder / "motion.nc")
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
     (folder / "summary.json").write_text(text, encoding="utf-8")
     if figures:
         progress.say(_("drawing"))
-        drawn = ct.motion_figures(mechanism, study.motion, mechanism.study.instants)
+        drawn = ct.motion_figures(mechanism, study.motion, mechanism.study.instants, study.instants)
         for number, (name, figure) in enumerate(drawn.items(), start=1):
             progress.say(_("drawing {name}").format(name=name), number, len(drawn))
             ct.save_figures({name: figure}, folder)
 
 
-def summary_text(study: Study, name: str) -> str:
+def summary_text(study: StudyResults, name: str) -> str:
     """What a run prints: structure, range, limits, change points, statuses, worst residual, notes."""
     rows = [*ct.check_rows(study.check), *ct.motion_rows(study)]
     lines = [_(study.mechanism.title) or name, "", output.table(rows)]

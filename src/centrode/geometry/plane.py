@@ -1,8 +1,8 @@
 """Vectors, poses and meeting points in the plane, as formulas over any algebra.
 
-A vector is a pair of numbers; a rotor is a unit vector (cos, sin) and turns another vector by `turned`. A pose is
-the origin of a link's axes and their rotor. Where a formula has two answers it takes `root`, a function that gives
-the signed square root of the radicand: the sign is the branch.
+A vector is a pair of numbers; a rotor is a unit vector (cos, sin) and turns another vector by `turned`. A
+pose is the origin of a link's axes and their rotor. Where a formula has two answers it takes `root`, a
+function that gives the signed square root of the radicand: the sign is the branch.
 """
 
 from __future__ import annotations
@@ -27,6 +27,16 @@ AT_REST = Pose((0.0, 0.0), (1.0, 0.0))
 """Pose of the frame."""
 
 
+def is_literal_zero(x: Number) -> bool:
+    """Whether a number is the plain float zero, and no array or jet that happens to be zero."""
+    return type(x) is float and x == 0.0
+
+
+def is_origin(a: Vector) -> bool:
+    """Whether a vector is the plain zero vector, which nothing needs to be added to."""
+    return is_literal_zero(a[0]) and is_literal_zero(a[1])
+
+
 def add(a: Vector, b: Vector) -> Vector:
     """Sum of two vectors."""
     return a[0] + b[0], a[1] + b[1]
@@ -49,6 +59,9 @@ def cross(a: Vector, b: Vector) -> Number:
 
 def turned(a: Vector, rotor: Vector) -> Vector:
     """Vector a turned by a rotor; of two rotors, the rotor of the summed angle."""
+    if is_literal_zero(a[1]):
+        # a link's first axis, and its origin: most vectors that are turned
+        return (0.0, 0.0) if is_literal_zero(a[0]) else (a[0] * rotor[0], a[0] * rotor[1])
     return a[0] * rotor[0] - a[1] * rotor[1], a[0] * rotor[1] + a[1] * rotor[0]
 
 
@@ -69,27 +82,29 @@ def along(origin: Vector, direction: Vector, distance: Number) -> Vector:
 
 def place(pose: Pose, local: Vector) -> Vector:
     """Point of a link at its local coordinates."""
-    return add(pose.origin, turned(local, pose.rotor))
+    return pose.origin if is_origin(local) else add(pose.origin, turned(local, pose.rotor))
 
 
 def pose_with_point(local: Vector, at: Vector, rotor: Vector) -> Pose:
     """Pose of a link that has the given rotor and its local point at a place."""
-    return Pose(subtract(at, turned(local, rotor)), rotor)
+    return Pose(at if is_origin(local) else subtract(at, turned(local, rotor)), rotor)
 
 
 def pose_by_two_points(first: Vector, second: Vector, at_first: Vector, at_second: Vector) -> Pose:
     """Pose of a link from the places of two of its points.
 
-    The rotor is a unit vector as far as the places keep the link's own distance; the residual of a motion contains
-    the second point, so a distance that does not fit shows.
+    The rotor is a unit vector as far as the places keep the link's own distance; the residual of a motion
+    contains the second point, so a distance that does not fit shows.
     """
     local = subtract(second, first)
-    rotor = turned(subtract(at_second, at_first), reversed_rotor(local))
+    rotor = turned(reversed_rotor(local), subtract(at_second, at_first))
     squared = dot(local, local)
     return pose_with_point(first, at_first, (rotor[0] / squared, rotor[1] / squared))
 
 
-def meet_circles(centre_1: Vector, radius_1: Number, centre_2: Vector, radius_2: Number, root: Root) -> Vector:
+def meet_circles(
+    centre_1: Vector, radius_1: Number, centre_2: Vector, radius_2: Number, root: Root
+) -> Vector:
     """Point where two circles meet, to the left of the line centre_1 -> centre_2 for a positive root.
 
     The radicand is 16 times the squared area of the triangle, kept factored (Heron), so that it changes sign
@@ -108,7 +123,9 @@ def meet_circles(centre_1: Vector, radius_1: Number, centre_2: Vector, radius_2:
     )
 
 
-def meet_circle_and_line(centre: Vector, radius: Number, through: Vector, direction: Vector, root: Root) -> Vector:
+def meet_circle_and_line(
+    centre: Vector, radius: Number, through: Vector, direction: Vector, root: Root
+) -> Vector:
     """Point where a circle meets a line, ahead of the foot of its centre for a positive root.
 
     The radicand is (r - n)(r + n), n the distance of the centre from the line.
@@ -130,9 +147,9 @@ def meet_lines(
 def aim(pivot: Vector, at: Vector, through: Vector, direction: Vector, target: Vector, root: Root) -> Pose:
     """Pose of a link with its pivot at a place, whose line passes through a target.
 
-    `pivot`, `through` and `direction` are in the link's axes. A positive root has the target ahead of the foot of the
-    pivot on the line. The radicand is w^2 - e^2, w the distance from the pivot to the target, e that
-    to the line.
+    `pivot`, `through` and `direction` are in the link's axes. A positive root has the target ahead of the
+    foot of the pivot on the line. The radicand is w^2 - e^2, w the distance from the pivot to the target, e
+    that to the line.
     """
     offset = cross(direction, subtract(through, pivot))
     to_target = subtract(target, at)
@@ -144,6 +161,6 @@ def aim(pivot: Vector, at: Vector, through: Vector, direction: Vector, target: V
 
 def length_of(m: Namespace, a: Vector) -> Number:
     """Length of a vector; exact for one along the first axis, as the vector of a two-point link is."""
-    if isinstance(a[1], float) and a[1] == 0.0:
+    if is_literal_zero(a[1]):
         return a[0]
     return m.sqrt(dot(a, a))

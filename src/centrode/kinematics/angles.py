@@ -1,11 +1,12 @@
 """Angles of links that run on over turns, from their rotors.
 
-An angle belongs to the value of the drive, not to the samples asked for: it is counted along the mesh of
+An angle belongs to the value of the drive, not to the samples asked for: turns are counted along the mesh of
 the path, outwards from the initial position, and a sample takes its turn from the nearest node.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -15,44 +16,82 @@ from centrode.algebra.jets import Jet
 from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Side: TypeAlias = npt.NDArray[np.int8]
+Turns: TypeAlias = npt.NDArray[np.int32]
 TURN = 2.0 * np.pi
 
 
-def node_angles(
-    positions: Positions, links: tuple[str, ...], initial: Array, start: int, shape: tuple[int, int]
-) -> Array:
-    """Continuous angles (links, lanes, nodes) on the mesh; `initial` (links,) are those at the node `start`."""
-    angles = np.empty((len(links), *shape))
-    for k, link in enumerate(links):
-        cosine, sine = (np.broadcast_to(_plain(x), shape) for x in positions.poses[link].rotor)
-        angles[k] = np.unwrap(_bridged(np.arctan2(sine, cosine)), axis=-1)
-    turns = np.round((initial[:, None] - angles[:, :, start]) / TURN)
-    return np.asarray(angles + TURN * turns[:, :, None])
+@dataclass(frozen=True)
+class NodeTurns:
+    """Where a link points at the nodes of the mesh, and the whole turns to add to its angle in (-pi, pi] there.
+
+    All have shape (lanes, nodes), or (1, nodes) where the lanes agree; `below` is 1 on the right of the x axis.
+    """
+
+    cosine: Array
+    below: Side
+    turns: Turns
+
+    def at(self, node: npt.NDArray[np.intp], cosine: Array, sine: Array) -> Turns:
+        """Turns of rotors (lanes, n) that are less than half a turn away from those at the nodes (n,)."""
+        passed = _turns_between(self.cosine[:, node], self.below[:, node], cosine, _below(sine))
+        return self.turns[:, node] + passed
 
 
-def _plain(x: object) -> Array:
-    return np.asarray(x.value if isinstance(x, Jet) else x, dtype=np.float64)
+def node_turns(positions: Positions, link: str, initial: float, start: int, nodes: int) -> NodeTurns:
+    """Turns of a link on a mesh of so many nodes; `initial` [rad] is its angle near the node `start`."""
+    cosine, sine = _bridged(*(_on_mesh(x, nodes) for x in positions.poses[link].rotor))
+    below = _below(sine)
+    turns = np.zeros(cosine.shape, dtype=np.int32)
+    steps = _turns_between(cosine[:, :-1], below[:, :-1], cosine[:, 1:], below[:, 1:])
+    if steps.any():
+        np.cumsum(steps, axis=1, out=turns[:, 1:])
+    first = np.arctan2(sine[:, start], cosine[:, start])
+    turns += (np.round((initial - first) / TURN).astype(np.int32) - turns[:, start])[:, None]
+    return NodeTurns(cosine, below, turns)
 
 
-def _bridged(angle: Array) -> Array:
-    """The same angles with gaps filled by the last known value before them (the first one after, at the beginning)."""
-    known = np.isfinite(angle)
-    if known.all():
-        return angle
-    nodes = np.arange(angle.shape[1])
-    last = np.maximum.accumulate(np.where(known, nodes, -1), axis=1)
+def _below(sine: Array) -> Side:
+    # the sign of a zero counts, as it does in arctan2
+    return np.signbit(sine).view(np.int8)
+
+
+def _turns_between(cosine: Array, below: Side, next_cosine: Array, next_below: Side) -> Side:
+    """What to add to the turns from one rotor to the next: 1 past the angle pi, -1 back.
+
+    Two unit vectors on either side of the x axis are less than half a turn apart across its negative half
+    exactly if their cosines have a negative sum.
+    """
+    across = (cosine + next_cosine < 0.0).view(np.int8)
+    return np.asarray((next_below - below) * across)
+
+
+def _on_mesh(x: object, nodes: int) -> Array:
+    """Values (lanes, nodes), or (1, nodes) where the lanes agree."""
+    values = np.atleast_2d(np.asarray(x.value if isinstance(x, Jet) else x, dtype=np.float64))
+    return np.broadcast_to(values, (values.shape[0], nodes))
+
+
+def _bridged(cosine: Array, sine: Array) -> tuple[Array, Array]:
+    """The same rotors with gaps filled by the last known one before them (the first one after, at the beginning)."""
+    cosine, sine = np.broadcast_arrays(cosine, sine)
+    if np.isfinite(cosine.sum() + sine.sum()):
+        return cosine, sine
+    known = np.isfinite(cosine + sine)
+    last = np.maximum.accumulate(np.where(known, np.arange(known.shape[1]), -1), axis=1)
     first = np.argmax(known, axis=1)
-    filled = np.take_along_axis(angle, np.where(last < 0, first[:, None], last), axis=1)
-    return np.where(np.isfinite(filled), filled, 0.0)
+    source = np.where(last < 0, first[:, None], last)
+    cosine, sine = (np.take_along_axis(x, source, axis=1) for x in (cosine, sine))
+    found = np.isfinite(cosine + sine)
+    return np.where(found, cosine, 1.0), np.where(found, sine, 0.0)
 
 
-def angles_and_rates(
-    rotors: Array, nodes: Array, nearest: npt.NDArray[np.intp]
-) -> tuple[Array, Array, Array]:
-    """Angle and its first two derivatives from rotors (3, links, 2, lanes, n): each (links, lanes, n)."""
-    cosine, sine = rotors[0, :, 0], rotors[0, :, 1]
-    near = nodes[:, :, nearest]
-    angle = near + (np.arctan2(sine, cosine) - near + np.pi) % TURN - np.pi
-    rate = cosine * rotors[1, :, 1] - sine * rotors[1, :, 0]
-    second = cosine * rotors[2, :, 1] - sine * rotors[2, :, 0]
-    return angle, rate, second
+def angle_and_rates(rotor: Array, nodes: NodeTurns, nearest: npt.NDArray[np.intp], angle: Array) -> None:
+    """Fill in `angle` (3, lanes, n), angle and its first two derivatives, from a rotor (3, 2, lanes, n)."""
+    cosine, sine = rotor[0]
+    angle[0] = np.arctan2(sine, cosine)
+    turns = nodes.at(nearest, cosine, sine)
+    if turns.any():
+        angle[0] += TURN * turns
+    for order in (1, 2):
+        np.subtract(cosine * rotor[order, 1], sine * rotor[order, 0], out=angle[order])

@@ -13,11 +13,11 @@ from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
 from centrode.kinematics.closure import shortfall
 from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.fitting import check_fit
 from centrode.kinematics.groups import solve_group
 from centrode.locale import _
 from centrode.structure.constraints import Positions
-from centrode.structure.groups import Aim, Group, Meet, links_of, points_of
-from centrode.structure.rank import residuals_at
+from centrode.structure.groups import Aim, Group, Meet, TwoPointLink, links_of, points_of
 
 Number: TypeAlias = Any
 
@@ -25,8 +25,6 @@ DEGENERATE = 1e-9
 """A triangle flatter than this (sine) does not tell its side."""
 ANGLE_TOLERANCE = radians(5.0)
 """Initial angles name an assembly; further than this from the assembled position they are taken as a mistake."""
-RESIDUAL_TOLERANCE = 1e-9
-"""Greatest residual of a closed mechanism, in units of its greatest length."""
 
 SIDES = {"left": 1.0, "right": -1.0, "ahead": 1.0, "behind": -1.0}
 
@@ -59,13 +57,15 @@ def assemble(kinematics: Kinematics) -> Assembled:
     signs: dict[int, float] = {}
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
+            _check_apart(kinematics, group)
             if group.signed:
                 signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
             else:
                 solve_group(group, ARRAYS, kinematics.numbers, at, lambda x: x, lambda x: x)
             _check_finite(group, at)
+            _check_angles(kinematics, group, at)
             _solve_bounded(kinematics, group, bounded, signs.get(i, 1.0))
-    residual = _check_residuals(kinematics, at)
+    residual = check_fit(kinematics, at)
     return Assembled(signs, at, _angles(kinematics, at), residual)
 
 
@@ -83,7 +83,13 @@ def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
 
 
 def _solve_bounded(kinematics: Kinematics, group: Group, bounded: Positions, sign: float) -> None:
-    solve_group(group, ROUNDED, kinematics.numbers, bounded, lambda x: ROUNDED.sqrt(x) * sign, lambda x: x)
+    def divisor(x: Number) -> Number:
+        sine = Rounded.of(x)
+        if abs(sine.value) <= SAFETY * sine.bound:
+            raise _undetermined(group)
+        return sine
+
+    solve_group(group, ROUNDED, kinematics.numbers, bounded, lambda x: ROUNDED.sqrt(x) * sign, divisor)
 
 
 def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: float) -> float:
@@ -98,7 +104,6 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
             _("say on which side it goes on: [assembly] sides, {word}").format(word=_side_words(group)),
         )
     sign = stated if stated is not None else _side_by_angles(kinematics, group, options)
-    _check_angles(kinematics, group, options[sign])
     at.points.update(options[sign].points)
     at.poses.update(options[sign].poses)
     return sign
@@ -205,38 +210,38 @@ def _check_angles(kinematics: Kinematics, group: Group, at: Positions) -> None:
             )
 
 
+def _check_apart(kinematics: Kinematics, group: Group) -> None:
+    """Refuse a link that is to be turned by two of its points which are one place."""
+    pairs = [(rod.link, rod.centre, rod.point) for rod in group.rods] if isinstance(group, Meet) else []
+    if isinstance(group, TwoPointLink):
+        pairs = [(group.link, group.first, group.second)]
+    for link, first, second in pairs:
+        local = kinematics.numbers.local[link]
+        if np.hypot(*np.subtract(local[first], local[second])) <= DEGENERATE * kinematics.numbers.scale:
+            raise InputError(
+                f"[links.{link}]",
+                _("points {first} and {second} coincide, so they do not tell how the link turns").format(
+                    first=first, second=second
+                ),
+                _("correct their coordinates"),
+            )
+
+
 def _check_finite(group: Group, at: Positions) -> None:
     values = [x for p in points_of(group) for x in at.points[p]]
     values += [x for link in links_of(group) for x in at.poses[link].rotor]
     if not all(np.isfinite(float(x)) for x in values):
-        raise InputError(
-            name_of(group),
-            _(
-                "the initial position is undetermined there: two of its points coincide, or its lines are"
-                " parallel"
-            ),
-            _("start the drive elsewhere, or change the dimensions"),
-        )
+        raise _undetermined(group)
 
 
-def _check_residuals(kinematics: Kinematics, at: Positions) -> float:
-    """Worst residual (see `residuals_at`); refuse a position in which a constraint does not hold."""
-    residuals = residuals_at(kinematics.structure.constraints, kinematics.numbers, at)
-    worst = max(residuals, key=residuals.__getitem__)
-    value = residuals[worst]
-    if value > RESIDUAL_TOLERANCE:
-        off, unit = (value, "rad") if worst.angular else (value * float(kinematics.numbers.scale), "m")
-        raise InputError(
-            worst.label,
-            _("the initial position does not assemble: this constraint is off by {off:.3g} {unit}").format(
-                off=off, unit=unit
-            ),
-            _(
-                "it repeats other constraints, so its dimensions must fit theirs: correct them or take it"
-                " away"
-            ),
-        )
-    return value
+def _undetermined(group: Group) -> InputError:
+    return InputError(
+        name_of(group),
+        _(
+            "the initial position is undetermined there: two of its points coincide, or its lines are parallel"
+        ),
+        _("start the drive elsewhere, or change the dimensions"),
+    )
 
 
 def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:

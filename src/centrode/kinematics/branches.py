@@ -53,6 +53,8 @@ class Branches:
 
     def add(self, group: int, events: Sequence[Event]) -> None:
         """Record the events of a group; its sign is asked for only afterwards."""
+        if not events:
+            return
         self.events += sorted(events, key=lambda event: (event.lane, event.at))
         per_lane: list[list[float]] = [[] for _ in range(self.lanes)]
         for event in self.events:
@@ -94,7 +96,17 @@ class Branches:
 
     def reach(self, lane: int) -> tuple[float, float]:
         """Nearest limits on both sides of the initial position; infinite where there is none."""
-        limits = [event.at for event in self.events if event.kind == "limit" and event.lane == lane]
-        below = [at for at in limits if at <= self.initial]
-        above = [at for at in limits if at >= self.initial]
-        return max(below, default=-np.inf), min(above, default=np.inf)
+        low, high = self.reaches()[lane]
+        return float(low), float(high)
+
+    def reaches(self) -> Array:
+        """Nearest limits of every mechanism: shape (lanes, 2)."""
+        found = np.full((self.lanes, 2), (-np.inf, np.inf))
+        for event in self.events:
+            if event.kind == "limit":
+                low, high = found[event.lane]
+                if event.at <= self.initial:
+                    found[event.lane, 0] = max(low, event.at)
+                if event.at >= self.initial:
+                    found[event.lane, 1] = min(high, event.at)
+        return found

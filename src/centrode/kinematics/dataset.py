@@ -14,6 +14,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.errors import Status
 from centrode.kinematics.assembly import name_of
 from centrode.kinematics.solve import Solved
+from centrode.locale import speaking
 from centrode.model.files import mechanism_text
 from centrode.quantities import QUANTITIES
 
@@ -25,7 +26,10 @@ EVENT_KINDS = ("limit", "change point")
 
 
 def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Dataset:
-    """The labelled result of a motion; a batch has the dimension `mechanism` in front."""
+    """The labelled result of a motion; a batch has the dimension `mechanism` in front.
+
+    What it says in words is English, whatever language messages are in, so that the same motion gives the same file.
+    """
     batch = bool(vary)
     front = (BATCH,) if batch else ()
     variables = _in_time(solved, front)
@@ -46,40 +50,26 @@ def _named(name: str, dimensions: tuple[str, ...], values: Any, drive_unit: str 
     return dimensions, values, attributes
 
 
-def _frame_included(solved: Solved, moving: Array, order: int) -> Array:
-    """Points of the frame before the moving ones: their places are constant, absent where the motion is."""
-    numbers = solved.ready.structure.dimensions.frame
-    frame = np.zeros((*moving.shape[:2], len(numbers), 2))
-    if order == 0:
-        frame[:] = np.array(list(numbers.values())).reshape(len(numbers), 2)
-    frame[solved.status == Status.OPEN] = np.nan
-    return np.concatenate([frame, moving], axis=2)
-
-
 def _lanes(array: npt.NDArray[Any], batch: tuple[str, ...]) -> npt.NDArray[Any]:
     return array if batch else array[0]
 
 
 def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Values and derivatives by time, by the chain rule from those by the path's parameter."""
-    rate, second = solved.span.rate[:, None], solved.span.second_rate[:, None]
-    found: dict[str, Variable] = {}
+    span = solved.span
     kinds = (
-        (("position", "velocity", "acceleration"), solved.points, ("sample", "point", "axis")),
+        (("position", "velocity", "acceleration"), solved.all_points, ("sample", "point", "axis")),
         (("angle", "angular_velocity", "angular_acceleration"), solved.angles, ("sample", "link")),
         (("slide", "slide_velocity", "slide_acceleration"), solved.slides, ("sample", "guide")),
     )
+    found: dict[str, Variable] = {}
     for names, by_parameter, dimensions in kinds:
-        shape = rate if by_parameter.ndim == 4 else rate[:, :, None]
-        change = second if by_parameter.ndim == 4 else second[:, :, None]
-        in_time = (
-            by_parameter[0],
-            by_parameter[1] * shape,
-            by_parameter[2] * shape**2 + by_parameter[1] * change,
-        )
-        for order, (name, values) in enumerate(zip(names, in_time, strict=True)):
-            if dimensions[1] == "point":
-                values = _frame_included(solved, values, order)
+        along = (slice(None), *[None] * (by_parameter.ndim - 3))  # samples, then what stands behind them
+        factors = (None, span.rate, span.rate**2)
+        for order, (name, factor) in enumerate(zip(names, factors, strict=True)):
+            values = by_parameter[order] if factor is None else by_parameter[order] * factor[along]
+            if order == 2 and span.second_rate.any():
+                values += by_parameter[1] * span.second_rate[along]
             found[name] = _named(name, front + dimensions, _lanes(values, front))
     return found
 
@@ -89,9 +79,8 @@ def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]
     unit = "rad" if solved.ready.kinematics.path.driven[0].drive.kind == "angle" else "m"
     found = {}
     for order, word in ((1, "velocity"), (2, "acceleration")):
-        points = _frame_included(solved, solved.points[order], order)
         for name, values, dimensions in (
-            (f"{word}_coefficient", points, ("sample", "point", "axis")),
+            (f"{word}_coefficient", solved.all_points[order], ("sample", "point", "axis")),
             (f"angular_{word}_coefficient", solved.angles[order], ("sample", "link")),
             (f"slide_{word}_coefficient", solved.slides[order], ("sample", "guide")),
         ):
@@ -113,7 +102,8 @@ def _events(solved: Solved) -> dict[str, Variable]:
     events = solved.events()
     by_time = solved.ready.kinematics.path.by_time
     kind = "rad" if by_time or solved.ready.kinematics.path.driven[0].drive.kind == "angle" else "m"
-    groups = [name_of(solved.ready.structure.groups[event.group]) for event in events]
+    with speaking("en"):
+        groups = [name_of(solved.ready.structure.groups[event.group]) for event in events]
     kinds = np.array([EVENT_KINDS.index(event.kind) for event in events], dtype=np.int8)
     dimensions, values, attributes = _named("event_kind", ("event",), kinds)
     attributes["flag_values"] = np.arange(len(EVENT_KINDS), dtype=np.int8)
@@ -133,11 +123,14 @@ def _coordinates(solved: Solved) -> dict[str, Any]:
     values = path.drive_values(ARRAYS, solved.span.parameter)
     count = len(solved.span.time)
     drives = np.stack([np.broadcast_to(value, (count,)) for value in values.values()], axis=-1)
-    unit = "rad" if all(one.drive.kind == "angle" for one in path.driven) else "m"
+    units = ["rad" if one.drive.kind == "angle" else "m" for one in path.driven]
+    drive_value = _named("drive_value", ("sample", "drive"), drives, units[0])
+    if len(set(units)) > 1:
+        drive_value[2]["units"] = " ".join(units)
     frame = tuple(solved.ready.structure.dimensions.frame)
     return {
         "time": _named("time", ("sample",), solved.span.time),
-        "drive_value": _named("drive_value", ("sample", "drive"), drives, unit),
+        "drive_value": drive_value,
         "point": _labels(frame + solved.layout.points),
         "link": _labels(solved.layout.links),
         "guide": _labels(solved.layout.guides),
@@ -152,11 +145,13 @@ def _labels(names: tuple[str, ...]) -> npt.NDArray[np.str_]:
 
 def _attributes(solved: Solved) -> dict[str, Any]:
     mechanism = solved.ready.mechanism
+    with speaking("en"):
+        worst = solved.worst_constraint.label
     return {
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
         "version": version("centrode"),
         "mobility": solved.ready.mobility,
         "worst_residual": float(np.nanmax(solved.residual, initial=0.0)),
-        "worst_residual_constraint": solved.worst_constraint,
+        "worst_residual_constraint": worst,
     }

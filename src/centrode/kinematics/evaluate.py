@@ -43,17 +43,27 @@ class Kinematics:
         self, m: Namespace, parameter: Number, branch: Branch, divisor: Branch = as_it_is
     ) -> Positions:
         """Positions at a parameter of the path, over any algebra."""
-        at = Positions.of_frame(self.numbers, self.path.drive_values(m, parameter))
-        for i, group in enumerate(self.structure.groups):
+        at = self.frame(m, parameter)
+        self.advance(at, range(len(self.structure.groups)), m, branch, divisor)
+        return at
+
+    def frame(self, m: Namespace, parameter: Number) -> Positions:
+        """What is known before the first group of the plan."""
+        return Positions.of_frame(self.numbers, self.path.drive_values(m, parameter))
+
+    def advance(
+        self, at: Positions, groups: range, m: Namespace, branch: Branch, divisor: Branch = as_it_is
+    ) -> None:
+        """Add what a stretch of the plan gives, the groups before it being known."""
+        for i in groups:
             solve_group(
-                group,
+                self.structure.groups[i],
                 m,
                 self.numbers,
                 at,
                 lambda radicand, i=i: branch(i, radicand),  # type: ignore[misc]
                 lambda value, i=i: divisor(i, value),  # type: ignore[misc]
             )
-        return at
 
     def guard(self, m: Namespace, parameter: Number, group: int, branch: Branch) -> Number:
         """The number whose sign decides whether a group closes: its radicand, or the divisor of a group without one."""

@@ -8,19 +8,22 @@ divisor's sign change is a limit as well (the group's point goes to infinity).
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.evaluate import Kinematics, Reached
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.roots import bracketed_roots
 from centrode.structure.constraints import Positions
+from centrode.structure.groups import Aim, Meet
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -39,18 +42,35 @@ class Scan:
     mesh: Array
 
     def run(self) -> Positions:
-        """Find all events, record them in the branches, and return the positions on the mesh with first derivatives."""
+        """Find all events, record them in the branches, and return the positions on the mesh as plain arrays."""
+        groups = self.kinematics.structure.groups
+        last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
+        along = self.mesh[None, :]
         with np.errstate(all="ignore"):
-            return self.kinematics.positions(
-                JETS, Jet.variable(self.mesh[None, :], 1), self._branch, self._divisor
-            )
+            at = self.kinematics.frame(JETS, Jet.variable(along, 1))
+            self.kinematics.advance(at, range(last), JETS, self._branch, self._divisor)
+            with suppress(Reached):  # slopes are needed up to the last radicand, and not beyond
+                self.kinematics.advance(at, range(last, last + 1), JETS, self._last_branch, self._divisor)
+            plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
+            self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, self._plain_branch)
+        return plain
 
     def _branch(self, group: int, radicand: Jet) -> Jet:
-        value, slope = self._on_mesh(radicand)
-        self.branches.largest[group] = np.nanmax(np.abs(np.where(np.isfinite(value), value, 0.0)), axis=1)
-        self.branches.add(group, self._events(group, value, slope))
+        self._find(group, radicand)
         root: Jet = JETS.sqrt(radicand) * self.branches.sign(group, self.mesh[None, :])
         return root
+
+    def _last_branch(self, group: int, radicand: Jet) -> Jet:
+        self._find(group, radicand)
+        raise Reached(radicand)
+
+    def _plain_branch(self, group: int, radicand: Number) -> Number:
+        return np.sqrt(radicand) * self.branches.sign(group, self.mesh[None, :])
+
+    def _find(self, group: int, radicand: Jet) -> None:
+        value, slope = self._on_mesh(radicand)
+        self.branches.largest[group] = _largest(value)
+        self.branches.add(group, self._events(group, value, slope))
 
     def _divisor(self, group: int, divisor: Number) -> Number:
         if isinstance(divisor, Jet):
@@ -86,7 +106,7 @@ class Scan:
                 roots = self._roots(group, lanes[chosen], first[chosen], last[chosen])
                 found += _limits(group, lanes[chosen], roots)
             settled[lanes[dips], cells[dips]] = True
-        lanes, cells = _sign_changes(np.where(np.isfinite(value), value, np.nan))
+        lanes, cells = _sign_changes(value)
         rest = ~settled[lanes, cells]
         roots = self._roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
         return found + _limits(group, lanes[rest], roots)
@@ -145,23 +165,36 @@ def guard_with_bound(
     return np.broadcast_to(guard.value, at.shape), np.broadcast_to(guard.bound, at.shape)
 
 
+def _largest(value: Array) -> Array:
+    """Greatest finite magnitude of each row."""
+    largest: Array = np.max(np.abs(value), axis=1)
+    if np.isfinite(largest).all():
+        return largest
+    return np.asarray(np.max(np.abs(np.where(np.isfinite(value), value, 0.0)), axis=1))
+
+
 def _low_minima(mesh: Array, value: Array, slope: Array) -> tuple[Lanes, Lanes]:
     """Cells with a minimum that may reach zero."""
-    left, right = value[:, :-1], value[:, 1:]
-    falls, rises = slope[:, :-1], slope[:, 1:]
+    lanes, cells = np.nonzero((slope[:, :-1] < 0.0) & (slope[:, 1:] >= 0.0))
+    left, right = value[lanes, cells], value[lanes, cells + 1]
+    falls, rises = slope[lanes, cells], slope[lanes, cells + 1]
     with np.errstate(all="ignore"):
-        step = np.diff(mesh)
+        step = mesh[cells + 1] - mesh[cells]
         meeting = (right - left - rises * step) / (falls - rises)
         lowest = left + falls * meeting
         low = lowest <= LOW * np.minimum(left, right)
-    lanes, cells = np.nonzero((falls < 0.0) & (rises >= 0.0) & low)
-    return lanes, cells
+    return lanes[low], cells[low]
 
 
 def _sign_changes(value: Array) -> tuple[Lanes, Lanes]:
+    """Cells between finite values of opposite signs."""
+    # most mechanisms of a batch have none, and their least value says so
+    rows = np.nonzero(~((np.min(value, axis=1) > 0.0) | (np.max(value, axis=1) < 0.0)))[0]
+    some = value[rows]
     with np.errstate(all="ignore"):
-        lanes, cells = np.nonzero(value[:, :-1] * value[:, 1:] < 0.0)
-    return lanes, cells
+        found, cells = np.nonzero(np.where(np.isfinite(some), some, np.nan)[:, :-1] * some[:, 1:] < 0.0)
+    finite = np.isfinite(some[found, cells + 1])
+    return rows[found[finite]], cells[finite]
 
 
 def _limits(group: int, lanes: Lanes, at: Array) -> list[Event]:

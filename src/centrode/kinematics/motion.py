@@ -13,14 +13,13 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import Progress, solve
+from centrode.kinematics.solve import Progress, asked_span, solve_span
+from centrode.kinematics.spans import span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.dimensions import Dimensions, dimensions_of
 
 Values: TypeAlias = Mapping[str, npt.ArrayLike]
-
-DEFAULT_SAMPLES = 361
 
 
 def motion(
@@ -28,10 +27,11 @@ def motion(
     samples: int | None = None,
     start: float | None = None,
     stop: float | None = None,
+    at: npt.ArrayLike | None = None,
     vary: Values | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Positions, velocities and accelerations of a mechanism at evenly spaced samples.
+    """Positions, velocities and accelerations of a mechanism, at evenly spaced samples or at given places.
 
     Parameters
     ----------
@@ -40,6 +40,8 @@ def motion(
     start, stop : float [rad or m, or s]
         Values of the drive; times where the drive is a law of time or there are several drives. One turn of
         an angle drive if left out.
+    at : (n,) values of the drive [rad or m], or times [s]
+        Exactly these places instead of evenly spaced ones; the three arguments before it are then not used.
     vary : path -> (batch,) values [m or rad]
         Dimensions that vary from mechanism to mechanism ("links.AC.length"); the signs of the initial
         position stay.
@@ -58,19 +60,13 @@ def motion(
     NotComputedYet
         It names what this version does not compute.
     """
-    study = mechanism.study
     prepared = ready(mechanism)
     numbers, lanes = _batch(mechanism, vary)
-    solved = solve(
-        prepared,
-        samples if samples is not None else study.samples or DEFAULT_SAMPLES,
-        study.start if start is None else start,
-        study.stop if stop is None else stop,
-        numbers,
-        lanes,
-        progress,
-    )
-    return dataset_of(solved, vary)
+    if at is None:
+        span = asked_span(prepared, samples, start, stop)
+    else:
+        span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+    return dataset_of(solve_span(prepared, span, numbers, lanes, progress), vary)
 
 
 def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None, int]:

@@ -31,7 +31,7 @@ def mend_change_points(
     """Replace the samples next to change points by interpolation; they become `ok` (or stay cut off)."""
     if not branches.smooth:
         return
-    for lane in range(branches.lanes):
+    for lane in sorted({event.lane for event in branches.events}):
         events = [event.at for event in branches.events if event.lane == lane]
         for at in sorted({event.at for event in branches.of_kind("change point", lane)}):
             half = _half_width(at, events, branches.unit)
@@ -58,7 +58,8 @@ def _mend(
     side = 1.5 - 0.5 * np.cos((np.arange(NODES) + 0.5) * np.pi / NODES)
     nodes = half * np.concatenate([-side[::-1], side])
     lanes = np.full(len(nodes), lane, dtype=np.intp)
-    known, _opened, _zero = evaluate_columns(kinematics, samples.layout, branches, at + nodes, lanes)
+    known = np.empty((ORDERS, samples.layout.width, len(nodes)))
+    evaluate_columns(kinematics, samples.layout, branches, at + nodes, lanes, known)
     if not np.isfinite(known).all():
         return  # another event lies inside the stretch: the samples keep the status they have
     weights = np.array([1.0 / np.prod((node - np.delete(nodes, k)) / half) for k, node in enumerate(nodes)])
@@ -66,6 +67,9 @@ def _mend(
     basis = weights / away
     basis /= basis.sum(axis=1, keepdims=True)
     for order in range(ORDERS):
-        samples.columns[order][:, lane, chosen] = known[order] @ basis.T
+        # node by node: a matrix product rounds differently for different numbers of samples
+        samples.columns[order][:, lane, chosen] = sum(
+            known[order][:, k, None] * basis[None, :, k] for k in range(len(nodes))
+        )
     status = samples.status[lane]
     status[chosen[status[chosen] != Status.CUT_OFF]] = Status.OK

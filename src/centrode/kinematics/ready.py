@@ -9,8 +9,9 @@ import numpy as np
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError, NotComputedYet
-from centrode.kinematics.assembly import RESIDUAL_TOLERANCE, Assembled, assemble, name_of
+from centrode.kinematics.assembly import Assembled, assemble, name_of
 from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.fitting import RESIDUAL_TOLERANCE, length_misfits
 from centrode.kinematics.paths import path_of
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -63,6 +64,7 @@ def ready(mechanism: Mechanism) -> Ready:
     kinematics = Kinematics(structure, structure.dimensions, path)
     for group in structure.groups:
         if isinstance(group, Newton):
+            _refuse_surplus_drives(structure)
             raise NotComputedYet(
                 name_of(group),
                 _("it is a group of higher class, which is not computed yet"),
@@ -71,6 +73,19 @@ def ready(mechanism: Mechanism) -> Ready:
     assembled = assemble(kinematics)
     mobility = _mobility(kinematics, assembled)
     return Ready(kinematics, assembled, mobility)
+
+
+def _refuse_surplus_drives(structure: Structure) -> None:
+    """Surplus drives tear groups apart: tell these rather than the group that is left over.
+
+    A mechanism that is rigid at a generic position may move by its special dimensions.
+    """
+    if 1 <= structure.generic_mobility < structure.drives:
+        raise InputError(
+            "[[drives]]",
+            drives_against_mobility(structure.drives, structure.generic_mobility),
+            _("give as many drives as the mobility"),
+        )
 
 
 def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
@@ -116,10 +131,11 @@ def _places(kinematics: Kinematics, assembled: Assembled) -> list[Positions]:
 def _check_redundant(kinematics: Kinematics, at: Positions) -> None:
     """A redundant constraint must also hold elsewhere, or the mechanism does not move at all."""
     redundant = kinematics.structure.redundant
-    for constraint, value in residuals_at(redundant, kinematics.numbers, at).items():
+    found = {c.label: value for c, value in residuals_at(redundant, kinematics.numbers, at).items()}
+    for label, value in (found | length_misfits(kinematics, at)).items():
         if value > RESIDUAL_TOLERANCE:
             raise InputError(
-                constraint.label,
+                label,
                 _("it holds in the initial position only, so the mechanism cannot move"),
                 _("correct the dimensions, or take the constraint away"),
             )

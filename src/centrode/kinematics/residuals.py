@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -11,37 +14,50 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.sampling import Samples, positions_from
 from centrode.locale import _
-from centrode.structure.constraints import is_drive
+from centrode.structure.constraints import Constraint, Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
 
-def residuals(kinematics: Kinematics, samples: Samples, parameter: Array) -> tuple[Array, str]:
-    """Greatest residual at each sample (lanes, n), and the name of the constraint that is worst of all.
+@dataclass(frozen=True)
+class UnitLength:
+    """What a link's direction keeps: the length of its unit vector, that is, the distances within the link."""
+
+    link: str
+
+    @property
+    def label(self) -> str:
+        """Name for messages."""
+        return _("length of link {link}").format(link=self.link)
+
+
+Kept: TypeAlias = Constraint | UnitLength
+
+
+def residuals(kinematics: Kinematics, samples: Samples, parameter: Array) -> tuple[Array, Kept]:
+    """Greatest residual at each sample (lanes, n), and the constraint that is worst of all.
 
     Lengths are measured in the mechanism's greatest length, angles in rad; NaN where there is no position.
     """
-    at = positions_from(kinematics, samples.layout, samples.columns[0])
-    scale = kinematics.numbers.scale
+    at = positions_from(kinematics, samples.layout, samples.columns[0], parameter)
     worst = np.zeros(samples.status.shape)
-    worst_label, worst_value = "", -1.0
+    greatest: dict[Kept, float] = {}
     with np.errstate(all="ignore"):
-        for constraint in kinematics.structure.constraints:
-            if is_drive(constraint):
-                continue
-            unit = 1.0 if constraint.angular else scale
-            size = [np.abs(r) / unit for r in constraint.residual(ARRAYS, kinematics.numbers, at)]
-            found = np.broadcast_to(np.maximum.reduce(size), worst.shape)
+        for kept, found in _each(kinematics, at):
             worst = np.maximum(worst, found)
-            greatest = float(np.nanmax(found, initial=0.0))
-            if greatest > worst_value:
-                worst_label, worst_value = constraint.label, greatest
-        for link in samples.layout.links:
-            rotor = at.poses[link].rotor
-            found = np.abs(rotor[0] * rotor[0] + rotor[1] * rotor[1] - 1.0)
-            worst = np.maximum(worst, found)
-            if float(np.nanmax(found, initial=0.0)) > worst_value:
-                worst_value = float(np.nanmax(found, initial=0.0))
-                worst_label = _("length of link {link}").format(link=link)
-    missing = ~np.isfinite(samples.columns[0]).all(axis=0)
-    return np.where(missing, np.nan, worst), worst_label
+            greatest[kept] = float(np.nanmax(found, initial=0.0))
+    if samples.status.any():
+        worst[~np.isfinite(samples.columns[0]).all(axis=0)] = np.nan
+    return worst, max(greatest, key=greatest.__getitem__)
+
+
+def _each(kinematics: Kinematics, at: Positions) -> Iterator[tuple[Kept, Array]]:
+    """Every constraint, drives included, with the size of its residual."""
+    scale = kinematics.numbers.scale
+    for constraint in kinematics.structure.constraints:
+        unit = 1.0 if constraint.angular else scale
+        size = [np.abs(r) for r in constraint.residual(ARRAYS, kinematics.numbers, at)]
+        yield constraint, functools.reduce(np.maximum, size) / unit
+    for link in kinematics.structure.mechanism.links:
+        rotor = at.poses[link].rotor
+        yield UnitLength(link), np.abs(rotor[0] * rotor[0] + rotor[1] * rotor[1] - 1.0)

@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import SAFETY
 from centrode.errors import Status
@@ -24,6 +25,7 @@ from centrode.structure.constraints import Positions, line_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 Number: TypeAlias = Any
 
 ORDERS = 3
@@ -64,6 +66,18 @@ class Samples:
     columns: Array
     status: npt.NDArray[np.int8]
 
+    def of(self, rows: slice) -> Samples:
+        """A view of some mechanisms of the batch."""
+        return Samples(self.layout, self.columns[:, :, rows], self.status[rows])
+
+    @property
+    def complete(self) -> Mask:
+        """Where every number is finite (lanes, n)."""
+        # one NaN or infinity makes the sum one, which is cheaper to find than a mask of every number
+        with np.errstate(all="ignore"):
+            complete: Mask = np.isfinite(self.columns.sum(axis=(0, 1)))
+        return complete if complete.all() else np.asarray(np.isfinite(self.columns).all(axis=(0, 1)))
+
 
 def layout_of(kinematics: Kinematics) -> Layout:
     """Columns for a mechanism: moving points, links and guides in description order."""
@@ -76,14 +90,19 @@ def layout_of(kinematics: Kinematics) -> Layout:
 
 
 def evaluate_columns(
-    kinematics: Kinematics, layout: Layout, branches: Branches, parameter: Array, lanes: Lanes | None
-) -> tuple[Array, npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    """Columns at parameters by the closed forms alone, and where a group is open or at zero of its radicand.
+    kinematics: Kinematics,
+    layout: Layout,
+    branches: Branches,
+    parameter: Array,
+    lanes: Lanes | None,
+    columns: Array,
+) -> tuple[Mask, Mask]:
+    """Fill in columns by the closed forms alone; returns where a group is open, and where at zero of its radicand.
 
-    With `lanes` None the result has shape (3, columns, lanes, n) for n parameters; otherwise the parameters
-    have shape (k,), each with its own lane, and the result (3, columns, k).
+    With `lanes` None the columns have shape (3, columns, lanes, n) for n parameters; otherwise the parameters
+    have shape (k,), each with its own lane, and the columns (3, columns, k).
     """
-    shape = (branches.lanes, len(parameter)) if lanes is None else parameter.shape
+    shape = columns.shape[2:]
     along = parameter[None, :] if lanes is None else parameter
     opened, zero = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
 
@@ -93,15 +112,18 @@ def evaluate_columns(
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
         value = np.broadcast_to(radicand.value, shape)
         below = _at_zero(kinematics, branches, group, value, parameter, lanes)
+        if below is None:
+            np.logical_or(opened, value < 0.0, out=opened)
+            return JETS.sqrt(radicand) * sign
         zero[below] = True
         opened[(value < 0.0) & ~below] = True
-        cleared = np.where(below, 0.0, value) if below.any() else radicand.value
-        return JETS.sqrt(Jet((cleared, *radicand.coefficients[1:]))) * sign
+        return JETS.sqrt(Jet((np.where(below, 0.0, value), *radicand.coefficients[1:]))) * sign
 
     used = kinematics if lanes is None else kinematics.taken(lanes)
     with np.errstate(all="ignore"):
         at = used.positions(JETS, Jet.variable(along, ORDERS - 1), branch)
-        return _columns(used, layout, at, shape), opened, zero
+        _fill_columns(used, layout, at, columns)
+    return opened, zero
 
 
 def _at_zero(
@@ -111,30 +133,29 @@ def _at_zero(
     value: Array,
     parameter: Array,
     lanes: Lanes | None,
-) -> npt.NDArray[np.bool_]:
-    """Where a radicand is zero within its rounding error."""
-    zero = np.zeros(value.shape, dtype=bool)
+) -> Mask | None:
+    """Where a radicand is zero within its rounding error; None if nowhere."""
     suspects = np.nonzero(np.abs(value) <= SUSPECT * branches.greatest(group, lanes))
-    if len(suspects[0]):
-        own = suspects[0] if lanes is None else lanes[suspects[0]]
-        _value, bound = guard_with_bound(kinematics, branches, group, own, parameter[suspects[-1]])
-        zero[suspects] = np.abs(value[suspects]) <= SAFETY * bound
-    return zero
+    if not len(suspects[0]):
+        return None
+    own = suspects[0] if lanes is None else lanes[suspects[0]]
+    _value, bound = guard_with_bound(kinematics, branches, group, own, parameter[suspects[-1]])
+    zero = np.zeros(value.shape, dtype=bool)
+    zero[suspects] = np.abs(value[suspects]) <= SAFETY * bound
+    return zero if zero.any() else None
 
 
-def _columns(kinematics: Kinematics, layout: Layout, at: Positions, shape: tuple[int, ...]) -> Array:
+def _fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
     numbers: list[Number] = [x for point in layout.points for x in at.points[point]]
     numbers += [x for link in layout.links for x in at.poses[link].rotor]
     numbers += [_slide(kinematics, at, guide) for guide in layout.guides]
-    columns = np.empty((ORDERS, layout.width, *shape))
     for k, number in enumerate(numbers):
         if isinstance(number, Jet):
-            for order in range(ORDERS):
-                columns[order, k] = number.derivative(order)
+            columns[0, k], columns[1, k] = number.coefficients[:2]
+            np.multiply(number.coefficients[2], 2.0, out=columns[2, k])  # Taylor coefficients are over k!
         else:
             columns[0, k] = number
             columns[1:, k] = 0.0
-    return columns
 
 
 def _slide(kinematics: Kinematics, at: Positions, guide_id: str) -> Number:
@@ -144,31 +165,30 @@ def _slide(kinematics: Kinematics, at: Positions, guide_id: str) -> Number:
     return dot(direction, subtract(at.points[guide.point], through))
 
 
-def sample(kinematics: Kinematics, layout: Layout, branches: Branches, parameter: Array) -> Samples:
-    """Columns and statuses at the parameters of a path (before the neighbourhood of change points is mended)."""
-    columns, opened, zero = evaluate_columns(kinematics, layout, branches, parameter, None)
-    status = np.zeros(opened.shape, dtype=np.int8)
-    reach = np.array([branches.reach(lane) for lane in range(branches.lanes)])
+def sample(kinematics: Kinematics, branches: Branches, parameter: Array, samples: Samples) -> None:
+    """Fill in columns and statuses (before the neighbourhood of change points is mended)."""
+    opened, zero = evaluate_columns(kinematics, samples.layout, branches, parameter, None, samples.columns)
+    reach = branches.reaches()
     margin = 4.0 * np.spacing(np.abs(parameter))
     beyond = (parameter < reach[:, :1] - margin) | (parameter > reach[:, 1:] + margin)
-    status[zero | ~np.isfinite(columns).all(axis=(0, 1))] = Status.SINGULAR
-    status[beyond] = Status.CUT_OFF
-    status[opened] = Status.OPEN
-    return Samples(layout, columns, status)
+    samples.status[zero | ~samples.complete] = Status.SINGULAR
+    samples.status[beyond] = Status.CUT_OFF
+    samples.status[opened] = Status.OPEN
 
 
 def settle(samples: Samples) -> None:
     """Absence is NaN: nothing stands in open samples, and no derivatives in singular ones."""
-    opened = samples.status == Status.OPEN
-    samples.columns[:, :, opened] = np.nan
+    if not samples.status.any():
+        return  # incomplete samples have a status
+    samples.columns[:, :, samples.status == Status.OPEN] = np.nan
     samples.columns[1:, :, samples.status == Status.SINGULAR] = np.nan
     samples.columns[~np.isfinite(samples.columns)] = np.nan
 
 
-def positions_from(kinematics: Kinematics, layout: Layout, values: Array) -> Positions:
+def positions_from(kinematics: Kinematics, layout: Layout, values: Array, parameter: Array) -> Positions:
     """Positions as plain arrays from the values of the columns (columns first), to evaluate constraints on."""
     numbers = kinematics.numbers
-    at = Positions.of_frame(numbers, {})
+    at = Positions.of_frame(numbers, kinematics.path.drive_values(ARRAYS, parameter))
     for k, point in enumerate(layout.points):
         at.points[point] = (values[2 * k], values[2 * k + 1])
     for k, link in enumerate(layout.links):

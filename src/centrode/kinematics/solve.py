@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.angles import angles_and_rates, node_angles
+from centrode.errors import Status
+from centrode.kinematics.angles import angle_and_rates, node_turns
 from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan
 from centrode.kinematics.patches import mend_change_points
 from centrode.kinematics.paths import Path
 from centrode.kinematics.ready import Ready
-from centrode.kinematics.residuals import residuals
-from centrode.kinematics.sampling import Layout, layout_of, sample, settle
+from centrode.kinematics.residuals import Kept, residuals
+from centrode.kinematics.sampling import ORDERS, Layout, Samples, layout_of, sample, settle
 from centrode.kinematics.spans import Span, span_of
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -27,8 +29,10 @@ Progress: TypeAlias = Callable[[int, int], None]
 
 OFF_GRID = 0.37
 """Mesh nodes stand this share of a step away from the initial position: events like to lie at round values."""
-CHUNK = 200_000
+CHUNK = 100_000
 """Mechanisms of a batch are solved together as long as mechanisms times samples stay below this."""
+DEFAULT_SAMPLES = 361
+"""One a degree over a turn, both ends included."""
 SEARCH = 4.0
 """How far the limits of a displacement drive are looked for, in units of the mechanism's greatest length."""
 
@@ -39,19 +43,20 @@ class Solved:
 
     Arrays hold value, first and second derivative by the path's parameter first: `points` (3, lanes, n,
     points, 2) [m], `angles` (3, lanes, n, links) [rad], `slides` (3, lanes, n, guides) [m]; `status` and
-    `residual` (lanes, n).
+    `residual` (lanes, n). `all_points` has the frame's points before the moving ones.
     """
 
     ready: Ready
     span: Span
     layout: Layout
     branches: Branches
+    all_points: Array
     points: Array
     angles: Array
     slides: Array
     status: npt.NDArray[np.int8]
     residual: Array
-    worst_constraint: str
+    worst_constraint: Kept
 
     def events(self, lane: int = 0) -> list[Event]:
         """Events between the ends of the span and the initial position, in the order of the path."""
@@ -73,18 +78,60 @@ def solve(
     progress: Progress | None = None,
 ) -> Solved:
     """Motion at evenly spaced samples; `numbers` with one value a mechanism make it a batch of `lanes`."""
-    kinematics = ready.kinematics if numbers is None else replace(ready.kinematics, numbers=_upright(numbers))
     reach = _reach_if_needed(ready, start, stop)
-    span = span_of(kinematics.path, samples, start, stop, reach)
+    span = span_of(ready.kinematics.path, samples, start, stop, reach)
+    return solve_span(ready, span, numbers, lanes, progress)
+
+
+def asked_span(ready: Ready, samples: int | None, start: float | None, stop: float | None) -> Span:
+    """Evenly spaced samples; what is left out is what the description asks for."""
+    study = ready.mechanism.study
+    start = study.start if start is None else start
+    stop = study.stop if stop is None else stop
+    count = samples if samples is not None else study.samples or DEFAULT_SAMPLES
+    return span_of(ready.kinematics.path, count, start, stop, _reach_if_needed(ready, start, stop))
+
+
+def solve_span(
+    ready: Ready,
+    span: Span,
+    numbers: Dimensions | None = None,
+    lanes: int = 1,
+    progress: Progress | None = None,
+) -> Solved:
+    """Motion at the samples of a span."""
+    kinematics = ready.kinematics if numbers is None else replace(ready.kinematics, numbers=_upright(numbers))
+    samples = len(span.parameter)
     size = max(1, CHUNK // max(samples, len(mesh_of(kinematics.path, span.parameter))))
+    layout, fixed = layout_of(kinematics), 2 * len(kinematics.numbers.frame)
+    # one room for everything that depends on the samples: what is big is written once
+    room = np.empty((ORDERS, fixed + layout.width, lanes, samples))
+    angles = np.empty((ORDERS, len(layout.links), lanes, samples))
+    whole = Samples(layout, room[:, fixed:], np.zeros((lanes, samples), dtype=np.int8))
     parts = []
     for first in range(0, lanes, size):
-        count = min(size, lanes - first)
-        part = kinematics if lanes == 1 else _lanes(kinematics, first, count)
-        parts.append(_solve_part(ready, part, span, count))
+        rows = slice(first, min(first + size, lanes))
+        part = kinematics if lanes == 1 else _lanes(kinematics, rows)
+        parts.append(_solve_part(ready, part, span, whole.of(rows), angles[:, :, rows]))
         if progress is not None:
-            progress(first + count, lanes)
-    return parts[0] if len(parts) == 1 else _joined(parts)
+            progress(rows.stop, lanes)
+    _fill_frame(room[:, :fixed], kinematics.numbers, whole)
+    points = room[:, : fixed + layout.first_rotor].reshape(
+        ORDERS, fixed // 2 + len(layout.points), 2, lanes, samples
+    )
+    return Solved(
+        ready,
+        span,
+        layout,
+        _joined([part.branches for part in parts]),
+        np.moveaxis(points, (1, 2), (3, 4)),
+        np.moveaxis(points[:, fixed // 2 :], (1, 2), (3, 4)),
+        np.moveaxis(angles, 1, 3),
+        np.moveaxis(whole.columns[:, layout.first_slide :], 1, 3),
+        whole.status,
+        np.concatenate([part.residual for part in parts]),
+        max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0))).worst_constraint,
+    )
 
 
 def mesh_of(path: Path, parameter: Array) -> Array:
@@ -120,77 +167,64 @@ def _upright(numbers: Dimensions) -> Dimensions:
     return numbers.mapped(lambda x: x if isinstance(x, float) else np.asarray(x, dtype=np.float64)[:, None])
 
 
-def _lanes(kinematics: Kinematics, first: int, count: int) -> Kinematics:
+def _lanes(kinematics: Kinematics, rows: slice) -> Kinematics:
     def cut(x: Number) -> Number:
-        return x if isinstance(x, float) else x[first : first + count]
+        return x if isinstance(x, float) else x[rows]
 
     return replace(kinematics, numbers=kinematics.numbers.mapped(cut))
 
 
-def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, lanes: int) -> Solved:
-    layout = layout_of(kinematics)
-    branches = branches_of(ready, lanes)
+@dataclass(frozen=True)
+class _Part:
+    """What is found for some mechanisms of a batch besides the samples."""
+
+    branches: Branches
+    residual: Array
+    worst_constraint: Kept
+
+
+def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples, angles: Array) -> _Part:
+    """Fill in the samples and angles of some mechanisms of a batch."""
+    branches = branches_of(ready, samples.status.shape[0])
     mesh = mesh_of(kinematics.path, span.parameter)
     on_mesh = Scan(kinematics, branches, mesh).run()
-    samples = sample(kinematics, layout, branches, span.parameter)
+    sample(kinematics, branches, span.parameter, samples)
     mend_change_points(kinematics, branches, samples, span.parameter)
     settle(samples)
-    residual, worst = residuals(kinematics, samples, span.parameter)
-    points, rotors, slides = _split(layout, samples.columns)
-    angles = _angles(ready, layout, on_mesh, mesh, rotors, span.parameter)
-    return Solved(
-        ready,
-        span,
-        layout,
-        branches,
-        np.moveaxis(points, (1, 2), (3, 4)),
-        np.moveaxis(angles, 1, 3),
-        np.moveaxis(slides, 1, 3),
-        samples.status,
-        residual,
-        worst,
-    )
+    _fill_angles(ready, on_mesh, mesh, samples, span.parameter, angles)
+    return _Part(branches, *residuals(kinematics, samples, span.parameter))
 
 
-def _split(layout: Layout, columns: Array) -> tuple[Array, Array, Array]:
-    tail = columns.shape[2:]
-    points = columns[:, : layout.first_rotor].reshape(3, len(layout.points), 2, *tail)
-    rotors = columns[:, layout.first_rotor : layout.first_slide].reshape(3, len(layout.links), 2, *tail)
-    return points, rotors, columns[:, layout.first_slide :]
-
-
-def _angles(
-    ready: Ready, layout: Layout, on_mesh: Any, mesh: Array, rotors: Array, parameter: Array
-) -> Array:
+def _fill_angles(
+    ready: Ready, on_mesh: Positions, mesh: Array, samples: Samples, parameter: Array, angles: Array
+) -> None:
     path = ready.kinematics.path
     start = int(np.argmin(np.abs(mesh - path.initial)))
-    initial = np.array([ready.assembled.angles[link] for link in layout.links])
-    nodes = node_angles(on_mesh, layout.links, initial, start, (rotors.shape[3], len(mesh)))
     nearest = np.clip(np.round((parameter - mesh[0]) / path.step).astype(np.intp), 0, len(mesh) - 1)
-    return np.stack(angles_and_rates(rotors, nodes, nearest))
+    for k, link in enumerate(samples.layout.links):
+        nodes = node_turns(on_mesh, link, ready.assembled.angles[link], start, len(mesh))
+        column = samples.layout.first_rotor + 2 * k
+        angle_and_rates(samples.columns[:, column : column + 2], nodes, nearest, angles[:, k])
 
 
-def _joined(parts: Sequence[Solved]) -> Solved:
-    def joined(name: str, axis: int) -> Any:
-        return np.concatenate([getattr(part, name) for part in parts], axis=axis)
+def _fill_frame(columns: Array, numbers: Dimensions, samples: Samples) -> None:
+    """Points of the frame: their places are constant, absent where the motion is."""
+    columns[1:] = 0.0
+    for k, place in enumerate(x for at in numbers.frame.values() for x in at):
+        columns[0, k] = place
+    opened = samples.status == Status.OPEN
+    if opened.any():
+        columns[:, :, opened] = np.nan
 
-    worst = max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0)))
-    branches = parts[0].branches
+
+def _joined(parts: Sequence[Branches]) -> Branches:
+    """The branches of a batch from those of its parts: signs and events, which is what is asked for afterwards."""
+    if len(parts) == 1:
+        return parts[0]
     lane = 0
     events: list[Event] = []
     for part in parts:
-        events += [replace(event, lane=event.lane + lane) for event in part.branches.events]
-        lane += part.branches.lanes
-    signs: Mapping[int, Array] = {
-        group: np.concatenate([part.branches.signs[group] for part in parts]) for group in branches.signs
-    }
-    return replace(
-        parts[0],
-        branches=replace(branches, lanes=lane, signs=dict(signs), events=events),
-        points=joined("points", 1),
-        angles=joined("angles", 1),
-        slides=joined("slides", 1),
-        status=joined("status", 0),
-        residual=joined("residual", 0),
-        worst_constraint=worst.worst_constraint,
-    )
+        events += [replace(event, lane=event.lane + lane) for event in part.events]
+        lane += part.lanes
+    signs = {group: np.concatenate([part.signs[group] for part in parts]) for group in parts[0].signs}
+    return replace(parts[0], lanes=lane, signs=signs, events=events)

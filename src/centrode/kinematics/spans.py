@@ -60,6 +60,15 @@ def span_of(
     return span
 
 
+def span_at(path: Path, places: Array) -> Span:
+    """Samples at given places: values of the drive [rad or m], or times [s] where the drive is a law."""
+    if places.ndim != 1 or not 1 <= len(places) <= MAX_SAMPLES or not np.isfinite(places).all():
+        raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
+    span = _at_values(path, places) if is_uniform(path) else _at_times(path, places)
+    _check_extent(path, span)
+    return span
+
+
 def _check_extent(path: Path, span: Span) -> None:
     """Refuse what a mesh of nodes cannot cover: a law without a value, and ends too far from the initial position."""
     for one in path.driven:
@@ -90,13 +99,16 @@ def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
 def _even_values(
     path: Path, samples: int, start: float | None, stop: float | None, reach: tuple[float, float]
 ) -> Span:
+    first, last = _range(path, start, stop, reach)
+    return _at_values(path, np.linspace(first, last, samples))
+
+
+def _at_values(path: Path, values: Array) -> Span:
     one = path.driven[0]
     speed = float(one.drive.speed or 0.0)
     if speed == 0.0:
         raise InputError(f"[[drives]] {one.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
-    first, last = _range(path, start, stop, reach)
-    values = np.linspace(first, last, samples)
-    ones = np.ones(samples)
+    ones = np.ones(len(values))
     return Span((values - one.start) / speed, values, speed * ones, 0.0 * ones)
 
 
@@ -131,9 +143,12 @@ def _even_times(path: Path, samples: int, start: float | None, stop: float | Non
     last = stop if stop is not None else min((span[1] for span in spans), default=None)
     if last is None:
         last = _one_turn(path)
-    time = np.linspace(first, last, samples)
+    return _at_times(path, np.linspace(first, last, samples))
+
+
+def _at_times(path: Path, time: Array) -> Span:
     if path.by_time:
-        return Span(time, time, np.ones(samples), np.zeros(samples))
+        return Span(time, time, np.ones(len(time)), np.zeros(len(time)))
     return Span(time, *_derivatives(path.driven[0], time))
 
 

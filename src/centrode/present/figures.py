@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import xarray
 from matplotlib.figure import Figure
 
 from centrode.locale import _
@@ -12,17 +13,18 @@ from centrode.present.abscissa import Abscissa, main_abscissa, over_drive
 from centrode.present.curves import sheet
 from centrode.present.panels import Motion, Rows, of_coefficients, of_guides, of_links, of_points
 from centrode.present.pictures import mechanism_figure, paths_figure
-from centrode.present.scene import scene_of
+from centrode.present.scene import Scene, scene_of
 from centrode.present.style import house_style, pens
 
 if TYPE_CHECKING:
-    import xarray
-
     from centrode.model.mechanism import Mechanism
 
 
 def motion_figures(
-    mechanism: Mechanism, dataset: xarray.Dataset, instants: Sequence[float] = ()
+    mechanism: Mechanism,
+    dataset: xarray.Dataset,
+    instants: Sequence[float] = (),
+    at_instants: xarray.Dataset | None = None,
 ) -> dict[str, Figure]:
     """Figures of a planar motion, by name.
 
@@ -35,6 +37,8 @@ def motion_figures(
     instants : sequence of float [rad or m; s with several drives]
         Values of the drive at which the mechanism is drawn, each at the nearest sample; left out, it is drawn in
         the initial position over fading pictures of others.
+    at_instants : Dataset, optional
+        The motion exactly there.
 
     Returns
     -------
@@ -51,13 +55,24 @@ def motion_figures(
         }
         motion = Motion(mechanism, dataset, scene, main_abscissa(mechanism, dataset), kept)
         figures = {
-            "mechanism": mechanism_figure(scene, dataset, instants),
+            "mechanism": mechanism_figure(*_with(mechanism, dataset, at_instants), instants),
             "paths": paths_figure(scene, dataset, motion.abscissa, kept["point"]),
         }
         for name, (title, rows, abscissa) in sheets(motion).items():
             if any(panel.curves for row in rows for panel in row):
                 figures[name] = sheet(title, mechanism.title, rows, abscissa)
     return figures
+
+
+def _with(
+    mechanism: Mechanism, dataset: xarray.Dataset, more: xarray.Dataset | None
+) -> tuple[Scene, xarray.Dataset]:
+    """Scene and samples of a motion, with samples of another behind them."""
+    if more is None:
+        return scene_of(mechanism, dataset), dataset
+    together = [data.drop_dims("event", errors="ignore") for data in (more, dataset)]
+    joined = xarray.concat(together, dim="sample", data_vars="minimal")
+    return scene_of(mechanism, joined), joined
 
 
 def sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:

@@ -7,7 +7,7 @@ together.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
@@ -56,6 +56,18 @@ class Positions:
     def of_frame(cls, dimensions: Dimensions, drives: Mapping[str, Number]) -> Positions:
         """What is known before any group is solved: the frame and the drives."""
         return cls(dict(dimensions.frame), {FRAME: AT_REST}, drives)
+
+    def mapped(self, function: Callable[[Number], Number]) -> Positions:
+        """The same positions with every number replaced by function(number)."""
+
+        def vector(v: Vector) -> Vector:
+            return function(v[0]), function(v[1])
+
+        return Positions(
+            {name: vector(v) for name, v in self.points.items()},
+            {name: Pose(vector(pose.origin), vector(pose.rotor)) for name, pose in self.poses.items()},
+            {name: function(value) for name, value in self.drives.items()},
+        )
 
 
 Row: TypeAlias = dict[Entity, tuple[Number, ...]]

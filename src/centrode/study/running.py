@@ -9,14 +9,14 @@ import xarray as xr
 
 from centrode.errors import InputError, Status
 from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.motion import DEFAULT_SAMPLES
-from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import Solved, solve
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.solve import Solved, asked_span, solve_span
+from centrode.kinematics.spans import is_uniform, span_at
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.study.checking import Check, check_of
-from centrode.study.wording import Words
+from centrode.study.wording import Words, extremes, unit_of_drive
 
 NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 
@@ -34,13 +34,14 @@ class Scalar:
 
 
 @dataclass(frozen=True)
-class Study:
+class StudyResults:
     """A mechanism with everything `run` computes of it.
 
     Attributes
     ----------
     check : structure, mobility, plan, initial position
     motion : the labelled motion
+    instants : the motion exactly at the instants the description asks for
     scalars : name -> number and SI unit, as `summary.json` holds them
     failure : why the mechanism cannot do what was asked, in a sentence; None if it can
     notes : what a reader should know besides
@@ -50,6 +51,7 @@ class Study:
     mechanism: Mechanism
     check: Check
     motion: xr.Dataset
+    instants: xr.Dataset | None
     scalars: dict[str, Scalar]
     failure: str | None
     notes: tuple[str, ...]
@@ -58,21 +60,36 @@ class Study:
 
 def study(
     mechanism: Mechanism, samples: int | None = None, start: float | None = None, stop: float | None = None
-) -> Study:
+) -> StudyResults:
     """Check a mechanism and compute its motion; the arguments are those of `motion`."""
-    asked = mechanism.study
     prepared = ready(mechanism)
-    solved = solve(
-        prepared,
-        samples if samples is not None else asked.samples or DEFAULT_SAMPLES,
-        asked.start if start is None else start,
-        asked.stop if stop is None else stop,
-    )
+    solved = solve_span(prepared, asked_span(prepared, samples, start, stop))
     checked = check_of(prepared)
     data = dataset_of(solved)
     words = Words(solved)
     notes = tuple(_notes(mechanism, solved, words))
-    return Study(mechanism, checked, data, _scalars(checked, solved), _failure(solved, words), notes, words)
+    return StudyResults(
+        mechanism,
+        checked,
+        data,
+        _at_instants(prepared),
+        _scalars(checked, solved),
+        _failure(solved, words),
+        notes,
+        words,
+    )
+
+
+def _at_instants(prepared: Ready) -> xr.Dataset | None:
+    """The motion exactly at the instants the description asks for; None without any.
+
+    They are values of the drive, which a law of time may pass more than once: then the nearest samples have to do.
+    """
+    places = prepared.mechanism.study.instants
+    path = prepared.kinematics.path
+    if not places or not (path.by_time or is_uniform(path)):
+        return None
+    return dataset_of(solve_span(prepared, span_at(path, np.array(places))))
 
 
 def range_value(mechanism: Mechanism, text: str, where: str) -> float:
@@ -91,18 +108,21 @@ def range_value(mechanism: Mechanism, text: str, where: str) -> float:
 
 def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
     path = solved.ready.kinematics.path
-    unit = "s" if path.by_time else "rad" if path.driven[0].drive.kind == "angle" else "m"
+    unit = "s" if path.by_time else unit_of_drive(path.driven[0].drive)
     parameter = solved.span.parameter
     found = {
         "mobility": Scalar(checked.mobility, "1"),
         "mobility_by_chebyshev": Scalar(checked.count.mobility, "1"),
+        "moving_links": Scalar(checked.count.moving_links, "1"),
+        "lower_pairs": Scalar(checked.count.lower_pairs, "1"),
+        "higher_pairs": Scalar(checked.count.higher_pairs, "1"),
         "redundant_constraints": Scalar(len(checked.redundant), "1"),
         "loops": Scalar(checked.count.loops, "1"),
         "initial_residual": Scalar(checked.initial_residual, "1"),
         "samples": Scalar(len(parameter), "1"),
         "first_value": Scalar(float(parameter[0]), unit),
         "last_value": Scalar(float(parameter[-1]), unit),
-        "duration": Scalar(float(abs(solved.span.time[-1] - solved.span.time[0])), "s"),
+        **_times(solved),
         "worst_residual": Scalar(float(np.nanmax(solved.residual, initial=0.0)), "1"),
     }
     for status in Status:
@@ -111,6 +131,18 @@ def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
         places = dict.fromkeys(event.at for event in solved.events() if event.kind == kind)
         for number, place in enumerate(places, start=1):
             found[f"{kind.replace(' ', '_')}_{number}"] = Scalar(place, unit)
+    return found
+
+
+def _times(solved: Solved) -> dict[str, Scalar]:
+    """How long the motion takes; where a law drives, from when to when, and what each drive reaches."""
+    first, last = float(solved.span.time[0]), float(solved.span.time[-1])
+    found = {"duration": Scalar(abs(last - first), "s")}
+    if not is_uniform(solved.ready.kinematics.path):
+        found |= {"first_time": Scalar(first, "s"), "last_time": Scalar(last, "s")}
+        for drive, low, high in extremes(solved):
+            unit = unit_of_drive(drive)
+            found |= {f"least_{drive.id}": Scalar(low, unit), f"greatest_{drive.id}": Scalar(high, unit)}
     return found
 
 

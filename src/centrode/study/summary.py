@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -11,7 +11,9 @@ from centrode.locale import _
 from centrode.quantities import status_word
 from centrode.structure.assur import AssurGroup
 from centrode.study.checking import Check
-from centrode.study.running import Study
+
+if TYPE_CHECKING:
+    from centrode.study.running import StudyResults  # brings xarray, which a check does without
 
 Rows: TypeAlias = list[tuple[str, str]]
 
@@ -49,14 +51,14 @@ def _group(group: AssurGroup) -> str:
     )
 
 
-def motion_rows(study: Study) -> Rows:
+def motion_rows(study: StudyResults) -> Rows:
     """Range, events, statuses and worst residual of a motion."""
     words, data = study.words, study.motion
     status = data["status"].to_numpy()
     counts = [(Status(code), int(np.sum(status == code))) for code in np.unique(status)]
     said = ", ".join(f"{status_word(which)} {number}" for which, number in counts)
     residual = _("{value:.1e} of the greatest length ({constraint})").format(
-        value=data.attrs["worst_residual"], constraint=data.attrs["worst_residual_constraint"] or _("none")
+        value=data.attrs["worst_residual"], constraint=words.solved.worst_constraint.label
     )
     return [
         (_("range"), words.range()),

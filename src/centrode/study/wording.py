@@ -6,10 +6,26 @@ from math import tau
 
 import numpy as np
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.assembly import name_of
 from centrode.kinematics.solve import Solved
+from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
+from centrode.model.mechanism import Drive
 from centrode.quantities import display_unit
+
+
+def unit_of_drive(drive: Drive) -> str:
+    """SI unit of a drive's value."""
+    return "rad" if drive.kind == "angle" else "m"
+
+
+def extremes(solved: Solved) -> list[tuple[Drive, float, float]]:
+    """Least and greatest value of each drive among the samples [rad or m]."""
+    path = solved.ready.kinematics.path
+    values = path.drive_values(ARRAYS, solved.span.parameter)
+    drives = [one.drive for one in path.driven]
+    return [(drive, float(np.min(values[drive.id])), float(np.max(values[drive.id]))) for drive in drives]
 
 
 class Words:
@@ -19,24 +35,33 @@ class Words:
         self.solved = solved
         path = solved.ready.kinematics.path
         display = solved.ready.mechanism.display
-        self.unit = "s" if path.by_time else "rad" if path.driven[0].drive.kind == "angle" else "m"
-        if self.unit == "s":
-            self.factor, self.shown = 1.0, "s"
-        else:
-            self.factor, self.shown = display_unit(self.unit, display.length, display.angle)
+        self.unit = "s" if path.by_time else unit_of_drive(path.driven[0].drive)
+        self.display = display
 
-    def value(self, at: float) -> str:
-        """A value of the path's parameter with its unit, angles also in degrees."""
-        text = f"{at * self.factor:.9g} {self.shown}"
-        return f"{text} ({np.degrees(at):.6g} deg)" if self.shown == "rad" else text
+    def value(self, at: float, unit: str = "") -> str:
+        """A value of the path's parameter (or one in another unit) with its unit, angles also in degrees."""
+        unit = unit or self.unit
+        factor, shown = display_unit(unit, self.display.length, self.display.angle)
+        text = f"{at * factor:.9g} {shown}"
+        return f"{text} ({np.degrees(at):.6g} deg)" if shown == "rad" else text
 
     def range(self) -> str:
-        """From where to where, and how long that takes."""
+        """From where to where, and how long that takes; times and extremes where a law drives."""
         parameter, time = self.solved.span.parameter, self.solved.span.time
+        if not is_uniform(self.solved.ready.kinematics.path):
+            first, last = (self.value(float(time[end]), "s") for end in (0, -1))
+            reached = ", ".join(self._reached(*extreme) for extreme in extremes(self.solved))
+            return _("{first} to {last}, {drives}").format(first=first, last=last, drives=reached)
         return _("{first} to {last} in {duration:.6g} s").format(
             first=self.value(float(parameter[0])),
             last=self.value(float(parameter[-1])),
             duration=abs(float(time[-1] - time[0])),
+        )
+
+    def _reached(self, drive: Drive, low: float, high: float) -> str:
+        unit = unit_of_drive(drive)
+        return _("{drive} between {low} and {high}").format(
+            drive=drive.id, low=self.value(low, unit), high=self.value(high, unit)
         )
 
     def events(self, kind: str) -> str:

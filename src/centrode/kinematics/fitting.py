@@ -1,0 +1,62 @@
+"""Whether a position closes: constraints that repeat others hold only if their dimensions fit."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from centrode.errors import InputError
+from centrode.kinematics.evaluate import Kinematics
+from centrode.locale import _
+from centrode.structure.constraints import Positions
+from centrode.structure.groups import TwoPointLink
+from centrode.structure.plan import drives_against_mobility
+from centrode.structure.rank import residuals_at
+
+RESIDUAL_TOLERANCE = 1e-9
+"""Greatest residual of a closed mechanism, in units of its greatest length."""
+
+
+def check_fit(kinematics: Kinematics, at: Positions) -> float:
+    """Worst residual (see `residuals_at`); refuse a position in which a constraint does not hold."""
+    structure = kinematics.structure
+    found = residuals_at(structure.constraints, kinematics.numbers, at)
+    residuals = {c.label: (value, c.angular) for c, value in found.items()}
+    residuals |= {label: (value, False) for label, value in length_misfits(kinematics, at).items()}
+    label = max(residuals, key=lambda name: residuals[name][0])
+    value, angular = residuals[label]
+    if value > RESIDUAL_TOLERANCE:
+        if structure.drives > max(structure.generic_mobility, 1):
+            # the drives contradict each other: that is what is wrong, not a length
+            raise InputError(
+                "[[drives]]",
+                drives_against_mobility(structure.drives, structure.generic_mobility),
+                _("give as many drives as the mobility"),
+            )
+        off, unit = (value, "rad") if angular else (value * float(kinematics.numbers.scale), "m")
+        raise InputError(
+            label,
+            _("the initial position does not assemble: this constraint is off by {off:.3g} {unit}").format(
+                off=off, unit=unit
+            ),
+            _(
+                "it repeats other constraints, so its dimensions must fit theirs: correct them or take it"
+                " away"
+            ),
+        )
+    return value
+
+
+def length_misfits(kinematics: Kinematics, at: Positions) -> dict[str, float]:
+    """By how much links laid through two known points do not fit between them, in units of the greatest length.
+
+    Their constraints do not tell: such a link is stretched to fit.
+    """
+    misfits = {}
+    for group in kinematics.structure.groups:
+        if isinstance(group, TwoPointLink):
+            local = kinematics.numbers.local[group.link]
+            given = np.hypot(*np.subtract(local[group.first], local[group.second]))
+            reached = np.hypot(*np.subtract(at.points[group.first], at.points[group.second]))
+            label = _("length of link {link}").format(link=group.link)
+            misfits[label] = float(abs(reached - given)) / float(kinematics.numbers.scale)
+    return misfits
