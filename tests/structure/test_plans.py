@@ -1,0 +1,192 @@
+"""Plans, groups, structural formulas and mobilities of the examples and of mechanisms known to be awkward."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import centrode as ct
+from centrode.structure.assur import structural_formula
+from centrode.structure.mobility import count
+from centrode.structure.plan import structure_of
+
+FORMULAS = {
+    "andrews-squeezer": "I(OF) -> II(EF, BE) -> II(GE, AG) -> II(HE, AH)",
+    "antiparallelogram": "I(OA) -> II(AB, DB)",
+    "chebyshev-straight-line": "I(AB, OA, DB)",
+    "elliptic-trammel": "I(slider A) -> II(AB, slider B)",
+    "inverted-slider-crank": "I(OA) -> II(lever, slider A)",
+    "jansen-leg": "I(OA) -> II(AB, ZB) -> II(BC, ZC) -> II(AE, ZE) -> II(CF, EF) -> II(FG, EG)",
+    "klann-leg": "I(crank) -> II(rod, rocker) -> II(leg, hip)",
+    "oscillating-cylinder": "I(OA) -> II(cylinder, rod)",
+    "pantograph": "I(CQ) -> II(OB, AQ) -> II(QE, BP)",
+    "peaucellier": "I(QC) -> II(OB, CB) -> II(OE, CE) -> II(BP, EP)",
+    "scissor-lift": "I(slider A) -> II(OC, AB) -> II(BE, CF) -> II(platform, slider E)",
+    "scotch-yoke": "I(OA) -> II(yoke, slider A)",
+    "shaper": "I(OA) -> II(lever, slider A) -> II(BE, slider E)",
+    "six-bar-press": "I(OA) -> II(AB, CD) -> II(DH, slider)",
+    "slider-between-cranks": "I(OA) -> II(AC, slider C) -> II(CB, BD)",
+    "stephenson-six-bar": "I(OA) -> II(coupler, DB) -> II(PR, FR)",
+    "tangent-mechanism": "I(lever) -> II(slider P, slider slot)",
+    "two-link-arm": "I(OA) -> I(AB)",
+    "watt-six-bar": "I(OA) -> II(coupler, rocker) -> II(PR, QR)",
+}
+BY_CHEBYSHEV = {"three-crank-parallelogram": 0, "two-link-arm": 2}
+
+
+@pytest.mark.parametrize("name", FORMULAS)
+def test_structural_formulas_of_the_examples(name: str) -> None:
+    assert structural_formula(structure_of(ct.example(name))) == FORMULAS[name]
+
+
+@pytest.mark.parametrize("name", ct.example_names())
+def test_mobility_by_rank_and_by_chebyshev(name: str) -> None:
+    checked = ct.check(ct.example(name))
+    assert checked.mobility == (2 if name == "two-link-arm" else 1)
+    assert checked.count.mobility == BY_CHEBYSHEV.get(name, 1)
+    # n links and p pairs: each loop closes with three equations, 3 p - 2 p equations of pairs, so p - n loops
+    assert checked.count.loops == checked.count.lower_pairs - checked.count.moving_links
+
+
+def test_redundant_constraints_are_named() -> None:
+    checked = ct.check(ct.example("three-crank-parallelogram"))
+    assert set(checked.redundant) == {"point E in link FE"}
+    assert ct.check(ct.example("crank-rocker")).redundant == ()
+
+
+def bars(
+    frame: dict[str, tuple[float, float]], drive: str = "OA", guides: Any = (), **lengths: Any
+) -> ct.Mechanism:
+    """A mechanism of bars named by their ends (a number), or of links with points (a mapping)."""
+    links = {
+        name: {"length": v} if isinstance(v, float) else {"points": v} for name, v in lengths.items()
+    }  # fmt: skip
+    return ct.Mechanism(
+        frame={"points": {name: list(v) for name, v in frame.items()}},
+        links=links,
+        guides=list(guides),
+        drives=[{"link": drive, "speed": 1.0, "start": 0.5}],
+    )
+
+
+O, D, F = (0.0, 0.0), (4.0, 0.0), (1.0, 4.0)
+K = {"A": [0.0, 0.0], "B": [3.0, 0.0], "P": [1.5, 1.0]}
+R = {"D": [0.0, 0.0], "B": [2.5, 0.0], "Q": [2.6, 1.0]}
+RAIL = {"point": "C", "through": [0.0, 0.0], "direction": [1.0, 0.0]}
+
+
+def k4_coupler() -> ct.Mechanism:
+    """The coupler is a braced quadrilateral of bars: counting alone assigns its redundancy wrongly."""
+    return bars({"O": O, "D": D}, OA=1.0, AB=3.5, AE=2.0, AF=2.0, BE=2.5, BF=2.2, EF=1.5, DB=3.0)
+
+
+def truss_crank() -> ct.Mechanism:
+    return bars({"O": O}, guides=[RAIL], OA=1.0, AB=1.0, OB=1.0, BC=3.0)
+
+
+def parallel_cranks() -> ct.Mechanism:
+    coupler = {"A": [0.0, 0.0], "B": [4.0, 0.0], "E": [2.0, 0.0]}
+    return bars({"O": O, "D": D, "F": (2.0, 0.0)}, OA=1.0, K=coupler, DB=1.0, FE=1.0)
+
+
+def scotch() -> ct.Mechanism:
+    guides = [
+        {"point": "H", "through": [0.0, 0.0], "direction": [1.0, 0.0], "link": "Y"},
+        {"point": "A", "on": "Y", "through": [0.0, 0.0], "direction": [0.0, 1.0]},
+    ]
+    return bars({"O": O}, guides=guides, OA=1.0, Y={"H": [2.0, 0.0]})
+
+
+def collar() -> ct.Mechanism:
+    guides = [{"point": "C", "through": [0.0, 0.6], "direction": [1.0, 0.0], "link": "Y"}]
+    return bars({"O": O}, guides=guides, OA=1.0, AB=3.0, Y={"B": [0.2, 0.1], "C": [0.0, 0.0]})
+
+
+PLANS: dict[str, tuple[ct.Mechanism, list[str]]] = {
+    "four-bar": (bars({"O": O, "D": D}, OA=1.0, AB=3.5, DB=3.0), ["crank", "RRR"]),
+    "slider-crank": (bars({"O": O}, guides=[RAIL], OA=1.0, AC=3.0), ["crank", "RRP"]),
+    "inverted slider-crank": (
+        bars(
+            {"O": O, "D": D},
+            guides=[{"point": "A", "on": "S", "through": [0.0, 0.2], "direction": [1.0, 0.0]}],
+            OA=1.0, S={"D": [0.0, 0.0]},
+        ),
+        ["crank", "RPR"],
+    ),
+    "scotch yoke": (scotch(), ["crank", "RPP"]),
+    "collar": (collar(), ["crank", "RRP"]),
+    "Watt": (bars({"O": O, "D": D}, OA=1.0, K=K, R=R, PW=1.2, QW=1.1), ["crank", "RRR", "RRR"]),
+    "Stephenson": (bars({"O": O, "D": D, "F": F}, OA=1.0, K=K, DB=2.5, PW=1.5, FW=1.5), ["crank", "RRR", "RRR"]),
+    "truss crank": (truss_crank(), ["crank", "RRR", "RRP"]),
+    "three cranks": (parallel_cranks(), ["crank", "RRR", "link by two points"]),
+    "driven coupler": (bars({"O": O, "D": D}, drive="AB", OA=1.0, AB=3.5, DB=3.0), ["RRR"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PLANS)
+def test_plans(name: str) -> None:
+    mechanism, kinds = PLANS[name]
+    found = [group.kind for group in structure_of(mechanism).groups if group.kind != "rigid point"]
+    assert found == kinds
+
+
+def test_coupler_of_a_braced_quadrilateral() -> None:
+    structure = structure_of(k4_coupler())
+    assert len(structure.redundant) == 1
+    assert structure.generic_mobility == 1
+    assert count(k4_coupler()).mobility == 0
+
+
+def test_hinges_of_three_links_are_counted_twice() -> None:
+    counted = count(ct.example("jansen-leg"))
+    # eleven bars; A, B, C, E, F, G, Z are hinges of several links
+    assert (counted.moving_links, counted.lower_pairs, counted.loops) == (11, 16, 5)
+
+
+CLASS_III = {
+    "Watt driven at the rod": bars({"O": O, "D": D}, drive="PW", OA=1.0, K=K, R=R, PW=1.2, QW=1.1),
+    "Stephenson driven at the rocker": bars(
+        {"O": O, "D": D, "F": F}, drive="FW", OA=1.0, K=K, DB=2.5, PW=1.5, FW=1.5
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CLASS_III)
+def test_groups_of_class_three_are_not_computed_yet(name: str) -> None:
+    assert "higher class" in [group.kind for group in structure_of(CLASS_III[name]).groups]
+    with pytest.raises(ct.NotComputedYet, match="higher class, which is not computed yet") as caught:
+        ct.check(CLASS_III[name])
+    assert caught.value.exit_code == 2
+
+
+def driven(links: list[str], **lengths: Any) -> ct.Mechanism:
+    free = bars({"O": O, "D": D}, **lengths)
+    return free.model_copy(
+        update={
+            "drives": tuple(ct.Drive(link=name, speed=1.0, start=0.3 + k) for k, name in enumerate(links))
+        }
+    )
+
+
+def test_drives_are_compared_with_the_mobility() -> None:
+    four_bar = {"OA": 1.0, "AB": 3.5, "DB": 3.0}
+    with pytest.raises(
+        ct.InputError, match=r"2 drives are given, but the mobility \(by rank\) is 1; give as many"
+    ):
+        ct.check(driven(["OA", "DB"], **four_bar))
+    with pytest.raises(
+        ct.InputError, match=r"1 drive is given, but the mobility \(by rank\) is 2; add drives"
+    ):
+        structure_of(driven(["OA"], OA=1.0, AB=2.0, BC=2.0, DC=1.0))
+    with pytest.raises(ct.InputError, match="the mechanism has no drive"):
+        structure_of(driven([], **four_bar))
+    assert structure_of(driven(["OA", "DC"], OA=1.0, AB=2.0, BC=2.0, DC=1.0)).generic_mobility == 2
+
+
+def test_special_dimensions_move_though_the_count_says_no() -> None:
+    assert ct.check(ct.example("three-crank-parallelogram")).mobility == 1
+    parts = ct.example("three-crank-parallelogram")
+    wrong = ct.with_value(parts, "links.FE.length", 1.001)
+    with pytest.raises(ct.InputError, match=r"length of link FE: .* this constraint is off by 0\.001 m"):
+        ct.check(wrong)
