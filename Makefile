@@ -36,7 +36,7 @@ catalogue-check: $(FOR_TESTS) ## translations complete and compiled
 	$(BIN)/python tools/catalogues.py check
 
 tests: $(FOR_TESTS) ## tests and the code blocks of the documentation
-	$(BIN)/pytest -q -n auto --dist loadgroup
+	$(BIN)/pytest -q -n auto --dist loadfile  # the blocks of one document share their names
 
 format: $(FOR_TESTS) ## format and mend what can be mended
 	$(BIN)/ruff check --fix .
@@ -47,6 +47,7 @@ catalogues: $(FOR_TESTS) ## take new sentences into the catalogues and compile t
 	$(BIN)/python tools/catalogues.py compile
 
 benchmarks: $(FOR_TESTS) ## ratios against peers and against the machine
+	$(PIP) install --editable '.[dev,benchmarks]'
 	$(BIN)/python -m benchmarks
 
 clean: ## remove everything that make made

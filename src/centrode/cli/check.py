@@ -6,6 +6,7 @@ import click
 
 import centrode as ct
 from centrode.cli import output
+from centrode.cli.about import about
 from centrode.locale import _, mark
 
 
@@ -17,7 +18,9 @@ from centrode.locale import _, mark
 )
 def check(mechanism: str) -> None:
     """Print the structure of a mechanism; exit code 2 if it cannot be driven or does not assemble."""
-    checked = ct.check(ct.load(mechanism))
+    description = ct.load(mechanism)
+    with about(mechanism):
+        checked = ct.check(description)
     steps = [(_("plan") if not i else "", f"{i + 1}. {step}") for i, step in enumerate(checked.plan)]
     click.echo(_(checked.title) or mechanism)
     click.echo()

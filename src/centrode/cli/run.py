@@ -10,6 +10,7 @@ import click
 
 import centrode as ct
 from centrode.cli import output
+from centrode.cli.about import about
 from centrode.cli.progress import Progress
 from centrode.errors import MotionError
 from centrode.locale import _, mark, ngettext
@@ -56,7 +57,8 @@ def run(
         progress.say(_("solving"))
         first = None if start is None else ct.range_value(description, start, "--from")
         last = None if stop is None else ct.range_value(description, stop, "--to")
-        study = ct.study(description, samples, first, last)
+        with about(mechanism):
+            study = ct.study(description, samples, first, last)
         write(study, draft, progress, figures=not no_figures)
         names = sorted(path.name for path in draft.iterdir())
     click.echo(summary_text(study, mechanism))

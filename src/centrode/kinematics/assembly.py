@@ -58,10 +58,13 @@ def assemble(kinematics: Kinematics) -> Assembled:
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
-            if group.signed:
-                signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
-            else:
-                solve_group(group, ARRAYS, kinematics.numbers, at, lambda x: x, lambda x: x)
+            try:
+                if group.signed:
+                    signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
+                else:
+                    solve_group(group, ARRAYS, kinematics.numbers, at, lambda x: x, lambda x: x)
+            except ZeroDivisionError:  # plain floats do not become infinite as arrays do
+                raise _undetermined(group) from None
             _check_finite(group, at)
             _check_angles(kinematics, group, at)
             _solve_bounded(kinematics, group, bounded, signs.get(i, 1.0))

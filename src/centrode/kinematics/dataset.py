@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
-from importlib.metadata import version
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
 import xarray as xr
 
+from centrode import __version__
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import Status
 from centrode.kinematics.assembly import name_of
@@ -45,9 +47,13 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
 
 
 def _named(name: str, dimensions: tuple[str, ...], values: Any, drive_unit: str = "rad") -> Variable:
+    return dimensions, values, dict(_words(name, drive_unit))
+
+
+@functools.cache
+def _words(name: str, drive_unit: str) -> Mapping[str, Any]:
     quantity = QUANTITIES[name].for_drive(drive_unit)
-    attributes = {"units": quantity.unit, "symbol": quantity.symbol, "long_name": quantity.long_name}
-    return dimensions, values, attributes
+    return {"units": quantity.unit, "symbol": quantity.symbol, "long_name": quantity.long_name}
 
 
 def _lanes(array: npt.NDArray[Any], batch: tuple[str, ...]) -> npt.NDArray[Any]:
@@ -135,12 +141,13 @@ def _coordinates(solved: Solved) -> dict[str, Any]:
         "link": _labels(solved.layout.links),
         "guide": _labels(solved.layout.guides),
         "drive": _labels(tuple(values)),
-        "axis": ["x", "y"],
+        "axis": _labels(("x", "y")),
     }
 
 
-def _labels(names: tuple[str, ...]) -> npt.NDArray[np.str_]:
-    return np.array(names, dtype=str)
+def _labels(names: tuple[str, ...]) -> Any:
+    # an index as it is: from an array xarray makes one by way of every array library it finds, pint included
+    return pd.Index(names, dtype=object)
 
 
 def _attributes(solved: Solved) -> dict[str, Any]:
@@ -150,7 +157,7 @@ def _attributes(solved: Solved) -> dict[str, Any]:
     return {
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
-        "version": version("centrode"),
+        "version": __version__,
         "mobility": solved.ready.mobility,
         "worst_residual": float(np.nanmax(solved.residual, initial=0.0)),
         "worst_residual_constraint": worst,

@@ -23,8 +23,8 @@ from centrode.model.mechanism import Drive, Mechanism
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
 
-NODES_PER_TURN = 1440
-"""Mesh on which events are looked for: two events closer than a quarter of a degree may be missed."""
+NODES_PER_TURN = 720
+"""Mesh on which events are looked for: two events closer than half a degree may be missed."""
 
 JETS = JetFunctions(ARRAYS)
 

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.errors import Status
+from centrode.errors import InputError, Status
 from centrode.kinematics.angles import angle_and_rates, node_turns
 from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.evaluate import Kinematics
@@ -20,6 +20,7 @@ from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, residuals
 from centrode.kinematics.sampling import ORDERS, Layout, Samples, layout_of, sample, settle
 from centrode.kinematics.spans import Span, span_of
+from centrode.locale import _
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 
@@ -31,6 +32,8 @@ OFF_GRID = 0.37
 """Mesh nodes stand this share of a step away from the initial position: events like to lie at round values."""
 CHUNK = 100_000
 """Mechanisms of a batch are solved together as long as mechanisms times samples stay below this."""
+GREATEST_RESULT = 10_000_000
+"""Coordinates in one result, samples and mechanisms together: with derivatives and labels some 2 GB."""
 DEFAULT_SAMPLES = 361
 """One a degree over a turn, both ends included."""
 SEARCH = 4.0
@@ -102,8 +105,9 @@ def solve_span(
     """Motion at the samples of a span."""
     kinematics = ready.kinematics if numbers is None else replace(ready.kinematics, numbers=_upright(numbers))
     samples = len(span.parameter)
-    size = max(1, CHUNK // max(samples, len(mesh_of(kinematics.path, span.parameter))))
     layout, fixed = layout_of(kinematics), 2 * len(kinematics.numbers.frame)
+    _check_size(layout, lanes, samples)
+    size = max(1, CHUNK // max(samples, len(mesh_of(kinematics.path, span.parameter))))
     # one room for everything that depends on the samples: what is big is written once
     room = np.empty((ORDERS, fixed + layout.width, lanes, samples))
     angles = np.empty((ORDERS, len(layout.links), lanes, samples))
@@ -132,6 +136,17 @@ def solve_span(
         np.concatenate([part.residual for part in parts]),
         max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0))).worst_constraint,
     )
+
+
+def _check_size(layout: Layout, lanes: int, samples: int) -> None:
+    """Refuse a result that would not fit into the memory of an ordinary machine."""
+    most = GREATEST_RESULT // max(layout.width, 1)
+    if lanes * samples > most:
+        raise InputError(
+            _("samples"),
+            _("{asked} positions were asked for").format(asked=lanes * samples),
+            _("ask for at most {most} at once, samples times mechanisms").format(most=most),
+        )
 
 
 def mesh_of(path: Path, parameter: Array) -> Array:

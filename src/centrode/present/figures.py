@@ -60,7 +60,7 @@ def motion_figures(
         }
         for name, (title, rows, abscissa) in sheets(motion).items():
             if any(panel.curves for row in rows for panel in row):
-                figures[name] = sheet(title, mechanism.title, rows, abscissa)
+                figures[name] = sheet(title, _(mechanism.title), rows, abscissa)
     return figures
 
 

@@ -53,7 +53,7 @@ def mechanism_figure(scene: Scene, dataset: xarray.Dataset, instants: Sequence[f
     for axes in grid[len(samples) :]:
         axes.set_axis_off()
     write_legend(grid[columns - 1], link_key(scene.mechanism), inches=figure.get_figheight() - 1.0)
-    write_title(figure, _("Mechanism"), scene.mechanism.title)
+    write_title(figure, _("Mechanism"), _(scene.mechanism.title))
     return figure
 
 
@@ -75,7 +75,7 @@ def paths_figure(
     write_legend(axes, drawn, key, figure.get_figheight() - 1.0)
     if not any(np.isfinite(scene.tracks[name]).any() for name in points):
         say_nothing_known(axes)
-    write_title(figure, _("Paths of the points"), scene.mechanism.title)
+    write_title(figure, _("Paths of the points"), _(scene.mechanism.title))
     return figure
 
 

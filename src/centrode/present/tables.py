@@ -64,17 +64,17 @@ def motion_table(
     for header, unit, values in numeric_columns(chosen):
         factor, shown = shown_as(unit, display)
         headers.append(f"{header} [{shown}]" if shown else header)
-        columns.append((values if factor == 1.0 else values * factor).to_numpy().tolist())
+        columns.append((values if factor == 1.0 else values * factor).values.tolist())
     headers += ["status", "residual"]
-    columns.append([Status(code).word for code in dataset["status"].to_numpy().tolist()])
-    columns.append(dataset["residual"].to_numpy().tolist())
+    columns.append([Status(code).word for code in dataset["status"].values.tolist()])
+    columns.append(dataset["residual"].values.tolist())
     return headers, columns
 
 
 def numeric_columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.DataArray]]:
     """Header without unit, SI unit and values of every column of numbers, in the order of the table."""
     yield "time", unit_of(dataset["time"]), dataset["time"]
-    drives = [str(name) for name in dataset["drive"].to_numpy()]
+    drives = [str(name) for name in dataset["drive"].values]
     for number, name in enumerate(drives):
         yield f"drive_{name}", drive_units(dataset)[number], dataset["drive_value"].isel(drive=number)
     for variable in VARIABLES:
@@ -85,7 +85,7 @@ def numeric_columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.
 def columns_of(values: xarray.DataArray, variable: str) -> Iterator[tuple[str, str, xarray.DataArray]]:
     """One column for each link, guide, or axis of a point."""
     dims = [str(dim) for dim in values.dims if dim != "sample"]
-    for labels in product(*(values[dim].to_numpy().tolist() for dim in dims)):
+    for labels in product(*(values[dim].values.tolist() for dim in dims)):
         header = "_".join([variable, *map(str, labels)])
         yield header, unit_of(values), values.sel(dict(zip(dims, labels, strict=True)))
 

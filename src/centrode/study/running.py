@@ -89,7 +89,11 @@ def _at_instants(prepared: Ready) -> xr.Dataset | None:
     path = prepared.kinematics.path
     if not places or not (path.by_time or is_uniform(path)):
         return None
-    return dataset_of(solve_span(prepared, span_at(path, np.array(places))))
+    try:
+        span = span_at(path, np.array(places))
+    except InputError as error:
+        raise InputError("[study] instants", error.what, error.repair) from None
+    return dataset_of(solve_span(prepared, span))
 
 
 def range_value(mechanism: Mechanism, text: str, where: str) -> float:

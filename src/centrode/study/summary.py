@@ -54,7 +54,7 @@ def _group(group: AssurGroup) -> str:
 def motion_rows(study: StudyResults) -> Rows:
     """Range, events, statuses and worst residual of a motion."""
     words, data = study.words, study.motion
-    status = data["status"].to_numpy()
+    status = data["status"].values
     counts = [(Status(code), int(np.sum(status == code))) for code in np.unique(status)]
     said = ", ".join(f"{status_word(which)} {number}" for which, number in counts)
     residual = _("{value:.1e} of the greatest length ({constraint})").format(

@@ -1,0 +1,47 @@
+"""`python -m benchmarks [SECTION ...]`: print all ratios, or those of some sections."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+
+# lazy_loader remarks that a submodule loads its package; here nothing is gained by loading only the package late
+warnings.filterwarnings(
+    "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
+)
+
+from benchmarks import cold, machine, motions, peer  # noqa: E402
+from benchmarks.table import Row, print_section  # noqa: E402
+
+Section = tuple[str, Callable[[], Iterator[Row]]]
+SECTIONS: Mapping[str, Section] = {
+    "worked": (
+        f"Worked mechanisms, {motions.SAMPLES} samples: centrode's time over pylinkage's", motions.worked_mechanisms,
+    ),
+    "batch": (
+        f"Batches, {motions.SAMPLES} samples, with derivatives: centrode's time over pylinkage's", motions.batches,
+    ),
+    "cold": (f"Whole processes, multiples of {cold.BASE}", cold.cold_starts),
+    "machine": ("Bounds of the machine", machine.bounds),
+}  # fmt: skip
+NEED_PEER = {"worked", "batch"}
+
+
+def main(wanted: list[str]) -> int:
+    """Print the sections wanted, all if none is named."""
+    unknown = [name for name in wanted if name not in SECTIONS]
+    if unknown:
+        print(f"unknown: {', '.join(unknown)}; sections are {', '.join(SECTIONS)}", file=sys.stderr)
+        return 2
+    for name in wanted or SECTIONS:
+        title, measure = SECTIONS[name]
+        if name in NEED_PEER and not peer.PRESENT:
+            print(f"\n{title}\n  left out: {peer.MISSING}")
+            continue
+        print_section(title, measure())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

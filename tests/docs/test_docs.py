@@ -1,0 +1,113 @@
+"""The pages say what there is: every command, option, public name and key, and their links lead somewhere."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import click
+import pytest
+
+import centrode as ct
+from centrode.cli.main import build_app
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+TEXTS = {page: page.read_text(encoding="utf-8") for page in PAGES}
+EVERYTHING = "\n".join(TEXTS.values())
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
+WIDTH = 140
+
+
+def options(command: click.Command, path: str = "centrode") -> list[tuple[str, str]]:
+    """(command, option) of a command and its subcommands."""
+    found = [(path, name) for parameter in command.params for name in parameter.opts if name[:2] == "--"]
+    found.append((path, "--help"))
+    for name, child in getattr(command, "commands", {}).items():
+        found += options(child, f"{path} {name}")
+    return found
+
+
+def keys(schema: dict[str, Any]) -> list[tuple[str, str]]:
+    """(part, key) of the description and each of its parts."""
+    parts = {"": schema, **schema["$defs"]}
+    return [(part, key) for part, properties in parts.items() for key in properties["properties"]]
+
+
+def anchor(heading: str) -> str:
+    """The anchor that code hosts give a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def anchors(text: str) -> set[str]:
+    return {anchor(line.lstrip("#")) for line in BLOCK.sub("", text).splitlines() if line.startswith("#")}
+
+
+def links() -> list[tuple[Path, str]]:
+    """(page, target) of every link inside the project."""
+    found = [(page, target) for page, text in TEXTS.items() for target in LINK.findall(BLOCK.sub("", text))]
+    return [(page, target) for page, target in found if "://" not in target]
+
+
+@pytest.mark.parametrize(("command", "option"), options(build_app()))
+def test_commands_and_options_are_told(command: str, option: str) -> None:
+    assert command in EVERYTHING
+    assert re.search(rf"{option}\b", EVERYTHING)
+
+
+@pytest.mark.parametrize("name", sorted(dir(ct)))
+def test_public_names_are_told(name: str) -> None:
+    assert re.search(rf"\bct\.{name}\b", EVERYTHING)
+
+
+@pytest.mark.parametrize(("part", "key"), keys(ct.mechanism_schema()))
+def test_keys_are_told(part: str, key: str) -> None:
+    page = BLOCK.sub("", TEXTS[ROOT / "docs" / "description.md"])
+    assert re.search(rf"`(?:\[*(?:\w+\.)?)?{key}(?:\.\w+)?\]*`", page), f"{key} of {part or 'the file'}"
+
+
+@pytest.mark.parametrize("name", sorted(ct.QUANTITIES))
+def test_variables_are_told(name: str) -> None:
+    assert f"`{name}`" in TEXTS[ROOT / "docs" / "results.md"]
+
+
+@pytest.mark.parametrize("status", ct.Status)
+def test_statuses_are_told(status: ct.Status) -> None:
+    row = f"| {status.value} | `{status.name}` | {status.word} |"
+    assert row in TEXTS[ROOT / "docs" / "results.md"]
+
+
+@pytest.mark.parametrize("name", ["slider-between-cranks-locked", "wiper", "parallelogram"])
+def test_scalars_are_told(name: str) -> None:
+    page = TEXTS[ROOT / "docs" / "results.md"]
+    study = ct.study(ct.example(name), samples=2)
+    assert [scalar for scalar in study.scalars if f"`{scalar}`" not in page] == []
+
+
+def test_every_page_is_linked() -> None:
+    reached = {(page.parent / target.partition("#")[0]).resolve() for page, target in links()}
+    assert set(PAGES[1:]) <= reached
+
+
+@pytest.mark.parametrize(("page", "target"), links(), ids=lambda value: str(getattr(value, "name", value)))
+def test_links_lead_somewhere(page: Path, target: str) -> None:
+    name, _sign, place = target.partition("#")
+    file = page.parent / name if name else page
+    assert file.is_file()
+    if place:
+        assert place in anchors(file.read_text(encoding="utf-8"))
+
+
+def test_pictures_are_pictures() -> None:
+    shown = [ROOT / name for name in re.findall(r"!\[[^\]]+\]\(([^)]+)\)", TEXTS[ROOT / "README.md"])]
+    assert shown
+    assert all(picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n" for picture in shown)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_lines_are_not_too_long(page: Path) -> None:
+    text = BLOCK.sub("", TEXTS[page])
+    long = [line for line in text.splitlines() if len(line) > WIDTH and not line.startswith("|")]
+    assert long == []
