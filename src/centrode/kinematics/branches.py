@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+
+from centrode.kinematics.paths import Path
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -85,10 +87,9 @@ class Branches:
         between = ((table > low) & (table < high)).sum(axis=-1)
         return np.asarray(base * (1.0 - 2.0 * (between % 2)))
 
-    def greatest(self, group: int, lanes: npt.NDArray[np.intp] | None = None) -> Array:
-        """Greatest radicand of a group on the mesh: shape (lanes, 1), or (k,) with a lane for each entry."""
-        largest = self.largest[group]
-        return largest[:, None] if lanes is None else largest[lanes]
+    def greatest(self, group: int) -> Array:
+        """Greatest radicand of a group on the mesh: shape (lanes, 1)."""
+        return self.largest[group][:, None]
 
     def of_kind(self, kind: str, lane: int) -> list[Event]:
         """Events of one kind and mechanism, in the order of the path."""
@@ -110,3 +111,9 @@ class Branches:
                 if event.at >= self.initial:
                     found[event.lane, 1] = min(high, event.at)
         return found
+
+
+def branches_at_start(path: Path, signs: Mapping[int, float], smooth: bool, lanes: int = 1) -> Branches:
+    """Signs in the initial position, before any event is known."""
+    first = {group: np.full(lanes, sign) for group, sign in signs.items()}
+    return Branches(path.initial, path.forward, path.unit, lanes, first, smooth)

@@ -18,6 +18,14 @@ Branch: TypeAlias = Callable[[int, Number], Number]
 """Given a group's place in the plan and its radicand: the signed root of it."""
 
 
+After: TypeAlias = Callable[[int, Positions], None]
+"""What is done after a group of the plan is solved."""
+
+
+def nothing(_group: int, _at: Positions) -> None:
+    """Nothing is done after a group."""
+
+
 def as_it_is(_group: int, divisor: Number) -> Number:
     """A divisor nobody looks at."""
     return divisor
@@ -40,11 +48,16 @@ class Kinematics:
     path: Path
 
     def positions(
-        self, m: Namespace, parameter: Number, branch: Branch, divisor: Branch = as_it_is
+        self,
+        m: Namespace,
+        parameter: Number,
+        branch: Branch,
+        divisor: Branch = as_it_is,
+        after: After = nothing,
     ) -> Positions:
         """Positions at a parameter of the path, over any algebra."""
         at = self.frame(m, parameter)
-        self.advance(at, range(len(self.structure.groups)), m, branch, divisor)
+        self.advance(at, range(len(self.structure.groups)), m, branch, divisor, after)
         return at
 
     def frame(self, m: Namespace, parameter: Number) -> Positions:
@@ -52,7 +65,13 @@ class Kinematics:
         return Positions.of_frame(self.numbers, self.path.drive_values(m, parameter))
 
     def advance(
-        self, at: Positions, groups: range, m: Namespace, branch: Branch, divisor: Branch = as_it_is
+        self,
+        at: Positions,
+        groups: range,
+        m: Namespace,
+        branch: Branch,
+        divisor: Branch = as_it_is,
+        after: After = nothing,
     ) -> None:
         """Add what a stretch of the plan gives, the groups before it being known."""
         for i in groups:
@@ -64,8 +83,11 @@ class Kinematics:
                 lambda radicand, i=i: branch(i, radicand),  # type: ignore[misc]
                 lambda value, i=i: divisor(i, value),  # type: ignore[misc]
             )
+            after(i, at)
 
-    def guard(self, m: Namespace, parameter: Number, group: int, branch: Branch) -> Number:
+    def guard(
+        self, m: Namespace, parameter: Number, group: int, branch: Branch, after: After = nothing
+    ) -> Number:
         """The number whose sign decides whether a group closes: its radicand, or the divisor of a group without one."""
 
         def stop(i: int, value: Number) -> Number:
@@ -79,7 +101,7 @@ class Kinematics:
             return value
 
         try:
-            self.positions(m, parameter, stop, stop_at_divisor)
+            self.positions(m, parameter, stop, stop_at_divisor, after)
         except Reached as reached:
             return reached.value
         raise ValueError(f"group {group} has neither a radicand nor a divisor")

@@ -19,8 +19,9 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.branches import Branches, Event
+from centrode.kinematics.continuation import REACH, Continuation
 from centrode.kinematics.evaluate import Kinematics, Reached
-from centrode.kinematics.paths import JETS
+from centrode.kinematics.paths import JETS, Path
 from centrode.kinematics.roots import bracketed_roots
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Meet
@@ -33,26 +34,52 @@ LOW = 0.25
 """A minimum is looked into if the tangents on both sides meet below this fraction of the values there."""
 
 
+OFF_GRID = 0.37
+"""Mesh nodes stand this share of a step away from the initial position: events like to lie at round values."""
+
+
+def mesh_of(path: Path, parameter: Array) -> Array:
+    """Nodes on which events are looked for: they belong to the mechanism, only their extent to the samples."""
+    low = min(path.initial, float(np.min(parameter)))
+    high = max(path.initial, float(np.max(parameter)))
+    beyond = int(np.ceil(REACH * path.unit / path.step)) + 2
+    first = int(np.floor((low - path.initial) / path.step)) - beyond
+    last = int(np.ceil((high - path.initial) / path.step)) + beyond
+    nodes = np.arange(first, last + 1, dtype=np.float64)
+    return path.initial + (nodes + OFF_GRID) * path.step
+
+
 @dataclass(frozen=True)
 class Scan:
     """Search for the events of all groups of a plan, one group after the other."""
 
-    kinematics: Kinematics
-    branches: Branches
+    course: Continuation
     mesh: Array
+
+    @property
+    def kinematics(self) -> Kinematics:
+        """The plan that is searched."""
+        return self.course.kinematics
+
+    @property
+    def branches(self) -> Branches:
+        """What is found is recorded here."""
+        return self.course.branches
 
     def run(self) -> Positions:
         """Find all events, record them in the branches, and return the positions on the mesh as plain arrays."""
         groups = self.kinematics.structure.groups
         last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
         along = self.mesh[None, :]
+        after = self.course.mending(along, None)
         with np.errstate(all="ignore"):
             at = self.kinematics.frame(JETS, Jet.variable(along, 1))
-            self.kinematics.advance(at, range(last), JETS, self._branch, self._divisor)
+            self.kinematics.advance(at, range(last), JETS, self._branch, self._divisor, after)
             with suppress(Reached):  # slopes are needed up to the last radicand, and not beyond
                 self.kinematics.advance(at, range(last, last + 1), JETS, self._last_branch, self._divisor)
             plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
-            self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, self._plain_branch)
+            signed = self.course.signed(ARRAYS, along, None)
+            self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, signed, after=after)
         return plain
 
     def _branch(self, group: int, radicand: Jet) -> Jet:
@@ -63,9 +90,6 @@ class Scan:
     def _last_branch(self, group: int, radicand: Jet) -> Jet:
         self._find(group, radicand)
         raise Reached(radicand)
-
-    def _plain_branch(self, group: int, radicand: Number) -> Number:
-        return np.sqrt(radicand) * self.branches.sign(group, self.mesh[None, :])
 
     def _find(self, group: int, radicand: Jet) -> None:
         value, slope = self._on_mesh(radicand)
@@ -123,12 +147,9 @@ class Scan:
 
     def _guard(self, group: int, lanes: Lanes, at: Array, order: int) -> Jet:
         taken = self.kinematics.taken(lanes)
-
-        def branch(i: int, radicand: Number) -> Number:
-            return JETS.sqrt(radicand) * self.branches.sign(i, at, lanes)
-
+        branch, after = self.course.signed(JETS, at, lanes), self.course.mending(at, lanes)
         with np.errstate(all="ignore"):
-            guard = taken.guard(JETS, Jet.variable(at, order), group, branch)
+            guard = taken.guard(JETS, Jet.variable(at, order), group, branch, after)
         return (
             guard if isinstance(guard, Jet) else Jet((np.broadcast_to(guard, at.shape), *[0.0 * at] * order))
         )
@@ -149,19 +170,15 @@ class Scan:
 
     def with_bound(self, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
         """Radicand of a group with the bound of its rounding error."""
-        return guard_with_bound(self.kinematics, self.branches, group, lanes, at)
+        return guard_with_bound(self.course, group, lanes, at)
 
 
-def guard_with_bound(
-    kinematics: Kinematics, branches: Branches, group: int, lanes: Lanes, at: Array
-) -> tuple[Array, Array]:
+def guard_with_bound(course: Continuation, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
     """Radicand of a group at parameters, one lane for each, with the bound of its rounding error."""
-
-    def branch(i: int, radicand: Number) -> Number:
-        return ROUNDED.sqrt(radicand) * branches.sign(i, at, lanes)
-
+    branch, after = course.signed(ROUNDED, at, lanes), course.mending(at, lanes)
     with np.errstate(all="ignore"):
-        guard = Rounded.of(kinematics.taken(lanes).guard(ROUNDED, Rounded.of(at), group, branch))
+        used = course.kinematics.taken(lanes)
+        guard = Rounded.of(used.guard(ROUNDED, Rounded.of(at), group, branch, after))
     return np.broadcast_to(guard.value, at.shape), np.broadcast_to(guard.bound, at.shape)
 
 
@@ -192,9 +209,10 @@ def _sign_changes(value: Array) -> tuple[Lanes, Lanes]:
     rows = np.nonzero(~((np.min(value, axis=1) > 0.0) | (np.max(value, axis=1) < 0.0)))[0]
     some = value[rows]
     with np.errstate(all="ignore"):
-        found, cells = np.nonzero(np.where(np.isfinite(some), some, np.nan)[:, :-1] * some[:, 1:] < 0.0)
-    finite = np.isfinite(some[found, cells + 1])
-    return rows[found[finite]], cells[finite]
+        found, cells = np.nonzero(
+            np.sign(np.where(np.isfinite(some), some, np.nan))[:, :-1] * np.sign(some[:, 1:]) < 0.0
+        )
+    return rows[found], cells
 
 
 def _limits(group: int, lanes: Lanes, at: Array) -> list[Event]:

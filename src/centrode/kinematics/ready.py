@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.assembly import Assembled, assemble, name_of
+from centrode.kinematics.branches import branches_at_start
+from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.events import Scan, mesh_of
 from centrode.kinematics.fitting import RESIDUAL_TOLERANCE, length_misfits
 from centrode.kinematics.paths import path_of
 from centrode.locale import _
@@ -22,7 +25,7 @@ from centrode.structure.rank import rank_of, residuals_at, scaled_jacobian
 
 Number: TypeAlias = Any
 
-LOOKS = (0.0, 0.11, -0.13, 0.37)
+LOOKS = (0.11, -0.13, 0.37)
 """Places near the initial position, in the path's units, where the rank is taken: not all can be dead points."""
 
 
@@ -93,12 +96,13 @@ def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
     structure = kinematics.structure
     free = [c for c in structure.constraints if not is_drive(c)]
     width = sum(entity.unknowns for entity in structure.unknowns)
-    places = _places(kinematics, assembled)
     rank = 0
-    for at in places:
+    looked: list[Positions] = []
+    for at in _places(kinematics, assembled):
+        looked.append(at)
         matrix = scaled_jacobian(free, structure.unknowns, kinematics.numbers, at)
         rank = max(rank, rank_of(matrix))
-        if rank == matrix.shape[0]:
+        if rank == matrix.shape[0] and not structure.redundant:
             break  # it cannot be greater anywhere
     mobility = width - rank
     if mobility != structure.drives:
@@ -107,25 +111,23 @@ def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
             drives_against_mobility(structure.drives, mobility),
             _("give as many drives as the mobility"),
         )
-    for at in places:
+    for at in looked:
         _check_redundant(kinematics, at)
     return mobility
 
 
-def _places(kinematics: Kinematics, assembled: Assembled) -> list[Positions]:
-    """The initial position and some next to it that close."""
-
-    def branch(group: int, radicand: Number) -> Number:
-        return np.sqrt(radicand) * assembled.signs[group]
-
-    places = [assembled.positions]
-    with np.errstate(all="ignore"):
-        for look in LOOKS[1:]:
-            parameter = np.float64(kinematics.path.initial + look * kinematics.path.unit)
-            at = kinematics.positions(ARRAYS, parameter, branch)
-            if all(np.isfinite(float(x)) for v in at.points.values() for x in v):
-                places.append(at)
-    return places
+def _places(kinematics: Kinematics, assembled: Assembled) -> Iterator[Positions]:
+    """The initial position, then some next to it that close, past change points on the branch that goes on."""
+    yield assembled.positions
+    path = kinematics.path
+    looks = path.initial + path.unit * np.array(LOOKS)
+    mesh = mesh_of(path, looks)
+    course = Continuation(kinematics, branches_at_start(path, assembled.signs, smooth=True))
+    on_mesh = Scan(course, mesh).run()
+    for node in np.argmin(np.abs(mesh[:, None] - looks), axis=0):
+        at = on_mesh.mapped(lambda x, node=node: float(np.broadcast_to(x, (1, len(mesh)))[0, node]))  # type: ignore[misc]
+        if all(np.isfinite(x) for v in at.points.values() for x in v):
+            yield at
 
 
 def _check_redundant(kinematics: Kinematics, at: Positions) -> None:

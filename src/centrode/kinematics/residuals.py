@@ -11,12 +11,17 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
+from centrode.errors import Status
 from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.sampling import Samples, positions_from
+from centrode.kinematics.sampling import Samples, positions_from, settle
 from centrode.locale import _
 from centrode.structure.constraints import Constraint, Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+
+CLOSED = 1e-7
+"""Greatest residual of a position: far above rounding, even next to limits and change points."""
 
 
 @dataclass(frozen=True)
@@ -61,3 +66,13 @@ def _each(kinematics: Kinematics, at: Positions) -> Iterator[tuple[Kept, Array]]
     for link in kinematics.structure.mechanism.links:
         rotor = at.poses[link].rotor
         yield UnitLength(link), np.abs(rotor[0] * rotor[0] + rotor[1] * rotor[1] - 1.0)
+
+
+def open_what_does_not_close(samples: Samples, residual: Array) -> None:
+    """A sample at which a constraint does not hold is open: a redundant link of a batch may not fit everywhere."""
+    with np.errstate(invalid="ignore"):
+        broken = residual > CLOSED
+    if broken.any():
+        samples.status[broken] = Status.OPEN
+        residual[broken] = np.nan
+        settle(samples)

@@ -17,7 +17,7 @@ from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import SAFETY
 from centrode.errors import Status
 from centrode.geometry.plane import Pose, dot, subtract, turned
-from centrode.kinematics.branches import Branches
+from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import guard_with_bound
 from centrode.kinematics.paths import JETS
@@ -90,56 +90,45 @@ def layout_of(kinematics: Kinematics) -> Layout:
 
 
 def evaluate_columns(
-    kinematics: Kinematics,
-    layout: Layout,
-    branches: Branches,
-    parameter: Array,
-    lanes: Lanes | None,
-    columns: Array,
+    course: Continuation, layout: Layout, parameter: Array, columns: Array
 ) -> tuple[Mask, Mask]:
-    """Fill in columns by the closed forms alone; returns where a group is open, and where at zero of its radicand.
-
-    With `lanes` None the columns have shape (3, columns, lanes, n) for n parameters; otherwise the parameters
-    have shape (k,), each with its own lane, and the columns (3, columns, k).
-    """
+    """Fill in columns (3, columns, lanes, n); returns where a group is open, and where at zero of its radicand."""
     shape = columns.shape[2:]
-    along = parameter[None, :] if lanes is None else parameter
+    along = parameter[None, :]
     opened, zero = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    judged: dict[int, tuple[Mask, Mask]] = {}
 
     def branch(group: int, radicand: Number) -> Number:
-        sign = branches.sign(group, along, lanes)
+        sign = course.branches.sign(group, along)
         if not isinstance(radicand, Jet):
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
         value = np.broadcast_to(radicand.value, shape)
-        below = _at_zero(kinematics, branches, group, value, parameter, lanes)
+        below = _at_zero(course, group, value, parameter)
         if below is None:
             np.logical_or(opened, value < 0.0, out=opened)
             return JETS.sqrt(radicand) * sign
-        zero[below] = True
-        opened[(value < 0.0) & ~below] = True
+        judged[group] = ((value < 0.0) & ~below, below)
         return JETS.sqrt(Jet((np.where(below, 0.0, value), *radicand.coefficients[1:]))) * sign
 
-    used = kinematics if lanes is None else kinematics.taken(lanes)
+    def after(group: int, at: Positions) -> None:
+        mended = course.mend(group, at, along, None)
+        for total, found in zip((opened, zero), judged.pop(group, ()), strict=False):
+            for index in mended:
+                found[index] = False  # there the motion goes on smoothly
+            np.logical_or(total, found, out=total)
+
     with np.errstate(all="ignore"):
-        at = used.positions(JETS, Jet.variable(along, ORDERS - 1), branch)
-        _fill_columns(used, layout, at, columns)
+        at = course.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), branch, after=after)
+        _fill_columns(course.kinematics, layout, at, columns)
     return opened, zero
 
 
-def _at_zero(
-    kinematics: Kinematics,
-    branches: Branches,
-    group: int,
-    value: Array,
-    parameter: Array,
-    lanes: Lanes | None,
-) -> Mask | None:
+def _at_zero(course: Continuation, group: int, value: Array, parameter: Array) -> Mask | None:
     """Where a radicand is zero within its rounding error; None if nowhere."""
-    suspects = np.nonzero(np.abs(value) <= SUSPECT * branches.greatest(group, lanes))
+    suspects = np.nonzero(np.abs(value) <= SUSPECT * course.branches.greatest(group))
     if not len(suspects[0]):
         return None
-    own = suspects[0] if lanes is None else lanes[suspects[0]]
-    _value, bound = guard_with_bound(kinematics, branches, group, own, parameter[suspects[-1]])
+    _value, bound = guard_with_bound(course, group, suspects[0], parameter[suspects[1]])
     zero = np.zeros(value.shape, dtype=bool)
     zero[suspects] = np.abs(value[suspects]) <= SAFETY * bound
     return zero if zero.any() else None
@@ -165,10 +154,10 @@ def _slide(kinematics: Kinematics, at: Positions, guide_id: str) -> Number:
     return dot(direction, subtract(at.points[guide.point], through))
 
 
-def sample(kinematics: Kinematics, branches: Branches, parameter: Array, samples: Samples) -> None:
-    """Fill in columns and statuses (before the neighbourhood of change points is mended)."""
-    opened, zero = evaluate_columns(kinematics, samples.layout, branches, parameter, None, samples.columns)
-    reach = branches.reaches()
+def sample(course: Continuation, parameter: Array, samples: Samples) -> None:
+    """Fill in columns and statuses."""
+    opened, zero = evaluate_columns(course, samples.layout, parameter, samples.columns)
+    reach = course.branches.reaches()
     margin = 4.0 * np.spacing(np.abs(parameter))
     beyond = (parameter < reach[:, :1] - margin) | (parameter > reach[:, 1:] + margin)
     samples.status[zero | ~samples.complete] = Status.SINGULAR

@@ -11,13 +11,12 @@ import numpy.typing as npt
 
 from centrode.errors import InputError, Status
 from centrode.kinematics.angles import angle_and_rates, node_turns
-from centrode.kinematics.branches import Branches, Event
+from centrode.kinematics.branches import Branches, Event, branches_at_start
+from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.events import Scan
-from centrode.kinematics.patches import mend_change_points
-from centrode.kinematics.paths import Path
+from centrode.kinematics.events import Scan, mesh_of
 from centrode.kinematics.ready import Ready
-from centrode.kinematics.residuals import Kept, residuals
+from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
 from centrode.kinematics.sampling import ORDERS, Layout, Samples, layout_of, sample, settle
 from centrode.kinematics.spans import Span, span_of
 from centrode.locale import _
@@ -28,8 +27,6 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
 Progress: TypeAlias = Callable[[int, int], None]
 
-OFF_GRID = 0.37
-"""Mesh nodes stand this share of a step away from the initial position: events like to lie at round values."""
 CHUNK = 100_000
 """Mechanisms of a batch are solved together as long as mechanisms times samples stay below this."""
 GREATEST_RESULT = 10_000_000
@@ -63,9 +60,8 @@ class Solved:
 
     def events(self, lane: int = 0) -> list[Event]:
         """Events between the ends of the span and the initial position, in the order of the path."""
-        ends = [*self.span.parameter[[0, -1]], self.ready.kinematics.path.initial]
-        if len(self.span.parameter) > 1:
-            ends += [float(np.min(self.span.parameter)), float(np.max(self.span.parameter))]
+        initial = self.ready.kinematics.path.initial
+        ends = [initial, float(np.min(self.span.parameter)), float(np.max(self.span.parameter))]
         margin = 1e-9 * self.branches.unit
         inside = [e for e in self.branches.events if min(ends) - margin <= e.at <= max(ends) + margin]
         return sorted((e for e in inside if e.lane == lane), key=lambda e: e.at)
@@ -149,22 +145,9 @@ def _check_size(layout: Layout, lanes: int, samples: int) -> None:
         )
 
 
-def mesh_of(path: Path, parameter: Array) -> Array:
-    """Nodes on which events are looked for: they belong to the mechanism, only their extent to the samples."""
-    low = min(path.initial, float(np.min(parameter)))
-    high = max(path.initial, float(np.max(parameter)))
-    first = int(np.floor((low - path.initial) / path.step)) - 2
-    last = int(np.ceil((high - path.initial) / path.step)) + 2
-    nodes = np.arange(first, last + 1, dtype=np.float64)
-    return path.initial + (nodes + OFF_GRID) * path.step
-
-
-def branches_of(ready: Ready, lanes: int = 1) -> Branches:
-    """Signs in the initial position, before any event is known."""
-    path = ready.kinematics.path
-    signs = {group: np.full(lanes, sign) for group, sign in ready.assembled.signs.items()}
+def _start(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:
     smooth = ready.mechanism.assembly.continuation == "smooth"
-    return Branches(path.initial, path.forward, path.unit, lanes, signs, smooth)
+    return Continuation(kinematics, branches_at_start(kinematics.path, ready.assembled.signs, smooth, lanes))
 
 
 def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> tuple[float, float]:
@@ -172,9 +155,9 @@ def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> t
     if path.by_time or path.driven[0].drive.kind == "angle" or (start is not None and stop is not None):
         return -np.inf, np.inf
     ends = np.array([path.initial - SEARCH * path.unit, path.initial + SEARCH * path.unit])
-    branches = branches_of(ready)
-    Scan(ready.kinematics, branches, mesh_of(path, ends)).run()
-    return branches.reach(0)
+    course = _start(ready, ready.kinematics)
+    Scan(course, mesh_of(path, ends)).run()
+    return course.branches.reach(0)
 
 
 def _upright(numbers: Dimensions) -> Dimensions:
@@ -200,14 +183,15 @@ class _Part:
 
 def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples, angles: Array) -> _Part:
     """Fill in the samples and angles of some mechanisms of a batch."""
-    branches = branches_of(ready, samples.status.shape[0])
+    course = _start(ready, kinematics, samples.status.shape[0])
     mesh = mesh_of(kinematics.path, span.parameter)
-    on_mesh = Scan(kinematics, branches, mesh).run()
-    sample(kinematics, branches, span.parameter, samples)
-    mend_change_points(kinematics, branches, samples, span.parameter)
+    on_mesh = Scan(course, mesh).run()
+    sample(course, span.parameter, samples)
     settle(samples)
+    residual, worst = residuals(kinematics, samples, span.parameter)
+    open_what_does_not_close(samples, residual)
     _fill_angles(ready, on_mesh, mesh, samples, span.parameter, angles)
-    return _Part(branches, *residuals(kinematics, samples, span.parameter))
+    return _Part(course.branches, residual, worst)
 
 
 def _fill_angles(

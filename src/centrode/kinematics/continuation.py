@@ -1,0 +1,225 @@
+"""A plan with its signs, run smoothly through change points.
+
+Next to a change point the closed forms of its group lose digits, while the motion itself is smooth. There the
+group's points and links are interpolated from nodes on both sides, value and derivatives each (barycentric
+formula; Berrut and Trefethen, SIAM Review 46, 2004), before the groups behind it are solved, so that these
+and their radicands stand on good ground. The nodes belong to the change point: the result depends on the
+drive's value alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.jets import Jet
+from centrode.algebra.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
+from centrode.geometry.plane import Pose
+from centrode.kinematics.branches import Branches
+from centrode.kinematics.evaluate import Branch, Kinematics
+from centrode.kinematics.paths import JETS
+from centrode.structure.constraints import Positions
+from centrode.structure.groups import links_of, points_of
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+Index: TypeAlias = tuple[Any, ...]
+
+WINDOW = 0.04
+"""Half width of the mended stretch, in the path's units (rad for an angle)."""
+CLEAR = 6.0
+"""The stretch keeps this many half widths away from what is not smooth: limits, other events of its group."""
+REACH = 2.0 * WINDOW + CLEAR * WINDOW
+"""How far beyond a sample events matter to it."""
+SIDE = 1.5 - 0.5 * np.cos((np.arange(6) + 0.5) * np.pi / 6)
+NODES = np.concatenate([-SIDE[::-1], SIDE])
+"""Chebyshev nodes on each side, between one and two half widths away."""
+WEIGHTS = np.array([1.0 / np.prod(node - np.delete(NODES, k)) for k, node in enumerate(NODES)])
+
+
+@dataclass(frozen=True)
+class Window:
+    """The stretch about a change point of one mechanism of a batch."""
+
+    lane: int
+    centre: float
+    half: float
+
+
+@dataclass
+class Continuation:
+    """Kinematics with branches: evaluates what the signs and the change points found so far allow."""
+
+    kinematics: Kinematics
+    branches: Branches
+    _windows: dict[int, list[Window]] = field(default_factory=dict)
+    _known: dict[tuple[int, bool], list[Number]] = field(default_factory=dict)
+
+    def signed(self, m: Namespace, parameter: Array, lanes: Lanes | None) -> Branch:
+        """Signed root of a group's radicand, over any algebra."""
+        return lambda group, radicand: m.sqrt(radicand) * self.branches.sign(group, parameter, lanes)
+
+    def mending(self, parameter: Array, lanes: Lanes | None) -> Callable[[int, Positions], None]:
+        """What is to be done after each group of a plan is solved at the parameters."""
+
+        def after(group: int, at: Positions) -> None:
+            self.mend(group, at, parameter, lanes)
+
+        return after
+
+    def mend(self, group: int, at: Positions, parameter: Array, lanes: Lanes | None) -> list[Index]:
+        """Interpolate what a group gives wherever a change point of it is near; returns where that was."""
+        windows = self._windows_of(group)
+        if not windows:
+            return []
+        shape = (self.branches.lanes, parameter.shape[-1]) if lanes is None else parameter.shape
+        along = np.broadcast_to(parameter, shape)
+        mended = []
+        for number, window in enumerate(windows):
+            index = _inside(window, along, lanes)
+            if index is not None:
+                offsets = (along[index] - window.centre) / window.half
+                if self._replace(group, at, shape, number, index, offsets):
+                    mended.append(index)
+        return mended
+
+    def _windows_of(self, group: int) -> list[Window]:
+        if not self.branches.smooth:
+            return []
+        if group not in self._windows:
+            self._windows[group] = [
+                Window(event.lane, event.at, self._half_width(group, event.lane, event.at))
+                for event in self.branches.events
+                if event.group == group and event.kind == "change point"
+            ]
+        return self._windows[group]
+
+    def _half_width(self, group: int, lane: int, at: float) -> float:
+        """Limits of the groups before it and all events of its own bound the stretch on which a group is smooth."""
+        unit = self.branches.unit
+        others = [
+            abs(event.at - at)
+            for event in self.branches.events
+            if event.lane == lane
+            and (event.group == group or (event.group < group and event.kind == "limit"))
+            and abs(event.at - at) > 1e-9 * unit
+        ]
+        return min(WINDOW * unit, min(others, default=np.inf) / CLEAR)
+
+    def _replace(
+        self, group: int, at: Positions, shape: tuple[int, ...], window: int, index: Index, offsets: Array
+    ) -> bool:
+        basis = WEIGHTS / (offsets[:, None] - NODES)
+        basis /= basis.sum(axis=1, keepdims=True)
+        numbers = _numbers(self.kinematics, group, at)
+        bounded = any(isinstance(number, Rounded) for number in numbers)
+        known = [_of_window(number, window) for number in self._at_nodes(group, bounded)]
+        if not all(np.isfinite(_value(number)).all() for number in known):
+            return False  # another event lies inside: the closed form has to do
+        mended = [_mended(old, node, shape, index, basis) for old, node in zip(numbers, known, strict=True)]
+        _set_numbers(self.kinematics, group, at, mended)
+        return True
+
+    def _at_nodes(self, group: int, bounded: bool) -> list[Number]:
+        """What a group gives at the nodes of all its windows, as jets or with bounds: arrays (windows * nodes,)."""
+        key = (group, bounded)
+        if key not in self._known:
+            windows = self._windows_of(group)
+            lanes = np.repeat([window.lane for window in windows], len(NODES)).astype(np.intp)
+            nodes = np.concatenate([window.centre + window.half * NODES for window in windows])
+            m: Namespace = ROUNDED if bounded else JETS
+            lifted: Number = Rounded.of(nodes) if bounded else Jet.variable(nodes, 2)
+            used = self.kinematics.taken(lanes)
+            at = used.frame(m, lifted)
+            with np.errstate(all="ignore"):
+                used.advance(
+                    at, range(group + 1), m, self.signed(m, nodes, lanes), after=self.mending(nodes, lanes)
+                )
+            self._known[key] = _numbers(self.kinematics, group, at)
+        return self._known[key]
+
+
+def _inside(window: Window, along: Array, lanes: Lanes | None) -> Index | None:
+    """Index of the parameters inside a window; None if there are none."""
+    if lanes is None:
+        found = np.nonzero(np.abs(along[window.lane] - window.centre) < window.half)[0]
+        return (window.lane, found) if len(found) else None
+    found = np.nonzero((lanes == window.lane) & (np.abs(along - window.centre) < window.half))[0]
+    return (found,) if len(found) else None
+
+
+def _numbers(kinematics: Kinematics, group: int, at: Positions) -> list[Number]:
+    """Everything a group gives, number by number."""
+    which = kinematics.structure.groups[group]
+    numbers = [x for point in points_of(which) for x in at.points[point]]
+    for link in links_of(which):
+        numbers += [*at.poses[link].origin, *at.poses[link].rotor]
+    return numbers
+
+
+def _set_numbers(kinematics: Kinematics, group: int, at: Positions, numbers: list[Number]) -> None:
+    which = kinematics.structure.groups[group]
+    rest = iter(numbers)
+    for point in points_of(which):
+        at.points[point] = (next(rest), next(rest))
+    for link in links_of(which):
+        at.poses[link] = Pose((next(rest), next(rest)), (next(rest), next(rest)))
+
+
+def _of_window(number: Number, window: int) -> Number:
+    """The nodes of one window."""
+    part = slice(window * len(NODES), (window + 1) * len(NODES))
+    if isinstance(number, Jet):
+        return Jet([_cut(c, part) for c in number.coefficients])
+    if isinstance(number, Rounded):
+        return Rounded(_cut(number.value, part), _cut(number.bound, part))
+    return np.full(len(NODES), number)
+
+
+def _cut(x: Number, part: slice) -> Array:
+    return np.full(len(NODES), x) if np.ndim(x) == 0 else x[part]
+
+
+def _value(number: Number) -> Array:
+    """What must be finite for a node to be of use."""
+    if isinstance(number, Jet):
+        return np.asarray(sum(number.coefficients))
+    return np.asarray(number.value + number.bound if isinstance(number, Rounded) else number)
+
+
+def _mended(old: Number, node: Number, shape: tuple[int, ...], index: Index, basis: Array) -> Number:
+    """A number with the entries at `index` interpolated from those at the nodes."""
+    if isinstance(old, Rounded):
+        known = Rounded.of(node)
+        value = _interpolated(known.value, basis)
+        bound = _interpolated(known.bound + UNIT_ROUNDOFF * np.abs(known.value), np.abs(basis))
+        return Rounded(_put(old.value, shape, index, value), _put(old.bound, shape, index, bound))
+    nodes = node.coefficients if isinstance(node, Jet) else (node, 0.0 * node, 0.0 * node)
+    if isinstance(old, Jet):
+        return Jet(
+            [
+                _put(c, shape, index, _interpolated(k, basis))
+                for c, k in zip(old.coefficients, nodes, strict=False)
+            ]
+        )
+    return _put(old, shape, index, _interpolated(nodes[0], basis))
+
+
+def _interpolated(at_nodes: Array, basis: Array) -> Array:
+    # node by node: a matrix product rounds differently for different numbers of samples
+    total = np.zeros(basis.shape[0])
+    for k in range(basis.shape[1]):
+        total += at_nodes[k] * basis[:, k]
+    return total
+
+
+def _put(old: Number, shape: tuple[int, ...], index: Index, values: Array) -> Array:
+    whole = np.array(np.broadcast_to(old, shape), dtype=np.float64)
+    whole[index] = values
+    return whole
