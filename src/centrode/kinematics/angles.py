@@ -40,7 +40,8 @@ class NodeTurns:
 
 def node_turns(positions: Positions, link: str, initial: float, start: int, nodes: int) -> NodeTurns:
     """Turns of a link on a mesh of so many nodes; `initial` [rad] is its angle near the node `start`."""
-    cosine, sine = _bridged(*(_on_mesh(x, nodes) for x in positions.poses[link].rotor))
+    cosine, sine = (_on_mesh(x, nodes) for x in positions.poses[link].rotor)
+    cosine, sine = _bridged(cosine, sine, start)
     below = _below(sine)
     turns = np.zeros(cosine.shape, dtype=np.int32)
     steps = _turns_between(cosine[:, :-1], below[:, :-1], cosine[:, 1:], below[:, 1:])
@@ -72,15 +73,19 @@ def _on_mesh(x: object, nodes: int) -> Array:
     return np.broadcast_to(values, (values.shape[0], nodes))
 
 
-def _bridged(cosine: Array, sine: Array) -> tuple[Array, Array]:
-    """The same rotors with gaps filled by the last known one before them (the first one after, at the beginning)."""
+def _bridged(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
+    """The same rotors with gaps filled by the last known one on the way from the start, in both directions."""
     cosine, sine = np.broadcast_arrays(cosine, sine)
     if np.isfinite(cosine.sum() + sine.sum()):
         return cosine, sine
     known = np.isfinite(cosine + sine)
-    last = np.maximum.accumulate(np.where(known, np.arange(known.shape[1]), -1), axis=1)
-    first = np.argmax(known, axis=1)
-    source = np.where(last < 0, first[:, None], last)
+    nodes = np.arange(known.shape[1])
+    ahead = np.maximum.accumulate(np.where(known & (nodes >= start), nodes, -1), axis=1)
+    behind = np.where(known & (nodes <= start), nodes, known.shape[1])
+    behind = np.minimum.accumulate(behind[:, ::-1], axis=1)[:, ::-1]
+    source = np.where(nodes >= start, ahead, behind)
+    missing = (source < 0) | (source >= known.shape[1])
+    source = np.where(missing, np.argmax(known, axis=1)[:, None], source)
     cosine, sine = (np.take_along_axis(x, source, axis=1) for x in (cosine, sine))
     found = np.isfinite(cosine + sine)
     return np.where(found, cosine, 1.0), np.where(found, sine, 0.0)

@@ -55,6 +55,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
         kinematics.numbers, {k: Rounded.of(np.float64(v)) for k, v in drives.items()}
     )
     signs: dict[int, float] = {}
+    _check_sides(kinematics)
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
@@ -174,7 +175,13 @@ def _side_words(group: Group) -> str:
 
 def _side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Positions]) -> float:
     links = kinematics.structure.mechanism.links
-    hints = {link: links[link].angle for link in links_of(group) if links[link].angle is not None}
+    left, right = options.values()
+    hints = {
+        link: links[link].angle
+        for link in links_of(group)
+        # a link that points the same way in both assemblies tells nothing
+        if links[link].angle is not None and _turned_apart(link, left, right)
+    }
     if not hints:
         raise InputError(
             name_of(group),
@@ -188,6 +195,24 @@ def _side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, P
         for sign, option in options.items()
     }
     return min(misfit, key=misfit.__getitem__)
+
+
+def _turned_apart(link: str, one: Positions, other: Positions) -> bool:
+    apart = np.subtract(one.poses[link].rotor, other.poses[link].rotor)
+    return bool(np.hypot(*apart) > DEGENERATE)
+
+
+def _check_sides(kinematics: Kinematics) -> None:
+    """Refuse sides of what no group is asked about, which would be passed over in silence."""
+    groups = [group for group in kinematics.structure.groups if group.signed]
+    known = [name for group in groups for name in side_names(group)]
+    for name in kinematics.structure.mechanism.assembly.sides:
+        if name not in known:
+            raise InputError(
+                f"[assembly] sides.{name}",
+                _("no group is assembled on a side of {name}").format(name=name),
+                _("take it out, or name one of: {names}").format(names=", ".join(known) or "-"),
+            )
 
 
 def _difference(angle: float, at: Positions, link: str) -> float:

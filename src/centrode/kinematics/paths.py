@@ -6,7 +6,7 @@ is time.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, tau
 from typing import Any, TypeAlias
 
@@ -25,6 +25,9 @@ Namespace: TypeAlias = Any
 
 NODES_PER_TURN = 720
 """Mesh on which events are looked for: two events closer than half a degree may be missed."""
+
+RATES = 1000
+"""Times at which the rates of several drives are compared."""
 
 JETS = JetFunctions(ARRAYS)
 
@@ -59,12 +62,15 @@ class Path:
         Sense in which the parameter runs from there.
     unit : float
         Change of the parameter that counts as large (1 rad, the mechanism's scale, or a time).
+    scale : float [m]
+        The mechanism's greatest length.
     """
 
     driven: tuple[DrivenBy, ...]
     initial: float
     forward: float
     unit: float
+    scale: float = 1.0
 
     @property
     def by_time(self) -> bool:
@@ -87,23 +93,37 @@ def path_of(mechanism: Mechanism, scale: float) -> Path:
     """The path that a description's drives take; `scale` is the mechanism's greatest length [m]."""
     driven = tuple(_driven_by(mechanism, drive) for drive in mechanism.drives)
     if len(driven) > 1:
-        return Path(driven, 0.0, 1.0, _time_unit(driven))
-    speed = _speed_at_start(driven[0])
+        return in_time(Path(driven, 0.0, 1.0, 1.0, scale), 0.0, 1.0)
     unit = 1.0 if driven[0].drive.kind == "angle" else scale
-    return Path(driven, driven[0].initial, -1.0 if speed < 0.0 else 1.0, unit)
+    return Path(driven, driven[0].initial, _sense_at_start(driven[0]), unit)
 
 
-def _speed_at_start(driven: DrivenBy) -> float:
+def _sense_at_start(driven: DrivenBy) -> float:
+    """Sense in which the drive sets out: that of its first derivative that is not zero."""
     with np.errstate(all="ignore"):
-        jet = driven.value(JETS, Jet.variable(np.float64(0.0), 1))
-    speed = float(jet.derivative(1)) if isinstance(jet, Jet) else 0.0
-    return speed if isfinite(speed) else 0.0
+        jet = driven.value(JETS, Jet.variable(np.float64(0.0), 6))
+    if isinstance(jet, Jet):
+        for order in range(1, jet.order + 1):
+            slope = float(jet.derivative(order))
+            if isfinite(slope) and slope != 0.0:
+                return 1.0 if slope > 0.0 else -1.0
+    return 1.0
 
 
-def _time_unit(driven: tuple[DrivenBy, ...]) -> float:
-    speeds = [abs(_speed_at_start(one)) for one in driven if one.drive.kind == "angle"]
-    fastest = max(speeds, default=0.0)
-    return 1.0 / fastest if fastest > 0.0 else 1.0
+def in_time(path: Path, first: float, last: float) -> Path:
+    """The path of several drives with its unit fit for a stretch of time: the fastest drive moves 1 rad, or its scale.
+
+    Where the drives are laws, the mesh on which events are looked for so depends on the time asked for.
+    """
+    times = np.linspace(min(first, 0.0), max(last, 0.0), RATES)
+    fastest = 0.0
+    with np.errstate(all="ignore"):
+        for one in path.driven:
+            value = one.value(JETS, Jet.variable(times, 1))
+            rates = np.abs(value.derivative(1)) if isinstance(value, Jet) else np.zeros(1)
+            unit = 1.0 if one.drive.kind == "angle" else path.scale
+            fastest = max(fastest, float(np.nanmax(rates)) / unit)
+    return replace(path, unit=1.0 / fastest) if fastest > 0.0 and isfinite(fastest) else path
 
 
 def _driven_by(mechanism: Mechanism, drive: Drive) -> DrivenBy:
@@ -134,7 +154,7 @@ def _drawn_value(mechanism: Mechanism, drive: Drive) -> float | None:
     if drive.kind != "angle" or drive.link is None:
         return None
     angle = mechanism.links[drive.link].angle
-    reference = 0.0 if drive.relative_to == "frame" else mechanism.links[drive.relative_to].angle
+    reference = 0.0 if drive.relative_to == "frame" else mechanism.initial_angle(drive.relative_to)
     return None if angle is None or reference is None else angle - reference
 
 

@@ -15,6 +15,7 @@ from centrode.kinematics.branches import Branches, Event, branches_at_start
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan, mesh_of
+from centrode.kinematics.paths import in_time
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
 from centrode.kinematics.sampling import ORDERS, Layout, Samples, layout_of, sample, settle
@@ -99,6 +100,7 @@ def solve_span(
     progress: Progress | None = None,
 ) -> Solved:
     """Motion at the samples of a span."""
+    ready = _in_time(ready, span)
     kinematics = ready.kinematics if numbers is None else replace(ready.kinematics, numbers=_upright(numbers))
     samples = len(span.parameter)
     layout, fixed = layout_of(kinematics), 2 * len(kinematics.numbers.frame)
@@ -143,6 +145,15 @@ def _check_size(layout: Layout, lanes: int, samples: int) -> None:
             _("{asked} positions were asked for").format(asked=lanes * samples),
             _("ask for at most {most} at once, samples times mechanisms").format(most=most),
         )
+
+
+def _in_time(ready: Ready, span: Span) -> Ready:
+    """With several drives: the path's unit of time as the rates of this span want it."""
+    kinematics = ready.kinematics
+    if not kinematics.path.by_time:
+        return ready
+    path = in_time(kinematics.path, float(np.min(span.parameter)), float(np.max(span.parameter)))
+    return replace(ready, kinematics=replace(kinematics, path=path))
 
 
 def _start(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:

@@ -30,6 +30,7 @@ class Dimensions:
     local : link -> point -> coordinates in the link's axes
     through, direction : guide -> point and unit vector of its line, in the axes of the body that carries it
     turn : guide -> rotor of the constant angle from that body to the guided link
+    bodies : guide -> the body that carries it
     """
 
     frame: Mapping[str, Vector]
@@ -37,6 +38,7 @@ class Dimensions:
     through: Mapping[str, Vector]
     direction: Mapping[str, Vector]
     turn: Mapping[str, Vector]
+    bodies: Mapping[str, str]
 
     def mapped(self, function: Callable[[Number], Number]) -> Dimensions:
         """The same dimensions with every number replaced by function(number)."""
@@ -50,17 +52,30 @@ class Dimensions:
             vectors(self.through),
             vectors(self.direction),
             vectors(self.turn),
+            self.bodies,
         )
 
     @cached_property
     def scale(self) -> Number:
-        """Greatest length in the mechanism [m]: what lengths and residuals are compared with."""
-        vectors = [v for points in self.local.values() for v in points.values()]
-        vectors += [*self.frame.values(), *self.through.values()]
+        """Greatest length in the mechanism [m]: what lengths and residuals are compared with.
+
+        Distances within links and within the frame count, and those of guide lines from their bodies; where the
+        origin lies does not.
+        """
         longest: Number = 0.0
-        for x, y in vectors:
-            longest = _larger(longest, _size(x, y))
-        return longest
+        for points in (self.frame, *self.local.values()):
+            first = next(iter(points.values()), None)
+            for x, y in points.values():
+                if first is not None:
+                    longest = _larger(longest, _size(x - first[0], y - first[1]))
+        for guide, on in self.bodies.items():
+            points = self.frame if on == FRAME else self.local[on]
+            through, direction = self.through[guide], self.direction[guide]
+            for x, y in list(points.values())[:1]:
+                offset = direction[0] * (through[1] - y) - direction[1] * (through[0] - x)
+                longest = _larger(longest, _size(offset, 0.0))
+        # sliders alone have no length of their own
+        return 1.0 if isinstance(longest, float) and longest == 0.0 else longest
 
 
 def _size(x: Number, y: Number) -> Number:
@@ -95,7 +110,8 @@ def dimensions_of(
         angle = mechanism.guide_turn(guide)
         turn[guide.id] = (math.cos(angle), math.sin(angle)) if angle else (1.0, 0.0)
     values.refuse_the_rest()
-    return Dimensions(frame, local, through, direction, turn)
+    bodies = {guide.id: guide.on for guide in mechanism.guides}
+    return Dimensions(frame, local, through, direction, turn, bodies)
 
 
 def _local(name: str, link: Link, values: _Values) -> dict[str, Vector]:

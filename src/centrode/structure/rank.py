@@ -109,6 +109,7 @@ def random_realisation(mechanism: Mechanism, numbers: Dimensions) -> tuple[Dimen
         {guide.id: local(guide.on, guide.point) for guide in mechanism.guides},
         direction,
         turn,
+        numbers.bodies,
     )
     return fitted, at
 
@@ -132,14 +133,16 @@ def scaled_jacobian(
     constraints: Sequence[Constraint], unknowns: Sequence[Entity], numbers: Dimensions, at: Positions
 ) -> Matrix:
     """Jacobian at real positions with lengths measured in the mechanism's own scale, so that rank has a threshold."""
-    scale = float(numbers.scale) or 1.0
+    scale = float(numbers.scale)
     small = numbers.mapped(lambda x: x / scale)
     shrunk = Positions(
         {name: _shrunk(v, scale) for name, v in at.points.items()},
         {name: Pose(_shrunk(pose.origin, scale), pose.rotor) for name, pose in at.poses.items()},
         at.drives,
     )
-    restored = Dimensions(small.frame, small.local, small.through, numbers.direction, numbers.turn)
+    restored = Dimensions(
+        small.frame, small.local, small.through, numbers.direction, numbers.turn, numbers.bodies
+    )
     return jacobian(constraints, unknowns, restored, shrunk)
 
 
@@ -161,7 +164,7 @@ def residuals_at(
     constraints: Sequence[Constraint], numbers: Dimensions, at: Positions
 ) -> Mapping[Constraint, float]:
     """Greatest residual of each constraint at given positions [rad, or lengths in units of the greatest length]."""
-    scale = float(numbers.scale) or 1.0
+    scale = float(numbers.scale)
     return {
         c: max(abs(float(r)) for r in c.residual(ARRAYS, numbers, at)) / (1.0 if c.angular else scale)
         for c in constraints
