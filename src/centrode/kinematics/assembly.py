@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import degrees, radians, remainder, tau
+from math import degrees, radians
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -15,18 +15,24 @@ from centrode.kinematics.closure import shortfall
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.fitting import check_fit
 from centrode.kinematics.groups import solve_group
+from centrode.kinematics.sides import (
+    DEGENERATE,
+    angle_off,
+    check_opens,
+    check_sides,
+    side_by_angles,
+    side_choice,
+    stated_side,
+)
 from centrode.locale import _
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet, TwoPointLink, links_of, points_of
+from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any
 
-DEGENERATE = 1e-9
-"""A triangle flatter than this (sine) does not tell its side."""
 ANGLE_TOLERANCE = radians(5.0)
 """Initial angles name an assembly; further than this from the assembled position they are taken as a mistake."""
-
-SIDES = {"left": 1.0, "right": -1.0, "ahead": 1.0, "behind": -1.0}
 
 
 @dataclass(frozen=True)
@@ -55,13 +61,14 @@ def assemble(kinematics: Kinematics) -> Assembled:
         kinematics.numbers, {k: Rounded.of(np.float64(v)) for k, v in drives.items()}
     )
     signs: dict[int, float] = {}
-    _check_sides(kinematics)
+    check_sides(kinematics)
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
             try:
                 if group.signed:
                     signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
+                    check_opens(kinematics, i, signs)
                 else:
                     solve_group(group, ARRAYS, kinematics.numbers, at, lambda x: x, lambda x: x)
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
@@ -99,15 +106,15 @@ def _solve_bounded(kinematics: Kinematics, group: Group, bounded: Positions, sig
 def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: float) -> float:
     """Solve a group on the side that the description means; returns its sign."""
     options = {sign: _option(kinematics, group, at, sign, bound) for sign in (1.0, -1.0)}
-    stated = _stated_side(kinematics, group)
+    stated = stated_side(kinematics, group)
     flat = _distance(group, *options.values()) < DEGENERATE * float(kinematics.numbers.scale)
     if stated is None and flat:
         raise InputError(
             name_of(group),
             _("its triangle is flat in the initial position, so both assemblies meet there"),
-            _("say on which side it goes on: [assembly] sides, {word}").format(word=_side_words(group)),
+            _("say on which side it goes on: [assembly] sides, {word}").format(word=side_choice(group)),
         )
-    sign = stated if stated is not None else _side_by_angles(kinematics, group, options)
+    sign = stated if stated is not None else side_by_angles(kinematics, group, options)
     at.points.update(options[sign].points)
     at.poses.update(options[sign].poses)
     return sign
@@ -142,90 +149,12 @@ def _distance(group: Group, one: Positions, other: Positions) -> float:
     return float(max(apart, default=0.0))
 
 
-def _stated_side(kinematics: Kinematics, group: Group) -> float | None:
-    sides = kinematics.structure.mechanism.assembly.sides
-    names = side_names(group)
-    said = [(name, sides[name]) for name in names if name in sides]
-    if not said:
-        return None
-    name, word = said[0]
-    if word not in side_words(group):
-        raise InputError(
-            f"[assembly] sides.{name}",
-            _("{word} does not apply to a group {kind}").format(word=f'"{word}"', kind=group.kind),
-            _("write {words}").format(words=_side_words(group)),
-        )
-    return SIDES[word]
-
-
-def side_names(group: Group) -> tuple[str, ...]:
-    """Names under which [assembly] sides may speak of a group: its unknown points, or the guide of an RPR group."""
-    return (group.guide, group.target) if isinstance(group, Aim) else points_of(group)
-
-
-def side_words(group: Group) -> tuple[str, str]:
-    """The words that tell the sides of a group."""
-    return ("left", "right") if isinstance(group, Meet) and group.kind == "RRR" else ("ahead", "behind")
-
-
-def _side_words(group: Group) -> str:
-    first, second = side_words(group)
-    return f'{side_names(group)[0]} = "{first}" | "{second}"'
-
-
-def _side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Positions]) -> float:
-    links = kinematics.structure.mechanism.links
-    left, right = options.values()
-    hints = {
-        link: links[link].angle
-        for link in links_of(group)
-        # a link that points the same way in both assemblies tells nothing
-        if links[link].angle is not None and _turned_apart(link, left, right)
-    }
-    if not hints:
-        raise InputError(
-            name_of(group),
-            _("nothing says on which side it is assembled"),
-            _("give the initial angle of {links}, or [assembly] sides, {words}").format(
-                links=_(" or ").join(links_of(group)), words=_side_words(group)
-            ),
-        )
-    misfit = {
-        sign: sum(abs(_difference(hint or 0.0, option, link)) for link, hint in hints.items())
-        for sign, option in options.items()
-    }
-    return min(misfit, key=misfit.__getitem__)
-
-
-def _turned_apart(link: str, one: Positions, other: Positions) -> bool:
-    apart = np.subtract(one.poses[link].rotor, other.poses[link].rotor)
-    return bool(np.hypot(*apart) > DEGENERATE)
-
-
-def _check_sides(kinematics: Kinematics) -> None:
-    """Refuse sides of what no group is asked about, which would be passed over in silence."""
-    groups = [group for group in kinematics.structure.groups if group.signed]
-    known = [name for group in groups for name in side_names(group)]
-    for name in kinematics.structure.mechanism.assembly.sides:
-        if name not in known:
-            raise InputError(
-                f"[assembly] sides.{name}",
-                _("no group is assembled on a side of {name}").format(name=name),
-                _("take it out, or name one of: {names}").format(names=", ".join(known) or "-"),
-            )
-
-
-def _difference(angle: float, at: Positions, link: str) -> float:
-    cosine, sine = at.poses[link].rotor
-    return remainder(float(np.arctan2(sine, cosine)) - angle, tau)
-
-
 def _check_angles(kinematics: Kinematics, group: Group, at: Positions) -> None:
     for link in links_of(group):
         angle = kinematics.structure.mechanism.links[link].angle
         if angle is None or link not in at.poses:
             continue
-        difference = _difference(angle, at, link)
+        difference = angle_off(angle, at, link)
         if abs(difference) > ANGLE_TOLERANCE:
             raise InputError(
                 f"[links.{link}] angle",
@@ -282,14 +211,5 @@ def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:
     angles = {}
     for link in mechanism.links:
         near = named[link]
-        angles[link] = (near or 0.0) + _difference(near or 0.0, at, link)
+        angles[link] = (near or 0.0) + angle_off(near or 0.0, at, link)
     return angles
-
-
-def name_of(group: Group) -> str:
-    """A group by its links and points, as messages and tables name it."""
-    links = "-".join(links_of(group))
-    points = ", ".join(points_of(group))
-    if links and points:
-        return _("group {links} (point {points})").format(links=links, points=points)
-    return _("group {links}").format(links=links or points)

@@ -28,6 +28,8 @@ class Event:
     group: int
     lane: int
     at: float
+    closes_above: bool | None = None
+    """Of a limit: whether the group closes above it or below; None where it closes on both sides."""
 
 
 @dataclass
@@ -105,12 +107,16 @@ class Branches:
         found = np.full((self.lanes, 2), (-np.inf, np.inf))
         for event in self.events:
             if event.kind == "limit":
-                low, high = found[event.lane]
-                if event.at <= self.initial:
-                    found[event.lane, 0] = max(low, event.at)
-                if event.at >= self.initial:
-                    found[event.lane, 1] = min(high, event.at)
+                side = 0 if self._is_below(event) else 1
+                nearer = max if side == 0 else min
+                found[event.lane, side] = nearer(float(found[event.lane, side]), event.at)
         return found
+
+    def _is_below(self, limit: Event) -> bool:
+        """Whether a limit bounds the reach from below; one at the start itself bounds the side that does not close."""
+        if limit.closes_above is not None and abs(limit.at - self.initial) <= AT_THE_START * self.unit:
+            return limit.closes_above
+        return limit.at <= self.initial
 
 
 def branches_at_start(path: Path, signs: Mapping[int, float], smooth: bool, lanes: int = 1) -> Branches:

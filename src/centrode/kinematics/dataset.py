@@ -14,11 +14,11 @@ import xarray as xr
 from centrode import __version__
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import Status
-from centrode.kinematics.assembly import name_of
 from centrode.kinematics.solve import Solved
 from centrode.locale import speaking
 from centrode.model.files import mechanism_text
 from centrode.quantities import QUANTITIES
+from centrode.structure.steps import name_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Variable: TypeAlias = tuple[tuple[str, ...], Any, dict[str, Any]]

@@ -101,7 +101,8 @@ class Scan:
             value, _slope = self._on_mesh(divisor)
             lanes, cells = _sign_changes(value)
             found = self._roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
-            self.branches.add(group, _limits(group, lanes, found))
+            limits = [Event("limit", group, int(k), float(x)) for k, x in zip(lanes, found, strict=True)]
+            self.branches.add(group, limits)
         return divisor
 
     def _on_mesh(self, jet: Number) -> tuple[Array, Array]:
@@ -128,12 +129,21 @@ class Scan:
                 edge = value[lanes, cells] if last is at else value[lanes, cells + 1]
                 chosen = dips & (edge > 0.0)
                 roots = self._roots(group, lanes[chosen], first[chosen], last[chosen])
-                found += _limits(group, lanes[chosen], roots)
+                found += self._limits(group, lanes[chosen], roots)
             settled[lanes[dips], cells[dips]] = True
         lanes, cells = _sign_changes(value)
         rest = ~settled[lanes, cells]
         roots = self._roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
-        return found + _limits(group, lanes[rest], roots)
+        return found + self._limits(group, lanes[rest], roots)
+
+    def _limits(self, group: int, lanes: Lanes, at: Array) -> list[Event]:
+        if not len(lanes):
+            return []
+        rises = self._guard(group, lanes, at, 1).derivative(1) > 0.0
+        return [
+            Event("limit", group, int(lane), float(x), bool(up))
+            for lane, x, up in zip(lanes, at, rises, strict=True)
+        ]
 
     def _settle(
         self, settled: npt.NDArray[np.bool_], value: Array, lanes: Lanes, cells: Lanes, bound: Array
@@ -213,7 +223,3 @@ def _sign_changes(value: Array) -> tuple[Lanes, Lanes]:
             np.sign(np.where(np.isfinite(some), some, np.nan))[:, :-1] * np.sign(some[:, 1:]) < 0.0
         )
     return rows[found], cells
-
-
-def _limits(group: int, lanes: Lanes, at: Array) -> list[Event]:
-    return [Event("limit", group, int(lane), float(x)) for lane, x in zip(lanes, at, strict=True)]

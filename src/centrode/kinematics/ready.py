@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from centrode.errors import InputError, NotComputedYet
-from centrode.kinematics.assembly import Assembled, assemble, name_of
+from centrode.kinematics.assembly import Assembled, assemble
 from centrode.kinematics.branches import branches_at_start
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
@@ -22,6 +22,7 @@ from centrode.structure.constraints import Positions, is_drive
 from centrode.structure.groups import Newton
 from centrode.structure.plan import Structure, drives_against_mobility, structure_of
 from centrode.structure.rank import rank_of, residuals_at, scaled_jacobian
+from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any
 

@@ -15,6 +15,8 @@ from centrode.structure.groups import (
     Slot,
     TurnedLink,
     TwoPointLink,
+    links_of,
+    points_of,
 )
 
 
@@ -62,3 +64,12 @@ def _locus(locus: Locus) -> str:
     if isinstance(locus, Slot):
         return _("guide {guide} through {point}").format(guide=locus.guide, point=locus.point)
     return _("the stop that the drive of guide {guide} sets").format(guide=locus.guide)
+
+
+def name_of(group: Group) -> str:
+    """A group by its links and points, as messages and tables name it."""
+    links = "-".join(links_of(group))
+    points = ", ".join(points_of(group))
+    if links and points:
+        return _("group {links} (point {points})").format(links=links, points=points)
+    return _("group {links}").format(links=links or points)

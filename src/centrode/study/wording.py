@@ -7,12 +7,12 @@ from math import tau
 import numpy as np
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.kinematics.assembly import name_of
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
 from centrode.model.mechanism import Drive
 from centrode.quantities import display_unit
+from centrode.structure.steps import name_of
 
 
 def unit_of_drive(drive: Drive) -> str:
