@@ -105,11 +105,12 @@ def check_opens(kinematics: Kinematics, index: int, signs: dict[int, float]) -> 
     """Refuse a group that is flat in the initial position and everywhere else: its sides would be rounding."""
     group = kinematics.structure.groups[index]
     path = kinematics.path
-    here = kinematics.guard(ROUNDED, Rounded.of(np.float64(path.initial)), index, _signed(signs))
+    start = Rounded.of(np.float64(path.initial))
+    here = Rounded.of(kinematics.guard(ROUNDED, start, index, _signed(signs)))
     if abs(here.value) > SAFETY * here.bound:
         return
     away = Rounded.of(path.initial + path.unit * AWAY)
-    there = kinematics.guard(ROUNDED, away, index, _signed(signs))
+    there = Rounded.of(kinematics.guard(ROUNDED, away, index, _signed(signs)))
     if bool(np.all(np.abs(there.value) <= SAFETY * there.bound)):
         raise InputError(
             name_of(group),

@@ -9,9 +9,16 @@ from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.structure.classify import classify
-from centrode.structure.constraints import Constraint, Entity, constraints_of, is_drive, unknowns_of
+from centrode.structure.constraints import (
+    Constraint,
+    Entity,
+    PointInLink,
+    constraints_of,
+    is_drive,
+    unknowns_of,
+)
 from centrode.structure.dimensions import Dimensions, dimensions_of
-from centrode.structure.groups import Group
+from centrode.structure.groups import Group, Newton
 from centrode.structure.matching import in_order, match, strong_components
 from centrode.structure.rank import Matrix, generic_jacobian, independent_rows
 
@@ -65,9 +72,31 @@ def structure_of(mechanism: Mechanism) -> Structure:
     free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
     mobility = matrix.shape[1] - free_rank
     _check_drives(mechanism, constraints, unknowns, kept, owners, mobility)
-    redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
     groups = _groups(mechanism, constraints, unknowns, matrix, kept, owners)
+    if not all(kept) and any(isinstance(group, Newton) for group in groups):
+        # which of the repeated constraints is left out is a choice: let it be that of the simplest link
+        other = _kept_by_size(mechanism, matrix, owners)
+        simpler = _groups(mechanism, constraints, unknowns, matrix, other, owners)
+        if not any(isinstance(group, Newton) for group in simpler):
+            kept, groups = other, simpler
+    redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
     return Structure(mechanism, dimensions, constraints, redundant, unknowns, groups, mobility)
+
+
+def _kept_by_size(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constraint]) -> list[bool]:
+    """Independent rows, looked at in the order drives, links with many points, links with few."""
+
+    def rank(row: int) -> int:
+        owner = owners[row]
+        if is_drive(owner):
+            return -len(mechanism.points) - 1
+        return -len(mechanism.links[owner.link].coordinates) if isinstance(owner, PointInLink) else 0
+
+    order = sorted(range(len(owners)), key=rank)
+    kept = [False] * len(owners)
+    for row, keep in zip(order, independent_rows(matrix[order]), strict=True):
+        kept[row] = bool(keep)
+    return kept
 
 
 def _refuse_what_is_not_computed(mechanism: Mechanism) -> None:
