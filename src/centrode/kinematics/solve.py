@@ -78,9 +78,7 @@ def solve(
     progress: Progress | None = None,
 ) -> Solved:
     """Motion at evenly spaced samples; `numbers` with one value a mechanism make it a batch of `lanes`."""
-    reach = _reach_if_needed(ready, start, stop)
-    span = span_of(ready.kinematics.path, samples, start, stop, reach)
-    return solve_span(ready, span, numbers, lanes, progress)
+    return solve_span(ready, asked_span(ready, samples, start, stop), numbers, lanes, progress)
 
 
 def asked_span(ready: Ready, samples: int | None, start: float | None, stop: float | None) -> Span:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
-from contextlib import AbstractContextManager
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -50,11 +51,18 @@ class Pen:
     dashes: Any = "-"
 
 
-def house_style() -> AbstractContextManager[None]:
-    """Context in which figures are made: matplotlib's defaults and ours, whatever the user has set."""
+@contextmanager
+def house_style() -> Iterator[None]:
+    """Context in which figures are made: matplotlib's defaults and ours, whatever the user has set.
+
+    A letter that the font lacks (a title may be in any language) becomes a box, without a warning.
+    """
     settings: Any = matplotlib.rcParamsDefault | SETTINGS
     # Even to ask for the backend would load pyplot and choose one.
-    return matplotlib.rc_context({name: value for name, value in settings.items() if name not in BACKEND})
+    ours = {name: value for name, value in settings.items() if name not in BACKEND}
+    with matplotlib.rc_context(ours), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        yield
 
 
 def pens(names: Iterable[str]) -> Mapping[str, Pen]:
