@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.ready import Ready
-from centrode.structure.constraints import FRAME
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Meet, Rail, RigidPoint, Rod, TurnedLink, TwoPointLink
+from centrode.structure.positions import FRAME
 
 components = lazy_loader.load("pylinkage.components")
 actuators = lazy_loader.load("pylinkage.actuators")

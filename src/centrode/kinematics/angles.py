@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.structure.constraints import Positions
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Side: TypeAlias = npt.NDArray[np.int8]

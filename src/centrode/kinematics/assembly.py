@@ -25,8 +25,8 @@ from centrode.kinematics.sides import (
     stated_side,
 )
 from centrode.locale import _
-from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet, TwoPointLink, links_of, points_of
+from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any

@@ -9,9 +9,9 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.geometry.plane import cross, subtract
 from centrode.kinematics.groups import Circle, Line, aim_line, loci_of
 from centrode.locale import _
-from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet
+from centrode.structure.positions import Positions
 
 
 def shortfall(group: Group, numbers: Dimensions, at: Positions) -> str:

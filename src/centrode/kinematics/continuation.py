@@ -22,8 +22,8 @@ from centrode.geometry.plane import Pose
 from centrode.kinematics.branches import Branches
 from centrode.kinematics.evaluate import Branch, Kinematics
 from centrode.kinematics.paths import JETS
-from centrode.structure.constraints import Positions
 from centrode.structure.groups import links_of, points_of
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -23,8 +23,8 @@ from centrode.kinematics.continuation import REACH, Continuation
 from centrode.kinematics.evaluate import Kinematics, Reached
 from centrode.kinematics.paths import JETS, Path
 from centrode.kinematics.roots import bracketed_roots
-from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Meet
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

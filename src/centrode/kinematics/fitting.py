@@ -7,9 +7,9 @@ import numpy as np
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import Kinematics
 from centrode.locale import _
-from centrode.structure.constraints import Positions
 from centrode.structure.groups import TwoPointLink
 from centrode.structure.plan import drives_against_mobility
+from centrode.structure.positions import Positions
 from centrode.structure.rank import residuals_at
 
 RESIDUAL_TOLERANCE = 1e-9

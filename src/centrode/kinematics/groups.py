@@ -30,7 +30,6 @@ from centrode.geometry.plane import (
     subtract,
     turned,
 )
-from centrode.structure.constraints import Positions, line_of
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import (
     Aim,
@@ -47,6 +46,7 @@ from centrode.structure.groups import (
     Turning,
     TwoPointLink,
 )
+from centrode.structure.positions import Positions, line_of
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any

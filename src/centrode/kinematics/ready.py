@@ -18,9 +18,10 @@ from centrode.kinematics.fitting import RESIDUAL_TOLERANCE, length_misfits
 from centrode.kinematics.paths import path_of
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.structure.constraints import Positions, is_drive
+from centrode.structure.constraints import is_drive
 from centrode.structure.groups import Newton
 from centrode.structure.plan import Structure, drives_against_mobility, structure_of
+from centrode.structure.positions import Positions
 from centrode.structure.rank import rank_of, residuals_at, scaled_jacobian
 from centrode.structure.steps import name_of
 

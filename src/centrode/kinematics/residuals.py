@@ -15,7 +15,8 @@ from centrode.errors import Status
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.sampling import Samples, positions_from, settle
 from centrode.locale import _
-from centrode.structure.constraints import Constraint, Positions
+from centrode.structure.constraints import Constraint
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

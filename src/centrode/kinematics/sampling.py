@@ -21,7 +21,7 @@ from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import guard_with_bound
 from centrode.kinematics.paths import JETS
-from centrode.structure.constraints import Positions, line_of
+from centrode.structure.positions import Positions, line_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -11,8 +11,8 @@ from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import Branch, Kinematics
 from centrode.locale import _
-from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet, links_of, points_of
+from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any

@@ -21,8 +21,8 @@ from centrode.kinematics.residuals import Kept, open_what_does_not_close, residu
 from centrode.kinematics.sampling import ORDERS, Layout, Samples, layout_of, sample, settle
 from centrode.kinematics.spans import Span, span_of
 from centrode.locale import _
-from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

@@ -10,7 +10,6 @@ from centrode.structure.constraints import (
     AngleDrive,
     Constraint,
     DisplacementDrive,
-    Entity,
     NoTurning,
     PointInLink,
     PointOnGuide,
@@ -30,6 +29,7 @@ from centrode.structure.groups import (
     Turning,
     TwoPointLink,
 )
+from centrode.structure.positions import Entity
 
 
 @dataclass(frozen=True)

@@ -9,17 +9,11 @@ from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.structure.classify import classify
-from centrode.structure.constraints import (
-    Constraint,
-    Entity,
-    PointInLink,
-    constraints_of,
-    is_drive,
-    unknowns_of,
-)
+from centrode.structure.constraints import Constraint, PointInLink, constraints_of, is_drive, unknowns_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
 from centrode.structure.groups import Group, Newton
 from centrode.structure.matching import in_order, match, strong_components
+from centrode.structure.positions import Entity
 from centrode.structure.rank import Matrix, generic_jacobian, independent_rows
 
 

@@ -16,8 +16,9 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
 from centrode.model.mechanism import Mechanism
-from centrode.structure.constraints import FRAME, Constraint, Entity, Positions
+from centrode.structure.constraints import Constraint
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.positions import FRAME, Entity, Positions
 
 INDEPENDENT = 1e-8
 """A unit row counts as independent if this much of it is left after projection on the rows before it."""

@@ -1,0 +1,64 @@
+"""What is unknown, and where it is: points, links, positions in any algebra."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+from centrode.geometry.plane import AT_REST, Pose, Vector, place, reversed_rotor, turned
+from centrode.structure.dimensions import Dimensions
+
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+FRAME = "frame"
+
+
+class Entity(NamedTuple):
+    """An unknown: a moving point, or a link."""
+
+    kind: Literal["point", "link"]
+    name: str
+
+    @property
+    def unknowns(self) -> int:
+        """Number of coordinates: 2 of a point, 3 of a link."""
+        return 2 if self.kind == "point" else 3
+
+
+@dataclass
+class Positions:
+    """Places of all points and links, in any algebra, with the values of the drives."""
+
+    points: dict[str, Vector]
+    poses: dict[str, Pose]
+    drives: Mapping[str, Number]
+
+    @classmethod
+    def of_frame(cls, dimensions: Dimensions, drives: Mapping[str, Number]) -> Positions:
+        """What is known before any group is solved: the frame and the drives."""
+        return cls(dict(dimensions.frame), {FRAME: AT_REST}, drives)
+
+    def mapped(self, function: Callable[[Number], Number]) -> Positions:
+        """The same positions with every number replaced by function(number)."""
+
+        def vector(v: Vector) -> Vector:
+            return function(v[0]), function(v[1])
+
+        return Positions(
+            {name: vector(v) for name, v in self.points.items()},
+            {name: Pose(vector(pose.origin), vector(pose.rotor)) for name, pose in self.poses.items()},
+            {name: function(value) for name, value in self.drives.items()},
+        )
+
+
+def line_of(numbers: Dimensions, at: Positions, guide: str, on: str) -> tuple[Vector, Vector]:
+    """Point and direction of a guide's line as it lies now."""
+    pose = at.poses[on]
+    return place(pose, numbers.through[guide]), turned(numbers.direction[guide], pose.rotor)
+
+
+def angle_between(m: Namespace, rotor: Vector, reference: Vector) -> Number:
+    """Angle from one rotor to another, in (-pi, pi]."""
+    difference = turned(rotor, reversed_rotor(reference))
+    return m.atan2(difference[1], difference[0])
