@@ -15,7 +15,7 @@ from benchmarks import peer
 from benchmarks.table import Row
 from benchmarks.timing import best_times
 from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.solve import solve
+from centrode.kinematics.solve import asked_span, solve
 from centrode.structure.dimensions import Dimensions, dimensions_of
 
 Array = npt.NDArray[np.float64]
@@ -50,7 +50,7 @@ def worked_mechanisms() -> Iterator[Row]:
             continue
         times = best_times(
             {
-                "solve": functools.partial(solve, prepared, SAMPLES),
+                "solve": functools.partial(solve, prepared, asked_span(prepared, SAMPLES, None, None)),
                 "motion": functools.partial(ct.motion, mechanism, SAMPLES),
                 "peer positions": functools.partial(other.positions, SAMPLES),
                 "peer motion": functools.partial(other.motion, SAMPLES),
@@ -88,7 +88,11 @@ def batches() -> Iterator[Row]:
             {
                 "motion": motion,
                 "solve": functools.partial(
-                    solve, batch.prepared, SAMPLES, numbers=batch.numbers, lanes=BATCH
+                    solve,
+                    batch.prepared,
+                    asked_span(batch.prepared, SAMPLES, None, None),
+                    numbers=batch.numbers,
+                    lanes=BATCH,
                 ),
                 "peer": functools.partial(peer.run_batch, peers, SAMPLES),
             },

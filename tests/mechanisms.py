@@ -17,8 +17,8 @@ import centrode as ct
 from centrode.algebra.jets import Jet
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import Solved, solve
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -144,7 +144,7 @@ def events(data: xr.Dataset, kind: str) -> list[float]:
 def solved_at(mechanism: ct.Mechanism, values: npt.ArrayLike) -> list[Solved]:
     """The motion at given values of the drive, one by one: a result belongs to its value alone."""
     prepared = ready(mechanism)
-    return [solve(prepared, 1, float(q), float(q)) for q in np.atleast_1d(np.asarray(values))]
+    return [solve_evenly(prepared, 1, float(q), float(q)) for q in np.atleast_1d(np.asarray(values))]
 
 
 STEP = 2.0**-30
@@ -206,3 +206,10 @@ def nudged(numbers: Dimensions, random: np.random.Generator) -> Dimensions:
 def rounding(solved: Solved) -> Array:
     """What rounding may do to a motion (3, samples), in the greatest length, rad and the path's unit."""
     return np.asarray(OPERATIONS * EPS * conditioning(solved))
+
+
+def solve_evenly(
+    prepared: Ready, samples: int, start: float | None = None, stop: float | None = None
+) -> Solved:
+    """Motion at evenly spaced samples, as plain arrays."""
+    return solve(prepared, asked_span(prepared, samples, start, stop))

@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 import centrode as ct
+from centrode.quantities import display_unit
 
 Centrode = Callable[..., Any]
 FIGURES = (
@@ -92,7 +93,8 @@ def test_the_summary_holds_what_is_printed(centrode: Centrode, folder: Path, nam
     done = centrode("run", name, "--out", "result", "--no-figures")
     told, saved = done.rows, summary_of(folder / "result")
     display = ct.example(name).display
-    factor = 1 / (display.angle_factor if "rad" in units(folder, "first_value") else display.length_factor)
+    unit = "rad" if "rad" in units(folder, "first_value") else "m"
+    factor = display_unit(unit, display.length, display.angle)[0]
 
     def shown(*values: float) -> list[float]:
         return [pytest.approx(value * factor, rel=1e-8) for value in values]

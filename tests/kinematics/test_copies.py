@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import Solved, solve
+from centrode.kinematics.solve import Solved
 from growing import descriptions, mechanism_of
-from mechanisms import EPS, Parts, conditioning, moved
+from mechanisms import EPS, Parts, conditioning, moved, solve_evenly
 
 Complex: TypeAlias = npt.NDArray[np.complex128]
 
@@ -28,7 +28,7 @@ NEAR = 1e8
 def motion_about_the_start(parts: Parts, sense: float = 1.0) -> Solved:
     prepared = ready(mechanism_of(parts))
     q = prepared.kinematics.path.initial
-    return solve(prepared, SAMPLES, q - sense * WIDTH, q + sense * WIDTH)
+    return solve_evenly(prepared, SAMPLES, q - sense * WIDTH, q + sense * WIDTH)
 
 
 def alike(one: Solved, other: Solved, images: list[Complex], sense: float, size: float) -> None:
@@ -131,11 +131,11 @@ def test_a_value_is_the_same_bits_in_any_company(parts: Parts, stride: int, firs
     """Fewer samples, a part of the range, backwards: at the same value of the drive all numbers have the same bits."""
     prepared = ready(mechanism_of(parts))
     q = prepared.kinematics.path.initial
-    whole = solve(prepared, 61, q - 1.0, q + 2.0)
+    whole = solve_evenly(prepared, 61, q - 1.0, q + 2.0)
     values = whole.span.parameter
     picked = list(range(first, 61, stride))
-    part = solve(prepared, len(picked), float(values[picked[0]]), float(values[picked[-1]]))
-    backwards = solve(prepared, 61, float(values[-1]), float(values[0]))
+    part = solve_evenly(prepared, len(picked), float(values[picked[0]]), float(values[picked[-1]]))
+    backwards = solve_evenly(prepared, 61, float(values[-1]), float(values[0]))
     compared = 0
     for other in (part, backwards):
         for k, value in enumerate(other.span.parameter):
@@ -159,10 +159,10 @@ def test_examples_give_the_same_bits_alone_and_together(name: str) -> None:
     study = prepared.mechanism.study
     low = study.start if study.start is not None else prepared.kinematics.path.initial
     high = study.stop if study.stop is not None else low + 7.0
-    whole = solve(prepared, 97, low, high)
+    whole = solve_evenly(prepared, 97, low, high)
     for k in (0, 1, 17, 50, 77, 96):
         q = float(whole.span.parameter[k])
-        same_bits(whole, k, solve(prepared, 1, q, q), 0)
+        same_bits(whole, k, solve_evenly(prepared, 1, q, q), 0)
 
 
 BATCHES: list[tuple[str, dict[str, list[float]]]] = [

@@ -11,9 +11,9 @@ import pytest
 
 import centrode as ct
 from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import Solved, solve
+from centrode.kinematics.solve import Solved
 from centrode.structure.plan import structure_of
-from mechanisms import rounding
+from mechanisms import rounding, solve_evenly
 
 ORACLE: dict[str, Any] = json.loads(
     (Path(__file__).parents[1] / "oracle" / "oracle.json").read_text(encoding="utf-8")
@@ -32,7 +32,7 @@ def test_every_kind_of_group_has_an_oracle() -> None:
 def test_motion_against_fifty_digits(name: str) -> None:
     prepared = ready(ct.Mechanism(**ORACLE[name]["parts"]))
     for sample in ORACLE[name]["samples"]:
-        solved = solve(prepared, 1, sample["at"], sample["at"])
+        solved = solve_evenly(prepared, 1, sample["at"], sample["at"])
         assert solved.status[0, 0] == ct.Status.OK
         allowed = rounding(solved)[:, 0]
         by_law = name == "drive by a law of time"

@@ -12,12 +12,12 @@ from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose, subtract, turned
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import Solved, solve
+from centrode.kinematics.solve import Solved
 from centrode.structure.constraints import is_drive
 from centrode.structure.positions import Entity, Positions
 from centrode.structure.rank import jacobian
 from growing import descriptions, mechanism_of
-from mechanisms import EPS, conditioning
+from mechanisms import EPS, conditioning, solve_evenly
 
 WIDTH = 0.3
 SAMPLES = 7
@@ -29,7 +29,7 @@ def motion_about_the_start(parts: dict[str, Any]) -> tuple[Solved, list[int], An
     """A motion around the initial position, its samples worth a look, and what rounding may do to them."""
     prepared = ready(mechanism_of(parts))
     q = prepared.kinematics.path.initial
-    solved = solve(prepared, SAMPLES, q - WIDTH, q + WIDTH)
+    solved = solve_evenly(prepared, SAMPLES, q - WIDTH, q + WIDTH)
     condition = conditioning(solved, tries=4)
     good = [k for k in range(SAMPLES) if solved.status[0, k] == ct.Status.OK and condition[0, k] < WORTH]
     assume(good)
@@ -124,7 +124,7 @@ def test_higher_jets_foretell_the_motion(parts: dict[str, Any]) -> None:
         return JETS.sqrt(radicand) * solved.branches.sign(group, at_start[None, :])[0]
 
     here = kinematics.positions(JETS, Jet.variable(at_start, 12), branch)
-    there = solve(solved.ready, 1, float(at_start[0] + step), float(at_start[0] + step))
+    there = solve_evenly(solved.ready, 1, float(at_start[0] + step), float(at_start[0] + step))
     assume(there.status[0, 0] == ct.Status.OK and SAMPLES // 2 in good)
     error = np.max(allowed[0, SAMPLES // 2]) + 16 * EPS * conditioning(there, tries=4)[0, 0]
     scale = float(kinematics.numbers.scale)

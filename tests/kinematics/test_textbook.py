@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import solve
 from centrode.model.classics import inverted_slider_crank
-from mechanisms import EPS, conditioning, events, four_bar, link, point, slide, statuses
+from mechanisms import EPS, conditioning, events, four_bar, link, point, slide, solve_evenly, statuses
 
 LENGTH = st.floats(0.5, 4.0)
 
@@ -22,7 +21,7 @@ def rounding(
     mechanism: ct.Mechanism, samples: int, start: float, stop: float
 ) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     """Roundings of the closed form and of the motion together: each 8 eps times the condition (3, samples)."""
-    return 16 * EPS * conditioning(solve(ready(mechanism), samples, start, stop), tries=4)
+    return 16 * EPS * conditioning(solve_evenly(ready(mechanism), samples, start, stop), tries=4)
 
 
 @settings(max_examples=20)

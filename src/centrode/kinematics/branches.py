@@ -93,10 +93,6 @@ class Branches:
         """Greatest radicand of a group on the mesh: shape (lanes, 1)."""
         return self.largest[group][:, None]
 
-    def of_kind(self, kind: str, lane: int) -> list[Event]:
-        """Events of one kind and mechanism, in the order of the path."""
-        return sorted((e for e in self.events if e.kind == kind and e.lane == lane), key=lambda e: e.at)
-
     def reach(self, lane: int) -> tuple[float, float]:
         """Nearest limits on both sides of the initial position; infinite where there is none."""
         low, high = self.reaches()[lane]

@@ -53,32 +53,32 @@ def mesh_of(path: Path, parameter: Array) -> Array:
 class Scan:
     """Search for the events of all groups of a plan, one group after the other."""
 
-    course: Continuation
+    continuation: Continuation
     mesh: Array
 
     @property
     def kinematics(self) -> Kinematics:
         """The plan that is searched."""
-        return self.course.kinematics
+        return self.continuation.kinematics
 
     @property
     def branches(self) -> Branches:
         """What is found is recorded here."""
-        return self.course.branches
+        return self.continuation.branches
 
     def run(self) -> Positions:
         """Find all events, record them in the branches, and return the positions on the mesh as plain arrays."""
         groups = self.kinematics.structure.groups
         last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
         along = self.mesh[None, :]
-        after = self.course.mending(along, None)
+        after = self.continuation.mending(along, None)
         with np.errstate(all="ignore"):
             at = self.kinematics.frame(JETS, Jet.variable(along, 1))
             self.kinematics.advance(at, range(last), JETS, self._branch, self._divisor, after)
             with suppress(Reached):  # slopes are needed up to the last radicand, and not beyond
                 self.kinematics.advance(at, range(last, last + 1), JETS, self._last_branch, self._divisor)
             plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
-            signed = self.course.signed(ARRAYS, along, None)
+            signed = self.continuation.signed(ARRAYS, along, None)
             self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, signed, after=after)
         return plain
 
@@ -157,7 +157,7 @@ class Scan:
 
     def _guard(self, group: int, lanes: Lanes, at: Array, order: int) -> Jet:
         taken = self.kinematics.taken(lanes)
-        branch, after = self.course.signed(JETS, at, lanes), self.course.mending(at, lanes)
+        branch, after = self.continuation.signed(JETS, at, lanes), self.continuation.mending(at, lanes)
         with np.errstate(all="ignore"):
             guard = taken.guard(JETS, Jet.variable(at, order), group, branch, after)
         return (
@@ -180,14 +180,14 @@ class Scan:
 
     def with_bound(self, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
         """Radicand of a group with the bound of its rounding error."""
-        return guard_with_bound(self.course, group, lanes, at)
+        return guard_with_bound(self.continuation, group, lanes, at)
 
 
-def guard_with_bound(course: Continuation, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
+def guard_with_bound(continuation: Continuation, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
     """Radicand of a group at parameters, one lane for each, with the bound of its rounding error."""
-    branch, after = course.signed(ROUNDED, at, lanes), course.mending(at, lanes)
+    branch, after = continuation.signed(ROUNDED, at, lanes), continuation.mending(at, lanes)
     with np.errstate(all="ignore"):
-        used = course.kinematics.taken(lanes)
+        used = continuation.kinematics.taken(lanes)
         guard = Rounded.of(used.guard(ROUNDED, Rounded.of(at), group, branch, after))
     return np.broadcast_to(guard.value, at.shape), np.broadcast_to(guard.bound, at.shape)
 

@@ -124,8 +124,8 @@ def _places(kinematics: Kinematics, assembled: Assembled) -> Iterator[Positions]
     path = kinematics.path
     looks = path.initial + path.unit * np.array(LOOKS)
     mesh = mesh_of(path, looks)
-    course = Continuation(kinematics, branches_at_start(path, assembled.signs, smooth=True))
-    on_mesh = Scan(course, mesh).run()
+    continuation = Continuation(kinematics, branches_at_start(path, assembled.signs, smooth=True))
+    on_mesh = Scan(continuation, mesh).run()
     for node in np.argmin(np.abs(mesh[:, None] - looks), axis=0):
         at = on_mesh.mapped(lambda x, node=node: float(np.broadcast_to(x, (1, len(mesh)))[0, node]))  # type: ignore[misc]
         if all(np.isfinite(x) for v in at.points.values() for x in v):

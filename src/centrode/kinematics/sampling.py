@@ -90,7 +90,7 @@ def layout_of(kinematics: Kinematics) -> Layout:
 
 
 def evaluate_columns(
-    course: Continuation, layout: Layout, parameter: Array, columns: Array
+    continuation: Continuation, layout: Layout, parameter: Array, columns: Array
 ) -> tuple[Mask, Mask]:
     """Fill in columns (3, columns, lanes, n); returns where a group is open, and where at zero of its radicand."""
     shape = columns.shape[2:]
@@ -99,11 +99,11 @@ def evaluate_columns(
     judged: dict[int, tuple[Mask, Mask]] = {}
 
     def branch(group: int, radicand: Number) -> Number:
-        sign = course.branches.sign(group, along)
+        sign = continuation.branches.sign(group, along)
         if not isinstance(radicand, Jet):
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
         value = np.broadcast_to(radicand.value, shape)
-        below = _at_zero(course, group, value, parameter)
+        below = _at_zero(continuation, group, value, parameter)
         if below is None:
             np.logical_or(opened, value < 0.0, out=opened)
             return JETS.sqrt(radicand) * sign
@@ -111,24 +111,24 @@ def evaluate_columns(
         return JETS.sqrt(Jet((np.where(below, 0.0, value), *radicand.coefficients[1:]))) * sign
 
     def after(group: int, at: Positions) -> None:
-        mended = course.mend(group, at, along, None)
+        mended = continuation.mend(group, at, along, None)
         for total, found in zip((opened, zero), judged.pop(group, ()), strict=False):
             for index in mended:
                 found[index] = False  # there the motion goes on smoothly
             np.logical_or(total, found, out=total)
 
     with np.errstate(all="ignore"):
-        at = course.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), branch, after=after)
-        _fill_columns(course.kinematics, layout, at, columns)
+        at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), branch, after=after)
+        _fill_columns(continuation.kinematics, layout, at, columns)
     return opened, zero
 
 
-def _at_zero(course: Continuation, group: int, value: Array, parameter: Array) -> Mask | None:
+def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Array) -> Mask | None:
     """Where a radicand is zero within its rounding error; None if nowhere."""
-    suspects = np.nonzero(np.abs(value) <= SUSPECT * course.branches.greatest(group))
+    suspects = np.nonzero(np.abs(value) <= SUSPECT * continuation.branches.greatest(group))
     if not len(suspects[0]):
         return None
-    _value, bound = guard_with_bound(course, group, suspects[0], parameter[suspects[1]])
+    _value, bound = guard_with_bound(continuation, group, suspects[0], parameter[suspects[1]])
     zero = np.zeros(value.shape, dtype=bool)
     zero[suspects] = np.abs(value[suspects]) <= SAFETY * bound
     return zero if zero.any() else None
@@ -154,10 +154,10 @@ def _slide(kinematics: Kinematics, at: Positions, guide_id: str) -> Number:
     return dot(direction, subtract(at.points[guide.point], through))
 
 
-def sample(course: Continuation, parameter: Array, samples: Samples) -> None:
+def sample(continuation: Continuation, parameter: Array, samples: Samples) -> None:
     """Fill in columns and statuses."""
-    opened, zero = evaluate_columns(course, samples.layout, parameter, samples.columns)
-    reach = course.branches.reaches()
+    opened, zero = evaluate_columns(continuation, samples.layout, parameter, samples.columns)
+    reach = continuation.branches.reaches()
     margin = 4.0 * np.spacing(np.abs(parameter))
     beyond = (parameter < reach[:, :1] - margin) | (parameter > reach[:, 1:] + margin)
     samples.status[zero | ~samples.complete] = Status.SINGULAR

@@ -68,19 +68,6 @@ class Solved:
         return sorted((e for e in inside if e.lane == lane), key=lambda e: e.at)
 
 
-def solve(
-    ready: Ready,
-    samples: int,
-    start: float | None = None,
-    stop: float | None = None,
-    numbers: Dimensions | None = None,
-    lanes: int = 1,
-    progress: Progress | None = None,
-) -> Solved:
-    """Motion at evenly spaced samples; `numbers` with one value a mechanism make it a batch of `lanes`."""
-    return solve_span(ready, asked_span(ready, samples, start, stop), numbers, lanes, progress)
-
-
 def asked_span(ready: Ready, samples: int | None, start: float | None, stop: float | None) -> Span:
     """Evenly spaced samples; what is left out is what the description asks for."""
     study = ready.mechanism.study
@@ -90,7 +77,7 @@ def asked_span(ready: Ready, samples: int | None, start: float | None, stop: flo
     return span_of(ready.kinematics.path, count, start, stop, _reach_if_needed(ready, start, stop))
 
 
-def solve_span(
+def solve(
     ready: Ready,
     span: Span,
     numbers: Dimensions | None = None,
@@ -164,9 +151,9 @@ def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> t
     if path.by_time or path.driven[0].drive.kind == "angle" or (start is not None and stop is not None):
         return -np.inf, np.inf
     ends = np.array([path.initial - SEARCH * path.unit, path.initial + SEARCH * path.unit])
-    course = _start(ready, ready.kinematics)
-    Scan(course, mesh_of(path, ends)).run()
-    return course.branches.reach(0)
+    continuation = _start(ready, ready.kinematics)
+    Scan(continuation, mesh_of(path, ends)).run()
+    return continuation.branches.reach(0)
 
 
 def _upright(numbers: Dimensions) -> Dimensions:
@@ -192,15 +179,15 @@ class _Part:
 
 def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples, angles: Array) -> _Part:
     """Fill in the samples and angles of some mechanisms of a batch."""
-    course = _start(ready, kinematics, samples.status.shape[0])
+    continuation = _start(ready, kinematics, samples.status.shape[0])
     mesh = mesh_of(kinematics.path, span.parameter)
-    on_mesh = Scan(course, mesh).run()
-    sample(course, span.parameter, samples)
+    on_mesh = Scan(continuation, mesh).run()
+    sample(continuation, span.parameter, samples)
     settle(samples)
     residual, worst = residuals(kinematics, samples, span.parameter)
     open_what_does_not_close(samples, residual)
     _fill_angles(ready, on_mesh, mesh, samples, span.parameter, angles)
-    return _Part(course.branches, residual, worst)
+    return _Part(continuation.branches, residual, worst)
 
 
 def _fill_angles(

@@ -12,10 +12,10 @@ from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.kinematics.paths import JETS, DrivenBy, Path, in_time
 from centrode.locale import _
+from centrode.model import limits
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-MAX_SAMPLES = 1_000_000
 MAX_TURNS = 500.0
 INSIDE = 0.005
 """Share of the reachable range left out at both ends if none is asked for: there speeds are infinite."""
@@ -43,11 +43,11 @@ def span_of(
 
     `reach` are the nearest limits, the range of a displacement drive where none is asked for.
     """
-    if isinstance(samples, bool) or not 1 <= samples <= MAX_SAMPLES:
+    if isinstance(samples, bool) or not 1 <= samples <= limits.SAMPLES:
         raise InputError(
             _("samples"),
             _("{samples} samples were asked for").format(samples=samples),
-            _("ask for 1 to {most}").format(most=MAX_SAMPLES),
+            _("ask for 1 to {most}").format(most=limits.SAMPLES),
         )
     for name, value in (("from", start), ("to", stop)):
         if value is not None and not np.isfinite(value):
@@ -62,7 +62,7 @@ def span_of(
 
 def span_at(path: Path, places: Array) -> Span:
     """Samples at given places: values of the drive [rad or m], or times [s] where the drive is a law."""
-    if places.ndim != 1 or not 1 <= len(places) <= MAX_SAMPLES or not np.isfinite(places).all():
+    if places.ndim != 1 or not 1 <= len(places) <= limits.SAMPLES or not np.isfinite(places).all():
         raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
     span = _at_values(path, places) if is_uniform(path) else _at_times(path, places)
     _check_extent(path, span)

@@ -44,16 +44,6 @@ class Display(Part):
     length: Annotated[str, choice(*LENGTHS)] = "m"
     angle: Annotated[str, choice(*ANGLES)] = "rad"
 
-    @property
-    def length_factor(self) -> float:
-        """Metres in one unit of length."""
-        return 1.0 / LENGTHS[self.length]
-
-    @property
-    def angle_factor(self) -> float:
-        """Radians in one unit of angle."""
-        return 1.0 / ANGLES[self.angle]
-
 
 class Assembly(Part):
     """Which way groups are assembled, and what happens at change points.

@@ -10,7 +10,7 @@ import xarray as xr
 from centrode.errors import InputError, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.solve import Solved, asked_span, solve_span
+from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.kinematics.spans import is_uniform, span_at
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
@@ -63,7 +63,7 @@ def study(
 ) -> StudyResults:
     """Check a mechanism and compute its motion; the arguments are those of `motion`."""
     prepared = ready(mechanism)
-    solved = solve_span(prepared, asked_span(prepared, samples, start, stop))
+    solved = solve(prepared, asked_span(prepared, samples, start, stop))
     checked = check_of(prepared)
     data = dataset_of(solved)
     words = Words(solved)
@@ -93,7 +93,7 @@ def _at_instants(prepared: Ready) -> xr.Dataset | None:
         span = span_at(path, np.array(places))
     except InputError as error:
         raise InputError("[study] instants", error.what, error.repair) from None
-    return dataset_of(solve_span(prepared, span))
+    return dataset_of(solve(prepared, span))
 
 
 def range_value(mechanism: Mechanism, text: str, where: str) -> float:
