@@ -11,7 +11,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.structure.classify import classify
 from centrode.structure.constraints import Constraint, PointInLink, constraints_of, is_drive, unknowns_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
-from centrode.structure.groups import Group, Newton
+from centrode.structure.groups import Group
 from centrode.structure.matching import in_order, match, strong_components
 from centrode.structure.positions import Entity
 from centrode.structure.rank import Matrix, generic_jacobian, independent_rows
@@ -59,26 +59,24 @@ def structure_of(mechanism: Mechanism) -> Structure:
     unknowns = unknowns_of(mechanism)
     dimensions = dimensions_of(mechanism)
     matrix = generic_jacobian(mechanism, constraints, unknowns, dimensions)
-    kept = [bool(keep) for keep in independent_rows(matrix)]
     owners = [c for c in constraints for _row in range(c.size)]
+    kept = _independent(mechanism, matrix, owners)
     drive_rows = sum(is_drive(c) for c in constraints)
     # with all rows independent, so are those without the drives
     free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
     mobility = matrix.shape[1] - free_rank
     _check_drives(mechanism, constraints, unknowns, kept, owners, mobility)
     groups = _groups(mechanism, constraints, unknowns, matrix, kept, owners)
-    if not all(kept) and any(isinstance(group, Newton) for group in groups):
-        # which of the repeated constraints is left out is a choice: let it be that of the simplest link
-        other = _kept_by_size(mechanism, matrix, owners)
-        simpler = _groups(mechanism, constraints, unknowns, matrix, other, owners)
-        if not any(isinstance(group, Newton) for group in simpler):
-            kept, groups = other, simpler
     redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
     return Structure(mechanism, dimensions, constraints, redundant, unknowns, groups, mobility)
 
 
-def _kept_by_size(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constraint]) -> list[bool]:
-    """Independent rows, looked at in the order drives, links with many points, links with few."""
+def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constraint]) -> list[bool]:
+    """Which rows are kept: drives first, links with few points last.
+
+    Which of several constraints that repeat each other is left out is a choice. A link of two points that is
+    left out still lies through both; a plate would have to be solved together with its neighbours.
+    """
 
     def rank(row: int) -> int:
         owner = owners[row]
