@@ -15,6 +15,7 @@ from benchmarks.table import Row
 from benchmarks.timing import best_times
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
+from centrode.kinematics.evaluate import FixedSigns
 from centrode.kinematics.ready import Ready, ready
 
 CACHED = 8192
@@ -77,10 +78,7 @@ def operations(prepared: Ready) -> Counter[str]:
     functions = JetFunctions(_Counting(counter))
     parameter = Jet.variable(_Counted(prepared.kinematics.path.initial + 0.1, counter), 2)
 
-    def branch(group: int, radicand: Any) -> Any:
-        return functions.sqrt(radicand) * prepared.assembled.signs[group]
-
-    prepared.kinematics.positions(functions, parameter, branch)
+    prepared.kinematics.positions(functions, parameter, FixedSigns(functions, prepared.assembled.signs))
     del counter["sin"]  # those of the drive's value are taken once for a whole batch
     links = len(prepared.mechanism.links)
     return counter + Counter({"arctan2": links, "multiply": 4 * links, "add": 2 * links})

@@ -15,7 +15,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.algebra.jets import Jet
-from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.evaluate import FixedSigns, Kinematics
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
@@ -176,11 +176,9 @@ def conditioning(solved: Solved, tries: int = 8) -> Array:
 def closed_forms(solved: Solved, kinematics: Kinematics, parameter: Array) -> Array:
     """Places in the greatest length and rotors, by the closed forms with the signs of a motion: (3, columns, n)."""
 
-    def branch(group: int, radicand: Any) -> Any:
-        return JETS.sqrt(radicand) * solved.branches.sign(group, parameter[None, :])[0]
-
+    signs = {group: solved.branches.sign(group, parameter[None, :])[0] for group in solved.branches.signs}
     with np.errstate(all="ignore"):
-        at = kinematics.positions(JETS, Jet.variable(parameter, 2), branch)
+        at = kinematics.positions(JETS, Jet.variable(parameter, 2), FixedSigns(JETS, signs))
     scale = float(kinematics.numbers.scale)
     columns = [x / scale for name in solved.layout.points for x in at.points[name]]
     columns += [x for name in solved.layout.links for x in at.poses[name].rotor]

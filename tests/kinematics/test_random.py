@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 import centrode as ct
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose, subtract, turned
+from centrode.kinematics.evaluate import FixedSigns
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Solved
@@ -120,10 +121,8 @@ def test_higher_jets_foretell_the_motion(parts: dict[str, Any]) -> None:
     at_start = np.array([kinematics.path.initial])
     step = 1e-3
 
-    def branch(group: int, radicand: Any) -> Any:
-        return JETS.sqrt(radicand) * solved.branches.sign(group, at_start[None, :])[0]
-
-    here = kinematics.positions(JETS, Jet.variable(at_start, 12), branch)
+    signs = {group: solved.branches.sign(group, at_start[None, :])[0] for group in solved.branches.signs}
+    here = kinematics.positions(JETS, Jet.variable(at_start, 12), FixedSigns(JETS, signs))
     there = solve_evenly(solved.ready, 1, float(at_start[0] + step), float(at_start[0] + step))
     assume(there.status[0, 0] == ct.Status.OK and SAMPLES // 2 in good)
     error = np.max(allowed[0, SAMPLES // 2]) + 16 * EPS * conditioning(there, tries=4)[0, 0]

@@ -12,7 +12,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
 from centrode.kinematics.closure import shortfall
-from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.evaluate import Choices, Hooks, Kinematics
 from centrode.kinematics.fitting import check_fit
 from centrode.kinematics.groups import solve_group
 from centrode.kinematics.sides import (
@@ -70,37 +70,41 @@ def assemble(kinematics: Kinematics) -> Assembled:
                     signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
                     check_opens(kinematics, i, signs)
                 else:
-                    solve_group(group, ARRAYS, kinematics.numbers, at, lambda x: x, lambda x: x)
+                    solve_group(group, ARRAYS, kinematics.numbers, at, Choices(Hooks(), i))
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
                 raise _undetermined(group) from None
             _check_finite(group, at)
             _check_angles(kinematics, group, at)
-            _solve_bounded(kinematics, group, bounded, signs.get(i, 1.0))
+            bounding = _Bounding(group, signs.get(i, 1.0))
+            solve_group(group, ROUNDED, kinematics.numbers, bounded, Choices(bounding, i))
     residual = check_fit(kinematics, at)
     return Assembled(signs, at, _angles(kinematics, at), residual)
 
 
 def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
     """Rounding error of a group's radicand, from positions with bounds known before it."""
-    found: list[float] = []
-
-    def root(radicand: Number) -> Number:
-        found.append(float(Rounded.of(radicand).bound))
-        return ROUNDED.sqrt(radicand)
-
-    trial = Positions(dict(bounded.points), dict(bounded.poses), bounded.drives)
-    solve_group(group, ROUNDED, kinematics.numbers, trial, root, lambda x: x)
-    return found[0]
+    bounding = _Bounding(group, 1.0)
+    solve_group(group, ROUNDED, kinematics.numbers, bounded.copied(), Choices(bounding, 0))
+    return bounding.bound
 
 
-def _solve_bounded(kinematics: Kinematics, group: Group, bounded: Positions, sign: float) -> None:
-    def divisor(x: Number) -> Number:
-        sine = Rounded.of(x)
+class _Bounding(Hooks):
+    """A group with rounding bounds: keeps that of its radicand, refuses a divisor that may be zero."""
+
+    def __init__(self, group: Group, sign: float) -> None:
+        self.solved = group
+        self.sign = sign
+        self.bound = 0.0
+
+    def root(self, group: int, radicand: Number) -> Number:
+        self.bound = float(Rounded.of(radicand).bound)
+        return ROUNDED.sqrt(radicand) * self.sign
+
+    def divisor(self, group: int, divisor: Number) -> Number:
+        sine = Rounded.of(divisor)
         if abs(sine.value) <= SAFETY * sine.bound:
-            raise _undetermined(group)
+            raise _undetermined(self.solved)
         return sine
-
-    solve_group(group, ROUNDED, kinematics.numbers, bounded, lambda x: ROUNDED.sqrt(x) * sign, divisor)
 
 
 def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: float) -> float:
@@ -121,21 +125,33 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
 
 
 def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bound: float) -> Positions:
-    trial = Positions(dict(at.points), dict(at.poses), at.drives)
+    trial = at.copied()
+    solve_group(
+        group, ARRAYS, kinematics.numbers, trial, Choices(_OneSide(kinematics, group, at, sign, bound), 0)
+    )
+    return trial
 
-    def root(radicand: Number) -> Number:
-        if radicand < -SAFETY * bound:
+
+@dataclass(frozen=True)
+class _OneSide(Hooks):
+    """One of a group's two assemblies; refused if it falls short of closing."""
+
+    kinematics: Kinematics
+    solved: Group
+    known: Positions
+    sign: float
+    bound: float
+
+    def root(self, group: int, radicand: Number) -> Number:
+        if radicand < -SAFETY * self.bound:
             raise InputError(
-                name_of(group),
+                name_of(self.solved),
                 _("it does not close in the initial position: {by_how_much}").format(
-                    by_how_much=shortfall(group, kinematics.numbers, at)
+                    by_how_much=shortfall(self.solved, self.kinematics.numbers, self.known)
                 ),
                 _("change a length, or the initial position"),
             )
-        return sign * np.sqrt(max(radicand, 0.0))
-
-    solve_group(group, ARRAYS, kinematics.numbers, trial, root, lambda x: x)
-    return trial
+        return self.sign * np.sqrt(max(radicand, 0.0))
 
 
 def _distance(group: Group, one: Positions, other: Positions) -> float:

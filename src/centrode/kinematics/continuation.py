@@ -9,7 +9,6 @@ drive's value alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -20,7 +19,7 @@ from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
 from centrode.geometry.plane import Pose
 from centrode.kinematics.branches import Branches
-from centrode.kinematics.evaluate import Branch, Kinematics
+from centrode.kinematics.evaluate import Hooks, Kinematics
 from centrode.kinematics.paths import JETS
 from centrode.structure.groups import links_of, points_of
 from centrode.structure.positions import Positions
@@ -61,17 +60,9 @@ class Continuation:
     _windows: dict[int, list[Window]] = field(default_factory=dict)
     _known: dict[tuple[int, bool], list[Number]] = field(default_factory=dict)
 
-    def signed(self, m: Namespace, parameter: Array, lanes: Lanes | None) -> Branch:
-        """Signed root of a group's radicand, over any algebra."""
-        return lambda group, radicand: m.sqrt(radicand) * self.branches.sign(group, parameter, lanes)
-
-    def mending(self, parameter: Array, lanes: Lanes | None) -> Callable[[int, Positions], None]:
-        """What is to be done after each group of a plan is solved at the parameters."""
-
-        def after(group: int, at: Positions) -> None:
-            self.mend(group, at, parameter, lanes)
-
-        return after
+    def hooks(self, m: Namespace, parameter: Array, lanes: Lanes | None) -> Smooth:
+        """What runs the plan over any algebra at parameters: (n,) for all lanes, or one lane for each."""
+        return Smooth(self, m, parameter, lanes)
 
     def mend(self, group: int, at: Positions, parameter: Array, lanes: Lanes | None) -> list[Index]:
         """Interpolate what a group gives wherever a change point of it is near; returns where that was."""
@@ -138,11 +129,27 @@ class Continuation:
             used = self.kinematics.taken(lanes)
             at = used.frame(m, lifted)
             with np.errstate(all="ignore"):
-                used.advance(
-                    at, range(group + 1), m, self.signed(m, nodes, lanes), after=self.mending(nodes, lanes)
-                )
+                used.advance(at, range(group + 1), m, self.hooks(m, nodes, lanes))
             self._known[key] = _numbers(self.kinematics, group, at)
         return self._known[key]
+
+
+class Smooth(Hooks):
+    """Signs as the branches have them, and every group mended near its change points."""
+
+    def __init__(
+        self, continuation: Continuation, m: Namespace, parameter: Array, lanes: Lanes | None
+    ) -> None:
+        self.continuation = continuation
+        self.m = m
+        self.parameter = parameter
+        self.lanes = lanes
+
+    def root(self, group: int, radicand: Number) -> Number:
+        return self.m.sqrt(radicand) * self.continuation.branches.sign(group, self.parameter, self.lanes)
+
+    def after(self, group: int, at: Positions) -> None:
+        self.continuation.mend(group, at, self.parameter, self.lanes)
 
 
 def _inside(window: Window, along: Array, lanes: Lanes | None) -> Index | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -14,21 +14,64 @@ from centrode.structure.positions import Positions
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
-Branch: TypeAlias = Callable[[int, Number], Number]
-"""Given a group's place in the plan and its radicand: the signed root of it."""
 
 
-After: TypeAlias = Callable[[int, Positions], None]
-"""What is done after a group of the plan is solved."""
+class Hooks:
+    """What decides while a plan is run, group by group; this one decides nothing and looks at nothing."""
+
+    def root(self, group: int, radicand: Number) -> Number:
+        """The signed root of a group's radicand: the sign is the branch."""
+        raise NotImplementedError
+
+    def divisor(self, group: int, divisor: Number) -> Number:
+        """A number that a group divides by."""
+        return divisor
+
+    def continued(self, group: int, key: str, angle: Number) -> Number:
+        """An angle in (-pi, pi] with the turns that its path has made."""
+        return angle
+
+    def higher(self, group: int, m: Namespace, at: Positions) -> None:
+        """Add what a group of higher class gives."""
+        raise NotImplementedError
+
+    def after(self, group: int, at: Positions) -> None:
+        """What is done after a group is solved."""
 
 
-def nothing(_group: int, _at: Positions) -> None:
-    """Nothing is done after a group."""
+class FixedSigns(Hooks):
+    """Given signs, wherever the drive stands."""
+
+    def __init__(self, m: Namespace, signs: Mapping[int, Number]) -> None:
+        self.m = m
+        self.signs = signs
+
+    def root(self, group: int, radicand: Number) -> Number:
+        return self.m.sqrt(radicand) * self.signs[group]
 
 
-def as_it_is(_group: int, divisor: Number) -> Number:
-    """A divisor nobody looks at."""
-    return divisor
+@dataclass(frozen=True)
+class Choices:
+    """The hooks for one group of the plan."""
+
+    hooks: Hooks
+    group: int
+
+    def root(self, radicand: Number) -> Number:
+        """The signed root of the group's radicand."""
+        return self.hooks.root(self.group, radicand)
+
+    def divisor(self, divisor: Number) -> Number:
+        """A number that the group divides by."""
+        return self.hooks.divisor(self.group, divisor)
+
+    def continued(self, key: str, angle: Number) -> Number:
+        """An angle in (-pi, pi] with the turns that its path has made; `key` names it."""
+        return self.hooks.continued(self.group, key, angle)
+
+    def higher(self, m: Namespace, at: Positions) -> None:
+        """Add what the group gives, if it is of higher class."""
+        self.hooks.higher(self.group, m, at)
 
 
 class Reached(Exception):
@@ -47,61 +90,26 @@ class Kinematics:
     numbers: Dimensions
     path: Path
 
-    def positions(
-        self,
-        m: Namespace,
-        parameter: Number,
-        branch: Branch,
-        divisor: Branch = as_it_is,
-        after: After = nothing,
-    ) -> Positions:
+    def positions(self, m: Namespace, parameter: Number, hooks: Hooks) -> Positions:
         """Positions at a parameter of the path, over any algebra."""
         at = self.frame(m, parameter)
-        self.advance(at, range(len(self.structure.groups)), m, branch, divisor, after)
+        self.advance(at, range(len(self.structure.groups)), m, hooks)
         return at
 
     def frame(self, m: Namespace, parameter: Number) -> Positions:
         """What is known before the first group of the plan."""
         return Positions.of_frame(self.numbers, self.path.drive_values(m, parameter))
 
-    def advance(
-        self,
-        at: Positions,
-        groups: range,
-        m: Namespace,
-        branch: Branch,
-        divisor: Branch = as_it_is,
-        after: After = nothing,
-    ) -> None:
+    def advance(self, at: Positions, groups: range, m: Namespace, hooks: Hooks) -> None:
         """Add what a stretch of the plan gives, the groups before it being known."""
         for i in groups:
-            solve_group(
-                self.structure.groups[i],
-                m,
-                self.numbers,
-                at,
-                lambda radicand, i=i: branch(i, radicand),  # type: ignore[misc]
-                lambda value, i=i: divisor(i, value),  # type: ignore[misc]
-            )
-            after(i, at)
+            solve_group(self.structure.groups[i], m, self.numbers, at, Choices(hooks, i))
+            hooks.after(i, at)
 
-    def guard(
-        self, m: Namespace, parameter: Number, group: int, branch: Branch, after: After = nothing
-    ) -> Number:
+    def guard(self, m: Namespace, parameter: Number, group: int, hooks: Hooks) -> Number:
         """The number whose sign decides whether a group closes: its radicand, or the divisor of a group without one."""
-
-        def stop(i: int, value: Number) -> Number:
-            if i == group:
-                raise Reached(value)
-            return branch(i, value)
-
-        def stop_at_divisor(i: int, value: Number) -> Number:
-            if i == group:
-                raise Reached(value)
-            return value
-
         try:
-            self.positions(m, parameter, stop, stop_at_divisor, after)
+            self.positions(m, parameter, _UpTo(group, hooks))
         except Reached as reached:
             return reached.value
         raise ValueError(f"group {group} has neither a radicand nor a divisor")
@@ -113,3 +121,30 @@ class Kinematics:
             return x if isinstance(x, float) else x.reshape(-1)[lanes]
 
         return Kinematics(self.structure, self.numbers.mapped(take), self.path)
+
+
+class _UpTo(Hooks):
+    """Other hooks up to a group, whose radicand or divisor is carried out."""
+
+    def __init__(self, last: int, hooks: Hooks) -> None:
+        self.last = last
+        self.hooks = hooks
+
+    def root(self, group: int, radicand: Number) -> Number:
+        if group == self.last:
+            raise Reached(radicand)
+        return self.hooks.root(group, radicand)
+
+    def divisor(self, group: int, divisor: Number) -> Number:
+        if group == self.last:
+            raise Reached(divisor)
+        return divisor
+
+    def continued(self, group: int, key: str, angle: Number) -> Number:
+        return self.hooks.continued(group, key, angle)
+
+    def higher(self, group: int, m: Namespace, at: Positions) -> None:
+        self.hooks.higher(group, m, at)
+
+    def after(self, group: int, at: Positions) -> None:
+        self.hooks.after(group, at)

@@ -19,7 +19,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.continuation import REACH, Continuation
+from centrode.kinematics.continuation import REACH, Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics, Reached
 from centrode.kinematics.paths import JETS, Path
 from centrode.kinematics.roots import bracketed_roots
@@ -71,39 +71,28 @@ class Scan:
         groups = self.kinematics.structure.groups
         last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
         along = self.mesh[None, :]
-        after = self.continuation.mending(along, None)
         with np.errstate(all="ignore"):
             at = self.kinematics.frame(JETS, Jet.variable(along, 1))
-            self.kinematics.advance(at, range(last), JETS, self._branch, self._divisor, after)
             with suppress(Reached):  # slopes are needed up to the last radicand, and not beyond
-                self.kinematics.advance(at, range(last, last + 1), JETS, self._last_branch, self._divisor)
+                self.kinematics.advance(at, range(last + 1), JETS, _Searching(self, last))
             plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
-            signed = self.continuation.signed(ARRAYS, along, None)
-            self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, signed, after=after)
+            smooth = self.continuation.hooks(ARRAYS, along, None)
+            self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, smooth)
         return plain
 
-    def _branch(self, group: int, radicand: Jet) -> Jet:
-        self._find(group, radicand)
-        root: Jet = JETS.sqrt(radicand) * self.branches.sign(group, self.mesh[None, :])
-        return root
-
-    def _last_branch(self, group: int, radicand: Jet) -> Jet:
-        self._find(group, radicand)
-        raise Reached(radicand)
-
-    def _find(self, group: int, radicand: Jet) -> None:
+    def find(self, group: int, radicand: Jet) -> None:
+        """Record where a group's radicand is zero."""
         value, slope = self._on_mesh(radicand)
         self.branches.largest[group] = _largest(value)
         self.branches.add(group, self._events(group, value, slope))
 
-    def _divisor(self, group: int, divisor: Number) -> Number:
-        if isinstance(divisor, Jet):
-            value, _slope = self._on_mesh(divisor)
-            lanes, cells = _sign_changes(value)
-            found = self._roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
-            limits = [Event("limit", group, int(k), float(x)) for k, x in zip(lanes, found, strict=True)]
-            self.branches.add(group, limits)
-        return divisor
+    def find_poles(self, group: int, divisor: Jet) -> None:
+        """Record where a group goes to infinity."""
+        value, _slope = self._on_mesh(divisor)
+        lanes, cells = _sign_changes(value)
+        found = self._roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
+        limits = [Event("limit", group, int(k), float(x)) for k, x in zip(lanes, found, strict=True)]
+        self.branches.add(group, limits)
 
     def _on_mesh(self, jet: Number) -> tuple[Array, Array]:
         shape = (self.branches.lanes, len(self.mesh))
@@ -156,10 +145,9 @@ class Scan:
         settled[lanes[near], np.minimum(cells[near] + 1, last)] = True
 
     def _guard(self, group: int, lanes: Lanes, at: Array, order: int) -> Jet:
-        taken = self.kinematics.taken(lanes)
-        branch, after = self.continuation.signed(JETS, at, lanes), self.continuation.mending(at, lanes)
+        hooks = self.continuation.hooks(JETS, at, lanes)
         with np.errstate(all="ignore"):
-            guard = taken.guard(JETS, Jet.variable(at, order), group, branch, after)
+            guard = self.kinematics.taken(lanes).guard(JETS, Jet.variable(at, order), group, hooks)
         return (
             guard if isinstance(guard, Jet) else Jet((np.broadcast_to(guard, at.shape), *[0.0 * at] * order))
         )
@@ -183,12 +171,32 @@ class Scan:
         return guard_with_bound(self.continuation, group, lanes, at)
 
 
+class _Searching(Smooth):
+    """Looks for the events of every group before it asks for its sign; goes no further than the last radicand."""
+
+    def __init__(self, scan: Scan, last: int) -> None:
+        super().__init__(scan.continuation, JETS, scan.mesh[None, :], None)
+        self.scan = scan
+        self.last = last
+
+    def root(self, group: int, radicand: Jet) -> Number:
+        self.scan.find(group, radicand)
+        if group == self.last:
+            raise Reached(radicand)
+        return super().root(group, radicand)
+
+    def divisor(self, group: int, divisor: Number) -> Number:
+        if isinstance(divisor, Jet):
+            self.scan.find_poles(group, divisor)
+        return divisor
+
+
 def guard_with_bound(continuation: Continuation, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
     """Radicand of a group at parameters, one lane for each, with the bound of its rounding error."""
-    branch, after = continuation.signed(ROUNDED, at, lanes), continuation.mending(at, lanes)
+    hooks = continuation.hooks(ROUNDED, at, lanes)
     with np.errstate(all="ignore"):
         used = continuation.kinematics.taken(lanes)
-        guard = Rounded.of(used.guard(ROUNDED, Rounded.of(at), group, branch, after))
+        guard = Rounded.of(used.guard(ROUNDED, Rounded.of(at), group, hooks))
     return np.broadcast_to(guard.value, at.shape), np.broadcast_to(guard.bound, at.shape)
 
 

@@ -1,15 +1,14 @@
 """Closed forms of the groups of class II, over any algebra.
 
-Each takes the positions known before it and adds its own. `root` gives the signed square root of a group's
-radicand (the sign is the branch), `divisor` looks at a number that is divided by (its zero is a place the
-group cannot pass).
+Each takes the positions known before it and adds its own; where a formula has several answers, it asks the
+`Choices` it is given.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 from centrode.geometry.plane import (
     Pose,
@@ -68,9 +67,23 @@ class Line:
     direction: Vector
 
 
-def solve_group(
-    group: Group, m: Namespace, numbers: Dimensions, at: Positions, root: Root, divisor: Root
-) -> None:
+class Choices(Protocol):
+    """What decides where a formula has several answers."""
+
+    def root(self, radicand: Number) -> Number:
+        """The signed root of a radicand: the sign is the branch."""
+
+    def divisor(self, divisor: Number) -> Number:
+        """A number that is divided by, as it is: its zero is a place the group cannot pass."""
+
+    def continued(self, key: str, angle: Number) -> Number:
+        """An angle in (-pi, pi] with the turns that its path has made; `key` names it."""
+
+    def higher(self, m: Namespace, at: Positions) -> None:
+        """Add what the group gives, if it is of higher class."""
+
+
+def solve_group(group: Group, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> None:
     """Add the places of a group's points and links to the positions."""
     if isinstance(group, RigidPoint):
         at.points[group.point] = place(at.poses[group.link], numbers.local[group.link][group.point])
@@ -81,11 +94,11 @@ def solve_group(
         rotor = turning_rotor(group.turning, group.link, m, numbers, at)
         at.poses[group.link] = pose_with_point(local, at.points[group.pivot], rotor)
     elif isinstance(group, Aim):
-        _aim(group, numbers, at, root)
+        _aim(group, numbers, at, choices.root)
     elif isinstance(group, Meet):
-        _meet(group, m, numbers, at, root, divisor)
+        _meet(group, m, numbers, at, choices)
     elif isinstance(group, Newton):
-        raise NotImplementedError("groups of higher class are refused before they are evaluated")
+        choices.higher(m, at)
 
 
 def turning_rotor(turning: Turning, link: str, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
@@ -148,11 +161,11 @@ def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions) -> li
     return [_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci]
 
 
-def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, root: Root, divisor: Root) -> None:
+def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> None:
     rotor = _carriage_rotor(group, m, numbers, at)
     arms = _arms(group, numbers, rotor)
     loci = [_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci]
-    vector = _where_they_meet(loci, root, divisor)
+    vector = _where_they_meet(loci, choices)
     if group.carriage is not None and rotor is not None:
         at.poses[group.carriage] = Pose(vector, rotor)
     for point in group.points:
@@ -161,14 +174,14 @@ def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, root: R
         _two_points(rod.link, rod.centre, rod.point, numbers, at)
 
 
-def _where_they_meet(loci: Sequence[Circle | Line], root: Root, divisor: Root) -> Vector:
+def _where_they_meet(loci: Sequence[Circle | Line], choices: Choices) -> Vector:
     one, other = loci
     if isinstance(one, Circle):
         if isinstance(other, Circle):
-            return meet_circles(one.centre, one.radius, other.centre, other.radius, root)
-        return meet_circle_and_line(one.centre, one.radius, other.through, other.direction, root)
+            return meet_circles(one.centre, one.radius, other.centre, other.radius, choices.root)
+        return meet_circle_and_line(one.centre, one.radius, other.through, other.direction, choices.root)
     assert isinstance(other, Line)  # circles stand first
-    return meet_lines(one.through, one.direction, other.through, other.direction, divisor)
+    return meet_lines(one.through, one.direction, other.through, other.direction, choices.divisor)
 
 
 def _locus(

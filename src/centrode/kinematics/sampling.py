@@ -17,7 +17,7 @@ from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import SAFETY
 from centrode.errors import Status
 from centrode.geometry.plane import Pose, dot, subtract, turned
-from centrode.kinematics.continuation import Continuation
+from centrode.kinematics.continuation import Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import guard_with_bound
 from centrode.kinematics.paths import JETS
@@ -93,34 +93,41 @@ def evaluate_columns(
     continuation: Continuation, layout: Layout, parameter: Array, columns: Array
 ) -> tuple[Mask, Mask]:
     """Fill in columns (3, columns, lanes, n); returns where a group is open, and where at zero of its radicand."""
-    shape = columns.shape[2:]
     along = parameter[None, :]
-    opened, zero = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
-    judged: dict[int, tuple[Mask, Mask]] = {}
+    judging = _Judging(continuation, along, columns.shape[2:])
+    with np.errstate(all="ignore"):
+        at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)
+        _fill_columns(continuation.kinematics, layout, at, columns)
+    return judging.opened, judging.zero
 
-    def branch(group: int, radicand: Number) -> Number:
-        sign = continuation.branches.sign(group, along)
+
+class _Judging(Smooth):
+    """Notes where groups are open, and where at zero of their radicand."""
+
+    def __init__(self, continuation: Continuation, along: Array, shape: tuple[int, ...]) -> None:
+        super().__init__(continuation, JETS, along, None)
+        self.shape = shape
+        self.opened, self.zero = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+        self._judged: dict[int, tuple[Mask, Mask]] = {}
+
+    def root(self, group: int, radicand: Number) -> Number:
+        sign = self.continuation.branches.sign(group, self.parameter)
         if not isinstance(radicand, Jet):
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
-        value = np.broadcast_to(radicand.value, shape)
-        below = _at_zero(continuation, group, value, parameter)
+        value = np.broadcast_to(radicand.value, self.shape)
+        below = _at_zero(self.continuation, group, value, self.parameter[0])
         if below is None:
-            np.logical_or(opened, value < 0.0, out=opened)
+            np.logical_or(self.opened, value < 0.0, out=self.opened)
             return JETS.sqrt(radicand) * sign
-        judged[group] = ((value < 0.0) & ~below, below)
+        self._judged[group] = ((value < 0.0) & ~below, below)
         return JETS.sqrt(Jet((np.where(below, 0.0, value), *radicand.coefficients[1:]))) * sign
 
-    def after(group: int, at: Positions) -> None:
-        mended = continuation.mend(group, at, along, None)
-        for total, found in zip((opened, zero), judged.pop(group, ()), strict=False):
+    def after(self, group: int, at: Positions) -> None:
+        mended = self.continuation.mend(group, at, self.parameter, None)
+        for total, found in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
             for index in mended:
                 found[index] = False  # there the motion goes on smoothly
             np.logical_or(total, found, out=total)
-
-    with np.errstate(all="ignore"):
-        at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), branch, after=after)
-        _fill_columns(continuation.kinematics, layout, at, columns)
-    return opened, zero
 
 
 def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Array) -> Mask | None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
-from centrode.kinematics.evaluate import Branch, Kinematics
+from centrode.kinematics.evaluate import FixedSigns, Kinematics
 from centrode.locale import _
 from centrode.structure.groups import Aim, Group, Meet, links_of, points_of
 from centrode.structure.positions import Positions
@@ -106,21 +106,17 @@ def check_opens(kinematics: Kinematics, index: int, signs: dict[int, float]) -> 
     group = kinematics.structure.groups[index]
     path = kinematics.path
     start = Rounded.of(np.float64(path.initial))
-    here = Rounded.of(kinematics.guard(ROUNDED, start, index, _signed(signs)))
+    here = Rounded.of(kinematics.guard(ROUNDED, start, index, FixedSigns(ROUNDED, signs)))
     if abs(here.value) > SAFETY * here.bound:
         return
     away = Rounded.of(path.initial + path.unit * AWAY)
-    there = Rounded.of(kinematics.guard(ROUNDED, away, index, _signed(signs)))
+    there = Rounded.of(kinematics.guard(ROUNDED, away, index, FixedSigns(ROUNDED, signs)))
     if bool(np.all(np.abs(there.value) <= SAFETY * there.bound)):
         raise InputError(
             name_of(group),
             _("its triangle is flat wherever the drive stands, so its assemblies never part"),
             _("change a length, or take a link away"),
         )
-
-
-def _signed(signs: dict[int, float]) -> Branch:
-    return lambda i, radicand: ROUNDED.sqrt(radicand) * signs[i]
 
 
 def angle_off(angle: float, at: Positions, link: str) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 from centrode.geometry.plane import AT_REST, Pose, Vector, place, reversed_rotor, turned
@@ -28,11 +28,16 @@ class Entity(NamedTuple):
 
 @dataclass
 class Positions:
-    """Places of all points and links, in any algebra, with the values of the drives."""
+    """Places of all points and links, in any algebra, with the values of the drives.
+
+    `angles` holds the angles [rad] that are known with their turns: of the frame, of links that a drive or a
+    gear turns, and of links whose turns something else depends on.
+    """
 
     points: dict[str, Vector]
     poses: dict[str, Pose]
     drives: Mapping[str, Number]
+    angles: dict[str, Number] = field(default_factory=lambda: {FRAME: 0.0})
 
     @classmethod
     def of_frame(cls, dimensions: Dimensions, drives: Mapping[str, Number]) -> Positions:
@@ -49,7 +54,12 @@ class Positions:
             {name: vector(v) for name, v in self.points.items()},
             {name: Pose(vector(pose.origin), vector(pose.rotor)) for name, pose in self.poses.items()},
             {name: function(value) for name, value in self.drives.items()},
+            {name: function(value) for name, value in self.angles.items()},
         )
+
+    def copied(self) -> Positions:
+        """The same positions, to which others may be added apart."""
+        return Positions(dict(self.points), dict(self.poses), self.drives, dict(self.angles))
 
 
 def line_of(numbers: Dimensions, at: Positions, guide: str, on: str) -> tuple[Vector, Vector]:
