@@ -7,7 +7,7 @@ function that gives the signed square root of the radicand: the sign is the bran
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 Number: TypeAlias = Any
@@ -100,6 +100,16 @@ def pose_by_two_points(first: Vector, second: Vector, at_first: Vector, at_secon
     rotor = turned(reversed_rotor(local), subtract(at_second, at_first))
     squared = dot(local, local)
     return pose_with_point(first, at_first, (rotor[0] / squared, rotor[1] / squared))
+
+
+def moved_point(m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
+    """A point moved by its two coordinates."""
+    return add(point, (by[0], by[1]))
+
+
+def moved_pose(m: Namespace, pose: Pose, by: Sequence[Number]) -> Pose:
+    """A pose with its origin moved by two coordinates and turned about it by an angle [rad]."""
+    return Pose(add(pose.origin, (by[0], by[1])), turned(pose.rotor, rotor_of(m, by[2])))
 
 
 def meet_circles(

@@ -15,6 +15,7 @@ from centrode.kinematics.closure import shortfall
 from centrode.kinematics.evaluate import Choices, Hooks, Kinematics
 from centrode.kinematics.fitting import check_fit
 from centrode.kinematics.groups import solve_group
+from centrode.kinematics.guesses import bound_higher, start_higher
 from centrode.kinematics.sides import (
     DEGENERATE,
     angle_off,
@@ -25,7 +26,7 @@ from centrode.kinematics.sides import (
     stated_side,
 )
 from centrode.locale import _
-from centrode.structure.groups import Aim, Group, Meet, TwoPointLink, links_of, points_of
+from centrode.structure.groups import Aim, Group, Meet, Newton, TwoPointLink, links_of, points_of
 from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
 
@@ -66,7 +67,10 @@ def assemble(kinematics: Kinematics) -> Assembled:
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
             try:
-                if group.signed:
+                if isinstance(group, Newton):
+                    mechanism = kinematics.structure.mechanism
+                    bound_higher(start_higher(mechanism, kinematics.numbers, group, at), at, bounded)
+                elif group.signed:
                     signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
                     check_opens(kinematics, i, signs)
                 else:
@@ -75,6 +79,8 @@ def assemble(kinematics: Kinematics) -> Assembled:
                 raise _undetermined(group) from None
             _check_finite(group, at)
             _check_angles(kinematics, group, at)
+            if isinstance(group, Newton):
+                continue
             bounding = _Bounding(group, signs.get(i, 1.0))
             solve_group(group, ROUNDED, kinematics.numbers, bounded, Choices(bounding, i))
     residual = check_fit(kinematics, at)
@@ -226,6 +232,6 @@ def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:
             named[drive.link] = float(at.drives[drive.id])
     angles = {}
     for link in mechanism.links:
-        near = named[link]
+        near = at.angles.get(link, named[link])
         angles[link] = (near or 0.0) + angle_off(near or 0.0, at, link)
     return angles

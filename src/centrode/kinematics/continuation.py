@@ -18,9 +18,14 @@ import numpy.typing as npt
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
 from centrode.geometry.plane import Pose
+from centrode.kinematics.anchors import Anchors
 from centrode.kinematics.branches import Branches
 from centrode.kinematics.evaluate import Hooks, Kinematics
+from centrode.kinematics.higher import Judged, close, starts
 from centrode.kinematics.paths import JETS
+from centrode.kinematics.surroundings import Surroundings
+from centrode.kinematics.tracing import trace
+from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import links_of, points_of
 from centrode.structure.positions import Positions
 
@@ -57,12 +62,30 @@ class Continuation:
 
     kinematics: Kinematics
     branches: Branches
+    start: Positions
+    nominal: Dimensions
+    _anchors: dict[int, Anchors] = field(default_factory=dict)
     _windows: dict[int, list[Window]] = field(default_factory=dict)
     _known: dict[tuple[int, bool], list[Number]] = field(default_factory=dict)
 
     def hooks(self, m: Namespace, parameter: Array, lanes: Lanes | None) -> Smooth:
         """What runs the plan over any algebra at parameters: (n,) for all lanes, or one lane for each."""
         return Smooth(self, m, parameter, lanes)
+
+    def trace(self, group: int, extent: tuple[float, float]) -> None:
+        """Follow a group of higher class from the initial position over an extent of the path."""
+        around, branches = self._around(group), self.branches
+        first = starts(around, self.nominal, self.start, branches.initial, branches.lanes)
+        with np.errstate(all="ignore"):
+            self._anchors[group], events = trace(around, first, branches.initial, extent, branches.smooth)
+        branches.add(group, events)
+
+    def close(self, group: int, m: Namespace, at: Positions, parameter: Array, lanes: Lanes | None) -> Judged:
+        """Add what a group of higher class gives at parameters."""
+        return close(self._around(group), self._anchors[group], m, at, parameter, lanes)
+
+    def _around(self, group: int) -> Surroundings:
+        return Surroundings(self.kinematics, group, self.hooks)
 
     def mend(self, group: int, at: Positions, parameter: Array, lanes: Lanes | None) -> list[Index]:
         """Interpolate what a group gives wherever a change point of it is near; returns where that was."""
@@ -148,6 +171,12 @@ class Smooth(Hooks):
     def root(self, group: int, radicand: Number) -> Number:
         return self.m.sqrt(radicand) * self.continuation.branches.sign(group, self.parameter, self.lanes)
 
+    def higher(self, group: int, m: Namespace, at: Positions) -> None:
+        self.judge(group, self.continuation.close(group, m, at, self.parameter, self.lanes))
+
+    def judge(self, group: int, judged: Judged) -> None:
+        """Look at where a group of higher class is not what it should be."""
+
     def after(self, group: int, at: Positions) -> None:
         self.continuation.mend(group, at, self.parameter, self.lanes)
 
@@ -167,7 +196,7 @@ def _numbers(kinematics: Kinematics, group: int, at: Positions) -> list[Number]:
     numbers = [x for point in points_of(which) for x in at.points[point]]
     for link in links_of(which):
         numbers += [*at.poses[link].origin, *at.poses[link].rotor]
-    return numbers
+    return numbers + [at.angles[link] for link in links_of(which) if link in at.angles]
 
 
 def _set_numbers(kinematics: Kinematics, group: int, at: Positions, numbers: list[Number]) -> None:
@@ -177,6 +206,9 @@ def _set_numbers(kinematics: Kinematics, group: int, at: Positions, numbers: lis
         at.points[point] = (next(rest), next(rest))
     for link in links_of(which):
         at.poses[link] = Pose((next(rest), next(rest)), (next(rest), next(rest)))
+    for link in links_of(which):
+        if link in at.angles:
+            at.angles[link] = next(rest)
 
 
 def _of_window(number: Number, window: int) -> Number:

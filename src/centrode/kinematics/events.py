@@ -23,12 +23,13 @@ from centrode.kinematics.continuation import REACH, Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics, Reached
 from centrode.kinematics.paths import JETS, Path
 from centrode.kinematics.roots import bracketed_roots
-from centrode.structure.groups import Aim, Meet
+from centrode.structure.groups import Aim, Meet, Newton
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
 Number: TypeAlias = Any
+Namespace: TypeAlias = Any
 
 LOW = 0.25
 """A minimum is looked into if the tangents on both sides meet below this fraction of the values there."""
@@ -69,7 +70,7 @@ class Scan:
     def run(self) -> Positions:
         """Find all events, record them in the branches, and return the positions on the mesh as plain arrays."""
         groups = self.kinematics.structure.groups
-        last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
+        last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim, Newton))), default=0)
         along = self.mesh[None, :]
         with np.errstate(all="ignore"):
             at = self.kinematics.frame(JETS, Jet.variable(along, 1))
@@ -184,6 +185,12 @@ class _Searching(Smooth):
         if group == self.last:
             raise Reached(radicand)
         return super().root(group, radicand)
+
+    def higher(self, group: int, m: Namespace, at: Positions) -> None:
+        self.continuation.trace(group, (float(self.scan.mesh[0]), float(self.scan.mesh[-1])))
+        if group == self.last:
+            raise Reached(None)
+        super().higher(group, m, at)
 
     def divisor(self, group: int, divisor: Number) -> Number:
         if isinstance(divisor, Jet):

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from centrode.errors import InputError, NotComputedYet
+from centrode.errors import InputError
 from centrode.kinematics.assembly import Assembled, assemble
 from centrode.kinematics.branches import branches_at_start
 from centrode.kinematics.continuation import Continuation
@@ -19,11 +19,9 @@ from centrode.kinematics.paths import path_of
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import is_drive
-from centrode.structure.groups import Newton
 from centrode.structure.plan import Structure, drives_against_mobility, structure_of
 from centrode.structure.positions import Positions
 from centrode.structure.rank import rank_of, residuals_at, scaled_jacobian
-from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any
 
@@ -62,35 +60,14 @@ def ready(mechanism: Mechanism) -> Ready:
     InputError
         Drives and mobility differ, or the initial position does not assemble.
     NotComputedYet
-        The description names what this version does not compute, or a group is of higher class.
+        The description names what this version does not compute.
     """
     structure = structure_of(mechanism)
     path = path_of(mechanism, float(structure.dimensions.scale))
     kinematics = Kinematics(structure, structure.dimensions, path)
-    for group in structure.groups:
-        if isinstance(group, Newton):
-            _refuse_surplus_drives(structure)
-            raise NotComputedYet(
-                name_of(group),
-                _("it is a group of higher class, which is not computed yet"),
-                _("drive another link so that only dyads remain"),
-            )
     assembled = assemble(kinematics)
     mobility = _mobility(kinematics, assembled)
     return Ready(kinematics, assembled, mobility)
-
-
-def _refuse_surplus_drives(structure: Structure) -> None:
-    """Surplus drives tear groups apart: tell these rather than the group that is left over.
-
-    A mechanism that is rigid at a generic position may move by its special dimensions.
-    """
-    if 1 <= structure.generic_mobility < structure.drives:
-        raise InputError(
-            "[[drives]]",
-            drives_against_mobility(structure.drives, structure.generic_mobility),
-            _("give as many drives as the mobility"),
-        )
 
 
 def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
@@ -124,7 +101,8 @@ def _places(kinematics: Kinematics, assembled: Assembled) -> Iterator[Positions]
     path = kinematics.path
     looks = path.initial + path.unit * np.array(LOOKS)
     mesh = mesh_of(path, looks)
-    continuation = Continuation(kinematics, branches_at_start(path, assembled.signs, smooth=True))
+    branches = branches_at_start(path, assembled.signs, smooth=True)
+    continuation = Continuation(kinematics, branches, assembled.positions, kinematics.numbers)
     on_mesh = Scan(continuation, mesh).run()
     for node in np.argmin(np.abs(mesh[:, None] - looks), axis=0):
         at = on_mesh.mapped(lambda x, node=node: float(np.broadcast_to(x, (1, len(mesh)))[0, node]))  # type: ignore[misc]

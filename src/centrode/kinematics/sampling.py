@@ -20,6 +20,7 @@ from centrode.geometry.plane import Pose, dot, subtract, turned
 from centrode.kinematics.continuation import Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import guard_with_bound
+from centrode.kinematics.higher import Judged
 from centrode.kinematics.paths import JETS
 from centrode.structure.positions import Positions, line_of
 
@@ -89,25 +90,24 @@ def layout_of(kinematics: Kinematics) -> Layout:
     )
 
 
-def evaluate_columns(
-    continuation: Continuation, layout: Layout, parameter: Array, columns: Array
-) -> tuple[Mask, Mask]:
-    """Fill in columns (3, columns, lanes, n); returns where a group is open, and where at zero of its radicand."""
+def evaluate_columns(continuation: Continuation, layout: Layout, parameter: Array, columns: Array) -> Judging:
+    """Fill in columns (3, columns, lanes, n); returns where groups are open, at a limit, or not converged."""
     along = parameter[None, :]
-    judging = _Judging(continuation, along, columns.shape[2:])
+    judging = Judging(continuation, along, columns.shape[2:])
     with np.errstate(all="ignore"):
         at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)
         _fill_columns(continuation.kinematics, layout, at, columns)
-    return judging.opened, judging.zero
+    return judging
 
 
-class _Judging(Smooth):
+class Judging(Smooth):
     """Notes where groups are open, and where at zero of their radicand."""
 
     def __init__(self, continuation: Continuation, along: Array, shape: tuple[int, ...]) -> None:
         super().__init__(continuation, JETS, along, None)
         self.shape = shape
         self.opened, self.zero = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+        self.lost = np.zeros(shape, dtype=bool)
         self._judged: dict[int, tuple[Mask, Mask]] = {}
 
     def root(self, group: int, radicand: Number) -> Number:
@@ -121,6 +121,10 @@ class _Judging(Smooth):
             return JETS.sqrt(radicand) * sign
         self._judged[group] = ((value < 0.0) & ~below, below)
         return JETS.sqrt(Jet((np.where(below, 0.0, value), *radicand.coefficients[1:]))) * sign
+
+    def judge(self, group: int, judged: Judged) -> None:
+        self.lost |= judged.lost
+        self._judged[group] = (judged.opened, judged.limit)
 
     def after(self, group: int, at: Positions) -> None:
         mended = self.continuation.mend(group, at, self.parameter, None)
@@ -163,20 +167,21 @@ def _slide(kinematics: Kinematics, at: Positions, guide_id: str) -> Number:
 
 def sample(continuation: Continuation, parameter: Array, samples: Samples) -> None:
     """Fill in columns and statuses."""
-    opened, zero = evaluate_columns(continuation, samples.layout, parameter, samples.columns)
+    judged = evaluate_columns(continuation, samples.layout, parameter, samples.columns)
     reach = continuation.branches.reaches()
     margin = 4.0 * np.spacing(np.abs(parameter))
     beyond = (parameter < reach[:, :1] - margin) | (parameter > reach[:, 1:] + margin)
-    samples.status[zero | ~samples.complete] = Status.SINGULAR
+    samples.status[judged.zero | ~samples.complete] = Status.SINGULAR
     samples.status[beyond] = Status.CUT_OFF
-    samples.status[opened] = Status.OPEN
+    samples.status[judged.lost] = Status.UNCONVERGED
+    samples.status[judged.opened] = Status.OPEN
 
 
 def settle(samples: Samples) -> None:
     """Absence is NaN: nothing stands in open samples, and no derivatives in singular ones."""
     if not samples.status.any():
         return  # incomplete samples have a status
-    samples.columns[:, :, samples.status == Status.OPEN] = np.nan
+    samples.columns[:, :, (samples.status == Status.OPEN) | (samples.status == Status.UNCONVERGED)] = np.nan
     samples.columns[1:, :, samples.status == Status.SINGULAR] = np.nan
     samples.columns[~np.isfinite(samples.columns)] = np.nan
 

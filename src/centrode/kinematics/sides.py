@@ -11,7 +11,7 @@ from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import FixedSigns, Kinematics
 from centrode.locale import _
-from centrode.structure.groups import Aim, Group, Meet, links_of, points_of
+from centrode.structure.groups import Aim, Group, Meet, Newton, links_of, points_of
 from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
 
@@ -103,8 +103,10 @@ def check_sides(kinematics: Kinematics) -> None:
 
 def check_opens(kinematics: Kinematics, index: int, signs: dict[int, float]) -> None:
     """Refuse a group that is flat in the initial position and everywhere else: its sides would be rounding."""
-    group = kinematics.structure.groups[index]
-    path = kinematics.path
+    groups = kinematics.structure.groups
+    group, path = groups[index], kinematics.path
+    if any(isinstance(before, Newton) for before in groups[:index]):
+        return  # how those go on is not known yet
     start = Rounded.of(np.float64(path.initial))
     here = Rounded.of(kinematics.guard(ROUNDED, start, index, FixedSigns(ROUNDED, signs)))
     if abs(here.value) > SAFETY * here.bound:

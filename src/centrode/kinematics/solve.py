@@ -143,7 +143,8 @@ def _in_time(ready: Ready, span: Span) -> Ready:
 
 def _start(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:
     smooth = ready.mechanism.assembly.continuation == "smooth"
-    return Continuation(kinematics, branches_at_start(kinematics.path, ready.assembled.signs, smooth, lanes))
+    branches = branches_at_start(kinematics.path, ready.assembled.signs, smooth, lanes)
+    return Continuation(kinematics, branches, ready.assembled.positions, ready.kinematics.numbers)
 
 
 def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> tuple[float, float]:

@@ -71,19 +71,21 @@ def _turning_of(constraint: Constraint) -> Turning | None:
     return None
 
 
-def classify(mechanism: Mechanism, unknowns: Sequence[Entity], constraints: Sequence[Constraint]) -> Group:
-    """The group that unknowns form under the constraints matched to them."""
+def classify(
+    mechanism: Mechanism, unknowns: Sequence[Entity], equations: Sequence[tuple[Constraint, int]]
+) -> Group:
+    """The group that unknowns form under the equations (constraint and row) matched to them."""
     group = Unsolved(
         mechanism,
         tuple(e.name for e in unknowns if e.kind == "point"),
         tuple(e.name for e in unknowns if e.kind == "link"),
-        tuple(constraints),
+        tuple(dict.fromkeys(constraint for constraint, _row in equations)),
     )
     for attempt in (_rigid_point, _single_link, _aim_with_block, _meet):
         found = attempt(group)
         if found is not None:
             return found
-    return Newton(group.points, group.links)
+    return Newton(group.points, group.links, tuple(equations))
 
 
 def _rigid_point(group: Unsolved) -> Group | None:

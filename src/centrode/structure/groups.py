@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from centrode.structure.constraints import Constraint
+
 
 @dataclass(frozen=True)
 class RigidPoint:
@@ -154,10 +156,14 @@ class Meet:
 
 @dataclass(frozen=True)
 class Newton:
-    """A group of higher class: points and links solved together."""
+    """A group of higher class: points and links solved together by as many equations as they have coordinates.
+
+    An equation is a constraint and the number of its row.
+    """
 
     points: tuple[str, ...]
     links: tuple[str, ...]
+    equations: tuple[tuple[Constraint, int], ...]
     kind = "higher class"
     signed = False
 

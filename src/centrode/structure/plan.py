@@ -66,7 +66,7 @@ def structure_of(mechanism: Mechanism) -> Structure:
     free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
     mobility = matrix.shape[1] - free_rank
     _check_drives(mechanism, constraints, unknowns, kept, owners, mobility)
-    groups = _groups(mechanism, constraints, unknowns, matrix, kept, owners)
+    groups = _groups(mechanism, unknowns, kept, owners)
     redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
     return Structure(mechanism, dimensions, constraints, redundant, unknowns, groups, mobility)
 
@@ -143,9 +143,7 @@ def _unique(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
 
 def _groups(
     mechanism: Mechanism,
-    constraints: Sequence[Constraint],
     unknowns: Sequence[Entity],
-    matrix: Matrix,
     kept: Sequence[bool],
     owners: Sequence[Constraint],
 ) -> tuple[Group, ...]:
@@ -159,18 +157,23 @@ def _groups(
         if kept[row]
     }
     owner = match(neighbours)
-    matched: dict[Entity, list[Constraint]] = {entity: [] for entity in unknowns}
-    for (entity, _k), (_row, constraint) in owner.items():
-        matched[entity].append(constraint)
+    matched: dict[Entity, list[int]] = {entity: [] for entity in unknowns}
+    for (entity, _k), (row, _constraint) in owner.items():
+        matched[entity].append(row)
     depends = {
         entity: list(
-            dict.fromkeys(other for c in own for other in c.bodies if other != entity and other in inside)
+            dict.fromkeys(
+                other for row in own for other in owners[row].bodies if other != entity and other in inside
+            )
         )
         for entity, own in matched.items()
     }
-    position = {constraint: k for k, constraint in enumerate(constraints)}
+    first: dict[Constraint, int] = {}
+    for row, constraint in enumerate(owners):
+        first.setdefault(constraint, row)
     groups = []
     for component in in_order(strong_components(depends), depends):
-        own = sorted(_unique([c for entity in component for c in matched[entity]]), key=position.__getitem__)
-        groups.append(classify(mechanism, component, own))
+        rows = sorted(row for entity in component for row in matched[entity])
+        equations = [(owners[row], row - first[owners[row]]) for row in rows]
+        groups.append(classify(mechanism, component, equations))
     return tuple(groups)

@@ -1,0 +1,123 @@
+"""The initial position of a group of higher class: the description's initial angles say which of many is meant."""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.rounding import ROUNDED
+from centrode.errors import InputError
+from centrode.geometry.plane import Pose, add, place, subtract, turned
+from centrode.kinematics.newton import System, newton
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.groups import Newton
+from centrode.structure.positions import Positions
+from centrode.structure.steps import name_of
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+STEPS = 30
+"""Newton steps from the initial angles to the initial position."""
+SINGULAR = 1e-9
+"""Smallest over greatest singular value of a group that stands at a limit or a change point."""
+
+
+def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> System:
+    """Add a group's initial position to what is known before it; returns the system it solves.
+
+    Raises InputError where an initial angle is missing, where nothing closes near the angles given, and where
+    the group is singular.
+    """
+    guess = _guessed(mechanism, numbers, group, at)
+    system = System(group, numbers, at.copied(), 1)
+    with np.errstate(all="ignore"):
+        found = newton(system, system.state_of(guess), STEPS)
+        if not found.found[0]:
+            raise _does_not_close(system, found.sizes[0, 0], guess)
+        closed = system.at(ARRAYS, at, found.state)
+        values = np.linalg.svd(system.matrix(closed)[0], compute_uv=False)
+    if values[-1] <= SINGULAR * values[0]:
+        raise InputError(
+            name_of(group),
+            _("it stands at a limit or a change point in the initial position"),
+            _("start the drive elsewhere"),
+        )
+    for name in group.points:
+        at.points[name] = _floats(closed.points[name])
+    for name in group.links:
+        at.poses[name] = Pose(_floats(closed.poses[name].origin), _floats(closed.poses[name].rotor))
+        at.angles[name] = float(closed.angles[name][0])
+    return system
+
+
+def bound_higher(system: System, at: Positions, bounded: Positions) -> None:
+    """Add a group's initial position to what is known before it with bounds of rounding errors."""
+    state = system.state_of(at)
+    found = system.at(ROUNDED, bounded, state, system.bounds(bounded, state))
+    bounded.points.update(found.points)
+    bounded.poses.update(found.poses)
+    bounded.angles.update(found.angles)
+
+
+def _floats(pair: tuple[Array, Array]) -> tuple[float, float]:
+    return float(pair[0][0]), float(pair[1][0])
+
+
+def _guessed(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> Positions:
+    """Where the initial angles put the group's links, link by link from what is known."""
+    guess = at.copied()
+    left = list(group.links)
+    while left:
+        ready = [link for link in left if _put(mechanism, numbers, link, guess)]
+        if not ready:
+            raise _missing(mechanism, group, left)
+        left = [link for link in left if link not in ready]
+    for point in group.points:
+        if point not in guess.points:
+            raise _missing(mechanism, group, list(group.links))
+    return guess
+
+
+def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions) -> bool:
+    """Pose a link by its initial angle and a known point, or by two known points."""
+    local = numbers.local[link]
+    known = [point for point in local if point in guess.points]
+    angle = mechanism.initial_angle(link)
+    if not known or (angle is None and len(known) < 2):
+        return False
+    if angle is None:
+        inside = subtract(local[known[1]], local[known[0]])
+        outside = subtract(guess.points[known[1]], guess.points[known[0]])
+        angle = float(np.arctan2(outside[1], outside[0]) - np.arctan2(inside[1], inside[0]))
+    rotor = (cos(angle), sin(angle))
+    arm = turned(local[known[0]], rotor)
+    guess.poses[link] = Pose(subtract(guess.points[known[0]], arm), rotor)
+    guess.angles[link] = angle
+    for point, inside in local.items():
+        guess.points.setdefault(point, add(place(guess.poses[link], inside), (0.0, 0.0)))
+    return True
+
+
+def _missing(mechanism: Mechanism, group: Newton, left: list[str]) -> InputError:
+    without = [link for link in left if mechanism.initial_angle(link) is None]
+    return InputError(
+        name_of(group),
+        _("it is of higher class: its initial angles say which of its positions is meant"),
+        _("give the initial angle of {links}").format(links=", ".join(without or left)),
+    )
+
+
+def _does_not_close(system: System, first: float, guess: Positions) -> InputError:
+    return InputError(
+        name_of(system.group),
+        _("no position that closes lies near the initial angles: they leave a gap of {gap:.3g} m").format(
+            gap=float(np.max(np.abs(system.errors(system.state_of(guess)))) * system.numbers.scale)
+        ),
+        _("correct the initial angles, a length, or the start of the drive"),
+    )

@@ -1,0 +1,133 @@
+"""Groups of higher class at any places: from their anchors, with derivatives or bounds as the algebra wants."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, TypeAlias, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.jet_functions import JetFunctions
+from centrode.algebra.jets import Jet
+from centrode.algebra.rounding import RoundedFunctions
+from centrode.kinematics.anchors import Anchors
+from centrode.kinematics.newton import System, newton
+from centrode.kinematics.surroundings import Surroundings, flattened, plain, shaped
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.groups import Newton
+from centrode.structure.positions import Positions
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+
+LEAST_PART = 1.0 / 64
+"""Part of the way from the description's dimensions to a batch's below which the way is given up."""
+NEAR = 0.3
+"""Greatest first Newton step of a part of that way, in rad or in the greatest length."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Where a group is open, where it stands at a limit, and where Newton's method did not converge."""
+
+    opened: Mask
+    limit: Mask
+    lost: Mask
+
+
+def close(
+    around: Surroundings, anchors: Anchors, m: Namespace, at: Positions, parameter: Array, lanes: Lanes | None
+) -> Judged:
+    """Add the group's points and links to positions at parameters: (n,) for all lanes, or one lane for each."""
+    count = len(anchors.ahead)
+    shape = (count, parameter.shape[-1]) if lanes is None else parameter.shape
+    flat = np.broadcast_to(parameter, shape).reshape(-1)
+    which = np.repeat(np.arange(count), shape[-1]) if lanes is None else lanes
+    numbers = around.kinematics.taken(which).numbers
+    known = flattened(at, shape)
+    group = cast(Newton, around.kinematics.structure.groups[around.group])
+    system = System(group, numbers, known.mapped(plain), len(flat))
+    foretold = anchors.predict(system, flat, which)
+    with np.errstate(all="ignore"):
+        found = newton(system, foretold.state)
+        right = found.found & (found.sense == foretold.sense)
+        state = np.where(right[:, None], found.state, np.nan)
+        state[foretold.limit] = foretold.state[foretold.limit]
+        shaped(_lifted(system, m, known, state), group, shape, at)
+    lost = ~(right | foretold.limit | foretold.beyond)
+    return Judged(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))
+
+
+def _lifted(system: System, m: Namespace, known: Positions, state: Array) -> Positions:
+    """Converged states over the algebra of the known positions."""
+    if isinstance(m, JetFunctions):
+        order = max((jet.order for jet in _jets(known)), default=0)
+        return (
+            system.at(m, known, state, system.jets(known, state, order))
+            if order
+            else system.at(m, known, state)
+        )
+    if isinstance(m, RoundedFunctions):
+        return system.at(m, known, state, system.bounds(known, state))
+    return system.at(m, known, state)
+
+
+def _jets(known: Positions) -> Iterator[Jet]:
+    yield from (x for x in known.drives.values() if isinstance(x, Jet))
+    yield from (x for v in known.points.values() for x in v if isinstance(x, Jet))
+
+
+def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial: float, lanes: int) -> Array:
+    """States (lanes, width) in the initial position; those of a batch by way of the description's own dimensions.
+
+    NaN where the way fails, or crosses a position in which the group is singular.
+    """
+    group = cast(Newton, around.kinematics.structure.groups[around.group])
+    own = System(group, nominal, start, 1)
+    state = np.repeat(own.state_of(start), lanes, axis=0)
+    sense = newton(own, state[:1]).sense[0]
+    if all(isinstance(x, float) for x in numbers_of(around.kinematics.numbers)):
+        return state
+    done, part = np.zeros(lanes), np.ones(lanes)
+    while (going := np.nonzero((done < 1.0) & (part >= LEAST_PART))[0]).size:
+        aim = np.minimum(done[going] + part[going], 1.0)
+        numbers = around.kinematics.taken(going).numbers
+        between = around.with_numbers(blended(nominal, numbers, aim))
+        everyone = np.arange(len(going))
+        known = between.known(np.full(len(going), initial), everyone, 0)
+        with np.errstate(all="ignore"):
+            found = newton(between.system(known, everyone), state[going])
+        good = found.found & (found.sense == sense) & (found.sizes[0] < NEAR)
+        state[going[good]] = found.state[good]
+        done[going[good]] = aim[good]
+        part[going] *= np.where(good, 2.0, 0.5)
+    state[done < 1.0] = np.nan
+    return state
+
+
+def numbers_of(numbers: Dimensions) -> list[Number]:
+    """Every number of the dimensions, in one order."""
+    found: list[Number] = []
+
+    def note(x: Number) -> Number:
+        found.append(x)
+        return x
+
+    numbers.mapped(note)
+    return found
+
+
+def blended(first: Dimensions, second: Dimensions, part: Array) -> Dimensions:
+    """Dimensions (lanes,) part of the way from the first to the second, exactly these at the end."""
+    from_first = iter(numbers_of(first))
+
+    def between(x: Number) -> Number:
+        y = next(from_first)
+        return x if isinstance(x, float) else np.where(part == 1.0, x, y + part * (x - y))
+
+    return second.mapped(between)
