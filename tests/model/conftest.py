@@ -55,6 +55,11 @@ angle = 0.1
 links = ["OA", "wheel"]
 carrier = "frame"
 ratio = "-40/20"
+[[gears]]
+name = "ring gear"
+links = ["frame", "wheel"]
+carrier = "AC"
+ratio = 3
 [[rolling]]
 link = "wheel"
 centre = "C"
@@ -63,10 +68,11 @@ on = "frame"
 along = { through = [0, 0], direction = [1, 0] }
 [[rolling]]
 link = "wheel"
+name = "ring"
 centre = "C"
 radius = 0.3
-on = "rocker"
-along = { centre = "B", radius = 2 }
+on = "block"
+along = { centre = "H", radius = 2, inside = true }
 [[drives]]
 link = "OA"
 start = "90 deg"
@@ -135,6 +141,10 @@ reference = ["A", "D"]
 angle = 0.2
 [links.BC]
 length = 1.3
+[links.rocker]
+points = { D = [0, 0, 1], C = ["90 deg", 0], G = ["10 deg", "-5 deg"] }
+reference = ["D", "E"]
+angle = -0.7
 [[guides]]
 point = "C"
 on = "frame"

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 
 from centrode.errors import InputError
 from centrode.model import limits
+from centrode.model.examples import example_names
+from centrode.model.examples.loading import example
 from centrode.model.files import mechanism_from, mechanism_text, parse_mechanism, read_mechanism
 from centrode.model.mechanism import Mechanism, Placed
 
@@ -30,6 +32,14 @@ def test_round_trip_of_the_whole_grammar(text: str) -> None:
     assert parse_mechanism(again) == mechanism
     assert mechanism_text(parse_mechanism(again)) == again
     assert list(parse_mechanism(again).links) == list(mechanism.links)
+
+
+@pytest.mark.parametrize("name", example_names())
+def test_every_example_comes_back(name: str) -> None:
+    mechanism = example(name)
+    again = mechanism_text(mechanism)
+    assert parse_mechanism(again) == mechanism
+    assert mechanism_text(parse_mechanism(again)) == again
 
 
 def test_values_of_the_grammar() -> None:
@@ -188,7 +198,7 @@ def test_round_trip_of_random_mechanisms(data: st.DataObject) -> None:
         ('link = "OA"', 'distance = ["A", "A"]', "two different points are needed"),
         ('link = "OA"', "", "press.toml, [[drives]] 1: one of link, guide, distance is missing"),
         ('link = "OA"', 'link = "OA"\nguide = "B"', "[[drives]] 1: link, guide are given together; keep one"),
-        ("speed = 1", "", "press.toml, [[drives]] 1: one of speed, law, table is missing"),
+        ("speed = 1", "", "press.toml, [[drives]] 1: one of speed, law, table, segments is missing"),
         ("speed = 1", "speed = 1\nlaw = 't'", "[[drives]] 1: speed, law are given together"),
         ("speed = 1", 'speed = "3 Hz"', "write rpm or rad/s"),
         (
@@ -259,7 +269,7 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
             FOUR_BAR + '[[loads]]\nkind = "weight"\nlink = "OA"\npoint = "A"',
             "a weight acts on one of: link, point",
         ),
-        (FOUR_BAR + '[[gears]]\nlinks = ["OA", "OA"]\nratio = 2', "a gear needs two links"),
+        (FOUR_BAR + '[[gears]]\nlinks = ["OA", "OA"]\nratio = 2', "a gear needs two different links"),
         (FOUR_BAR + '[[gears]]\nlinks = ["OA", "AB"]\nratio = 0', "[[gears]] 1: ratio must not be zero"),
         (FOUR_BAR + '[[guides]]\npoint = "B"\nthrough = [0, 0]', '[[guides]] 1: "direction" is missing'),
         (

@@ -14,7 +14,14 @@ from centrode.model.schema import PROPERTIES, mechanism_schema
 from .conftest import FOUR_BAR, FULL, SPHERE
 
 EXAMPLES = sorted(Path(examples.__path__[0]).glob("*.toml"))
-TYPES = {"object": dict, "array": list, "string": str, "number": (int, float), "integer": int}
+TYPES = {
+    "object": dict,
+    "array": list,
+    "string": str,
+    "number": (int, float),
+    "integer": int,
+    "boolean": bool,
+}
 
 
 def fits(value: Any, schema: dict[str, Any], whole: dict[str, Any]) -> bool:
@@ -25,7 +32,9 @@ def fits(value: Any, schema: dict[str, Any], whole: dict[str, Any]) -> bool:
         return any(fits(value, other, whole) for other in schema["anyOf"])
     if "enum" in schema or "const" in schema:
         return value in schema.get("enum", [schema.get("const")])
-    if isinstance(value, bool) or not isinstance(value, TYPES[schema["type"]]):
+    if isinstance(value, bool) or schema["type"] == "boolean":
+        return isinstance(value, bool) and schema["type"] == "boolean"
+    if not isinstance(value, TYPES[schema["type"]]):
         return False
     if isinstance(value, dict):
         known = schema.get("properties", {})

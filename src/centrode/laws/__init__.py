@@ -1,8 +1,22 @@
-"""Motion laws of one variable: what a drive does in time, over any algebra."""
+"""Motion laws of one variable: what a drive does in time, and how a cam lifts, over any algebra."""
 
+from centrode.laws.curves import CURVES, Curve
 from centrode.laws.law import Law
+from centrode.laws.segments import DWELL, POLYNOMIAL, SEGMENT_CURVES, Segment, SegmentedLaw
 from centrode.laws.table import TableLaw
 from centrode.laws.text import TextLaw
 from centrode.laws.uniform import Uniform
 
-__all__ = ["Law", "TableLaw", "TextLaw", "Uniform"]
+__all__ = [
+    "CURVES",
+    "DWELL",
+    "POLYNOMIAL",
+    "SEGMENT_CURVES",
+    "Curve",
+    "Law",
+    "Segment",
+    "SegmentedLaw",
+    "TableLaw",
+    "TextLaw",
+    "Uniform",
+]

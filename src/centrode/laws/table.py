@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
 from centrode.errors import InputError
 from centrode.laws.law import Number
+from centrode.laws.pieces import Row, plain, row_at
 from centrode.laws.spline import Cubic, spline
 from centrode.locale import _
 
@@ -29,10 +29,15 @@ class TableLaw:
     times: tuple[float, ...]
     values: tuple[float, ...]
     cubics: tuple[Cubic, ...] = field(init=False, repr=False, compare=False)
+    rows: tuple[Row, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         _check(self.times, self.values)
-        object.__setattr__(self, "cubics", (_NOWHERE, *_cubics(self.times, self.values), _NOWHERE))
+        cubics = (_NOWHERE, *_cubics(self.times, self.values), _NOWHERE)
+        lefts = (self.times[0], *self.times)
+        rows = tuple((left, *cubic) for left, cubic in zip(lefts, cubics, strict=True))
+        object.__setattr__(self, "cubics", cubics)
+        object.__setattr__(self, "rows", rows)
 
     @property
     def span(self) -> tuple[float, float] | None:
@@ -41,24 +46,9 @@ class TableLaw:
 
     def jet(self, m: Any, t: Number) -> Number:
         """s(t) [rad or m] over the algebra of `m`; the segment is chosen by the plain value of t."""
-        plain = getattr(t, "value", t)
-        left, (c0, c1, c2, c3) = self._scalar(plain) if isinstance(plain, float | int) else self._array(plain)
+        left, c0, c1, c2, c3 = row_at(self.times, self.rows, plain(t))
         u = t - left
         return ((u * c3 + c2) * u + c1) * u + c0
-
-    def _scalar(self, t: float) -> tuple[float, Cubic]:
-        segment = bisect_right(self.times, t)
-        if t == self.times[-1]:
-            segment -= 1
-        return self.times[max(segment - 1, 0)], self.cubics[segment]
-
-    def _array(self, t: Any) -> tuple[Any, Any]:
-        # The array says itself which library it belongs to: this room imports none.
-        xp = t.__array_namespace__()
-        times = xp.asarray(self.times)
-        segment = xp.searchsorted(times, t, side="right") - (t == times[-1])
-        coefficients = xp.asarray(self.cubics)[segment]
-        return times[xp.maximum(segment - 1, 0)], xp.moveaxis(coefficients, -1, 0)
 
 
 def _cubics(times: tuple[float, ...], values: tuple[float, ...]) -> list[Cubic]:

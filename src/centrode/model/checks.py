@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from itertools import chain, islice
 
 from centrode.locale import _
@@ -10,13 +10,16 @@ from centrode.model import limits
 from centrode.model.bodies import Link
 from centrode.model.connection import disconnected_parts
 from centrode.model.description import Description
-from centrode.model.names import FRAME, two_points
+from centrode.model.joining import cylinder_problems, joining_problems
+from centrode.model.known import is_link, known, link_known, points_on, two_known_points
+from centrode.model.names import two_points
+from centrode.model.on_sphere import space_problems
 from centrode.model.problems import Place, Problem, nearest, shown
 
 
 def problems_of_parts(mechanism: Description) -> list[Problem]:
     """Everything wrong among the parts; the parts that do not hang together are told only if nothing else is."""
-    checks = (_links, _guides, _pairs, _drives, _rest)
+    checks = (_links, _guides, joining_problems, _drives, space_problems, _rest)
     found = chain.from_iterable(check(mechanism) for check in checks)
     return list(islice(found, limits.PROBLEMS_SOUGHT)) or list(_loose(mechanism))
 
@@ -30,7 +33,7 @@ def _links(mechanism: Description) -> Iterator[Problem]:
         yield Problem(_("at most {most} points are allowed").format(most=limits.POINTS))
     for name, link in mechanism.links.items():
         if isinstance(link.centre, str):
-            yield from _known(link.centre, link.coordinates, "point", ("links", name, "centre"), name)
+            yield from known(link.centre, link.coordinates, "point", ("links", name, "centre"), name)
 
 
 def _link(name: str, link: Link, at: Place) -> Iterator[Problem]:
@@ -73,10 +76,10 @@ def _guides(mechanism: Description) -> Iterator[Problem]:
             what = _("there are two guides {name}").format(name=shown(guide.id))
             yield Problem(what, _("give one of them a name of its own: name = ..."), at)
         identities.add(guide.id)
-        yield from _link_known(mechanism, guide.on, (*at, "on"))
+        yield from link_known(mechanism, guide.on, (*at, "on"))
         for key, line in (("through", guide.through), ("pole", guide.pole)):
-            if isinstance(line, str) and (guide.on == FRAME or guide.on in mechanism.links):
-                yield from _known(line, _points_on(mechanism, guide.on), "point", (*at, key), guide.on)
+            if isinstance(line, str) and is_link(mechanism, guide.on):
+                yield from known(line, points_on(mechanism, guide.on), "point", (*at, key), guide.on)
         if guide.on in mechanism.links and guide.point in mechanism.links[guide.on].coordinates:
             what = _("point {point} is a point of {link} already, it cannot slide on it")
             repair = _("take it out of the link, or guide another point")
@@ -86,7 +89,7 @@ def _guides(mechanism: Description) -> Iterator[Problem]:
 
 
 def _guided_link(mechanism: Description, link: str, point: str, on: str, at: Place) -> Iterator[Problem]:
-    unknown = list(_link_known(mechanism, link, (*at, "link"), moving=True))
+    unknown = list(link_known(mechanism, link, (*at, "link"), moving=True))
     yield from unknown
     if not unknown and point not in mechanism.links[link].coordinates:
         what = _("link {link} does not contain the guided point {point}").format(
@@ -99,27 +102,6 @@ def _guided_link(mechanism: Description, link: str, point: str, on: str, at: Pla
         )
 
 
-def _pairs(mechanism: Description) -> Iterator[Problem]:
-    for index, gear in enumerate(mechanism.gears):
-        at: Place = ("gears", index)
-        if len(set(gear.links)) != 2 or gear.carrier in gear.links:
-            yield Problem(_("a gear needs two links, different from each other and from the carrier"), "", at)
-        for name in gear.links:
-            yield from _link_known(mechanism, name, (*at, "links"))
-        yield from _link_known(mechanism, gear.carrier, (*at, "carrier"))
-    for index, wheel in enumerate(mechanism.rolling):
-        at = ("rolling", index)
-        unknown = list(_link_known(mechanism, wheel.link, (*at, "link"), moving=True))
-        yield from unknown
-        if not unknown:
-            local = mechanism.links[wheel.link].coordinates
-            yield from _known(wheel.centre, local, "point", (*at, "centre"), wheel.link)
-        yield from _link_known(mechanism, wheel.on, (*at, "on"))
-        if isinstance(wheel.along.centre, str) and (wheel.on == FRAME or wheel.on in mechanism.links):
-            known = _points_on(mechanism, wheel.on)
-            yield from _known(wheel.along.centre, known, "point", (*at, "along", "centre"), wheel.on)
-
-
 def _drives(mechanism: Description) -> Iterator[Problem]:
     identities: set[str] = set()
     for index, drive in enumerate(mechanism.drives):
@@ -130,32 +112,32 @@ def _drives(mechanism: Description) -> Iterator[Problem]:
             )
         identities.add(drive.id)
         if drive.link:
-            yield from _link_known(mechanism, drive.link, (*at, "link"), moving=True)
-            yield from _link_known(mechanism, drive.relative_to, (*at, "relative_to"))
+            yield from link_known(mechanism, drive.link, (*at, "link"), moving=True)
+            yield from link_known(mechanism, drive.relative_to, (*at, "relative_to"))
         if drive.link and drive.link == drive.relative_to:
             yield Problem(_("a link cannot be driven relative to itself"), _("name another link"), at)
         if drive.guide:
-            yield from _known(drive.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide"))
-        yield from _two_points(mechanism, drive.distance, (*at, "distance"))
+            yield from known(drive.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide"))
+        if drive.distance:
+            wrong = list(two_known_points(mechanism, drive.distance, (*at, "distance")))
+            yield from wrong or cylinder_problems(mechanism, drive, at)
 
 
 def _rest(mechanism: Description) -> Iterator[Problem]:
-    known = [*mechanism.points, *mechanism.links, *(guide.id for guide in mechanism.guides)]
+    names = [*mechanism.points, *mechanism.links, *(guide.id for guide in mechanism.guides)]
     for name in mechanism.assembly.sides:
-        yield from _known(name, known, "point, link or guide", ("assembly", "sides", name))
+        yield from known(name, names, "point, link or guide", ("assembly", "sides", name))
     for index, load in enumerate(mechanism.loads):
         at: Place = ("loads", index)
         if load.point:
-            yield from _known(load.point, mechanism.points, "point", (*at, "point"))
+            yield from known(load.point, mechanism.points, "point", (*at, "point"))
         if load.link:
-            yield from _link_known(mechanism, load.link, (*at, "link"), moving=True)
+            yield from link_known(mechanism, load.link, (*at, "link"), moving=True)
         if load.guide:
-            yield from _known(load.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide"))
-        yield from _two_points(mechanism, load.points, (*at, "points"))
-        yield from _link_known(mechanism, load.axes, (*at, "axes"))
-        yield from _link_known(mechanism, load.relative_to, (*at, "relative_to"))
-    for name, link in mechanism.links.items():
-        yield from _two_points(mechanism, link.reference, ("links", name, "reference"))
+            yield from known(load.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide"))
+        yield from two_known_points(mechanism, load.points, (*at, "points"))
+        yield from link_known(mechanism, load.axes, (*at, "axes"))
+        yield from link_known(mechanism, load.relative_to, (*at, "relative_to"))
 
 
 def _loose(mechanism: Description) -> Iterator[Problem]:
@@ -163,34 +145,3 @@ def _loose(mechanism: Description) -> Iterator[Problem]:
         at: Place = ("links", part.links[0]) if part.links else ()
         what = _("nothing connects {names} to the frame").format(names=part)
         yield Problem(what, _("hinge it to a link that is connected, or give it a guide"), at)
-
-
-def _two_points(mechanism: Description, points: tuple[str, ...] | None, at: Place) -> Iterator[Problem]:
-    if points is None:
-        return
-    if len(set(points)) != 2:
-        yield Problem(_('two different points are needed: ["A", "B"]'), "", at)
-    for point in points:
-        yield from _known(point, mechanism.points, "point", at)
-
-
-def _points_on(mechanism: Description, link: str) -> Iterable[str]:
-    return mechanism.frame.points if link == FRAME else mechanism.links[link].coordinates
-
-
-def _link_known(mechanism: Description, name: str, at: Place, moving: bool = False) -> Iterator[Problem]:
-    known = list(mechanism.links) if moving else [FRAME, *mechanism.links]
-    yield from _known(name, known, "link", at)
-
-
-def _known(name: str, known: Iterable[str], kind: str, at: Place, link: str = "") -> Iterator[Problem]:
-    names = list(known)
-    if name in names:
-        return
-    sentences = {
-        "point": _("{link} has no point {name}") if link else _("unknown point {name}"),
-        "link": _("unknown link {name}"),
-        "guide": _("unknown guide {name}"),
-        "point, link or guide": _("unknown point, link or guide {name}"),
-    }
-    yield Problem(sentences[kind].format(name=shown(name), link=link), nearest(name, names), at)

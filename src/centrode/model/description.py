@@ -147,8 +147,8 @@ class Description(Part):
         for drive in self.drives:
             if drive.link == link and drive.start is not None:
                 base = self._initial_angle(drive.relative_to, (*seen, link))
-                at_zero = _at_zero(drive)
-                return None if base is None or at_zero is None else base + drive.start + at_zero
+                value = value_at_start(drive)
+                return None if base is None or value is None else base + value
         return None
 
     def guide_turn(self, guide: Guide) -> float:
@@ -159,10 +159,12 @@ class Description(Part):
         return 0.0 if turned is None or base is None else turned - base
 
 
-def _at_zero(drive: Drive) -> float | None:
-    """The drive's law at t = 0; None where it is not defined there."""
+def value_at_start(drive: Drive) -> float | None:
+    """The drive's value at t = 0; None where its start is not given or its law is not defined there."""
+    if drive.start is None:
+        return None
     try:
-        value = float(drive.motion_law.jet(SCALARS, 0.0))
+        value = drive.start + float(drive.motion_law.jet(SCALARS, 0.0))
     except (ArithmeticError, ValueError):
         return None
     return value if math.isfinite(value) else None
@@ -186,4 +188,4 @@ def _kind_and_law(first: object) -> tuple[str, bool]:
         return first.kind, first.speed is None
     keys = first if isinstance(first, Mapping) else {}
     kind = "displacement" if keys.get("guide") else "distance" if keys.get("distance") else "angle"
-    return kind, keys.get("speed") is None and bool({"law", "table"} & keys.keys())
+    return kind, keys.get("speed") is None and bool({"law", "table", "segments"} & keys.keys())

@@ -13,8 +13,11 @@ from centrode.locale import _
 from centrode.model.names import FRAME
 from centrode.model.part import Part, one_of
 from centrode.model.problems import Problem
+from centrode.model.segments import Segment, read_repeat, read_segments, segmented
 from centrode.model.tables import read_rows
 from centrode.model.values import READING, Name, listed, read_text, si
+
+_LAWS = ("speed", "law", "table", "segments")
 
 
 def _read_law(value: object) -> str:
@@ -37,8 +40,10 @@ class Drive(Part):
         The link an angle is measured from.
     start : float [rad or m]
         Value at t = 0, without the law's own value there; from the initial position if left out.
-    speed, law, table : float [rad/s or m/s], formula in t, rows of (time, value)
+    speed, law, table, segments : float [rad/s or m/s], formula in t, rows of (time, value), tuple of Segment
         One of them. In a file, `table` may be the path of a CSV file beside it.
+    repeat : bool
+        Whether the segments follow each other again and again.
     """
 
     link: Name | None = None
@@ -49,14 +54,18 @@ class Drive(Part):
     speed: float | None = None
     law: Annotated[str, PlainValidator(_read_law)] | None = None
     table: tuple[tuple[float, float], ...] | None = None
+    segments: tuple[Segment, ...] | None = None
+    repeat: Annotated[bool, PlainValidator(read_repeat)] = False
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given, by the rules of this part."""
-        wrong = one_of(given, ("link", "guide", "distance")) + one_of(given, ("speed", "law", "table"))
+        wrong = one_of(given, ("link", "guide", "distance")) + one_of(given, _LAWS)
         if given.get("link") is None and given.get("relative_to", FRAME) != FRAME:
             repair = _("take it out; a guide's displacement is along the link it is on")
             wrong.append(Problem(_("relative_to belongs to the drive of a link's angle"), repair))
+        if given.get("repeat") and given.get("segments") is None:
+            wrong.append(Problem(_("repeat belongs to segments"), _("take it out, or give segments")))
         return super().key_problems(given) + wrong
 
     @field_validator("start", "speed", mode="plain")
@@ -78,6 +87,11 @@ class Drive(Part):
             raise Problem(error.what, error.repair) from None
         return rows
 
+    @field_validator("segments", mode="plain")
+    @classmethod
+    def _segments(cls, value: object, info: ValidationInfo) -> tuple[Segment, ...] | None:
+        return None if value is None else read_segments(value, _kind(info))
+
     @property
     def kind(self) -> str:
         """What is driven: "angle", "displacement" or "distance"."""
@@ -95,6 +109,8 @@ class Drive(Part):
             return Uniform(self.speed)
         if self.law is not None:
             return TextLaw(self.law)
+        if self.segments is not None:
+            return segmented(self.segments, self.repeat)
         times, values = zip(*self.table or (), strict=True)
         return TableLaw(times, values)
 

@@ -11,7 +11,7 @@ from pydantic import PlainValidator
 from centrode.locale import _
 from centrode.model.names import FRAME
 from centrode.model.part import Part, missing_key, one_of
-from centrode.model.problems import KEY, Problem
+from centrode.model.problems import KEY, Problem, shown
 from centrode.model.values import (
     READING,
     Angle,
@@ -36,6 +36,20 @@ def _read_ratio(value: object) -> float:
     if ratio == 0:
         raise Problem(_("{key} must not be zero").format(key=KEY))
     return ratio
+
+
+def _read_flag(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise Problem(_("expected true or false, got {value}").format(value=shown(value)))
+    return value
+
+
+def unit_along(direction: Vector | float) -> Vector:
+    """Unit vector of a direction that is given as a vector or as an angle [rad]."""
+    if isinstance(direction, tuple):
+        length = math.hypot(*direction)
+        return direction[0] / length, direction[1] / length
+    return math.cos(direction), math.sin(direction)
 
 
 class Guide(Part):
@@ -96,10 +110,12 @@ class Guide(Part):
     @property
     def unit(self) -> Vector:
         """Unit vector along the line in the axes of `on`."""
-        if isinstance(self.direction, tuple):
-            length = math.hypot(*self.direction)
-            return self.direction[0] / length, self.direction[1] / length
-        return math.cos(self.direction), math.sin(self.direction)
+        return unit_along(self.direction)
+
+    @property
+    def arc(self) -> float:
+        """Radius [rad] of the circle about the pole, on the sphere."""
+        return math.pi / 2 if self.radius is None else self.radius
 
     @property
     def unplaced(self) -> bool:
@@ -123,23 +139,37 @@ class Gear(Part):
     Attributes
     ----------
     links : two names
+        Of links; one of them may be "frame" (a fixed sun or ring).
     carrier : "frame" or a link
+        The one that holds both axes.
     ratio : float, not zero
         Negative where they turn in opposite senses.
+    name : str
+        The gear's id where its links' names will not do.
     """
 
     links: Annotated[tuple[Name, ...], listed(2)]
     ratio: Annotated[float, PlainValidator(_read_ratio)]
     carrier: Name = FRAME
+    name: Name | None = None
+
+    @property
+    def id(self) -> str:
+        """The gear's name, else its two links as "OA-wheel"."""
+        return self.name or "-".join(self.links)
 
 
 class Track(Part):
-    """What a wheel rolls on: a line (`through`, `direction`) or a circle (`centre`, `radius`)."""
+    """What a wheel rolls on: a line (`through`, `direction`) or a circle (`centre`, `radius`).
+
+    The wheel's centre lies to the left of a line, outside a circle or, with `inside`, inside it.
+    """
 
     through: Coordinates | None = None
     direction: Direction | None = None
     centre: Spot | None = None
     radius: PositiveLength | None = None
+    inside: Annotated[bool, PlainValidator(_read_flag)] = False
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
@@ -148,7 +178,15 @@ class Track(Part):
         for key, partner in (("direction", "through"), ("radius", "centre")):
             if (given.get(key) is None) != (given.get(partner) is None):
                 wrong.append(Problem(_("{key} and {partner} go together").format(key=key, partner=partner)))
+        if given.get("inside") and given.get("direction") is not None:
+            repair = _("take it out; turn the direction round to roll on the line's other side")
+            wrong.append(Problem(_("inside belongs to a circle"), repair))
         return super().key_problems(given) + wrong
+
+    @property
+    def unit(self) -> Vector:
+        """Unit vector along a line; (1, 0) for a circle."""
+        return unit_along(self.direction or 0.0)
 
 
 class Rolling(Part):
@@ -162,6 +200,8 @@ class Rolling(Part):
     on : "frame" or a link
     along : Track
         In the axes of `on`.
+    name : str
+        Its id where the wheel's name will not do, such as a wheel that rolls on two links.
     """
 
     link: Name
@@ -169,3 +209,9 @@ class Rolling(Part):
     radius: PositiveLength
     along: Track
     on: Name = FRAME
+    name: Name | None = None
+
+    @property
+    def id(self) -> str:
+        """Its name, else the wheel's."""
+        return self.name or self.link

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from centrode.errors import InputError
@@ -12,7 +13,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.names import PLACED
 from centrode.model.problems import nearest, shown
 
-_AXES = {"x": 0, "y": 1}
+_AXES = {"plane": ("x", "y"), "sphere": ("longitude", "latitude")}
 Spot = tuple[Any, Any]
 """A table or list of the document, and the key or index in it."""
 
@@ -21,11 +22,15 @@ def value_at(mechanism: Mechanism, path: str) -> float:
     """Number [SI] at a path; raises InputError where there is none.
 
     `guides.C.direction` is an angle however it is given; `links.K.points.C.x` is a local coordinate of a
-    link whose points have coordinates.
+    link whose points have coordinates. On the sphere, coordinates are `longitude` and `latitude`.
     """
     words = _words(mechanism, path)
     if words[0] == "guides" and words[2:] == ["direction"]:
         return mechanism.guide(words[1]).direction_angle
+    if words[0] == "guides" and words[2:] == ["radius"] and mechanism.space == "sphere":
+        return mechanism.guide(words[1]).arc
+    if words[0] == "rolling" and words[2:] == ["along", "direction"]:
+        return _direction_of_track(mechanism, words[1], path)
     container, key = _spot(document(mechanism), words, path)
     value = container.get(key) if isinstance(container, dict) else container[key]
     if isinstance(value, bool) or not isinstance(value, int | float):
@@ -48,6 +53,14 @@ def with_value(mechanism: Mechanism, path: str, value: float | str) -> Mechanism
     return mechanism_from(tables)
 
 
+def _direction_of_track(mechanism: Mechanism, identity: str, path: str) -> float:
+    track = next(wheel.along for wheel in mechanism.rolling if wheel.id == identity)
+    if track.direction is None:
+        what = _("{path} is not a number here").format(path=path)
+        raise InputError("", what, _("the wheel rolls on a circle: give its radius or its centre"))
+    return math.atan2(*reversed(track.unit)) if isinstance(track.direction, tuple) else track.direction
+
+
 def _words(mechanism: Mechanism, path: str) -> list[str]:
     """The path's parts; a name may itself hold dots, so known names are tried first."""
     room, _dot, rest = path.partition(".")
@@ -55,6 +68,8 @@ def _words(mechanism: Mechanism, path: str) -> list[str]:
         "links": list(mechanism.links),
         "frame": ["points"],
         "guides": [guide.id for guide in mechanism.guides],
+        "gears": [gear.id for gear in mechanism.gears],
+        "rolling": [wheel.id for wheel in mechanism.rolling],
         "drives": [drive.id for drive in mechanism.drives],
     }
     if room not in names:
@@ -83,32 +98,49 @@ def _unknown(path: str, word: str, known: list[str]) -> InputError:
 _NUMBERS = {
     "links": ("length", "angle", "mass", "inertia", "radius"),
     "guides": ("direction", "angle", "radius"),
+    "gears": ("ratio",),
+    "rolling": ("radius",),
+    "along": ("direction", "radius"),
     "drives": ("start", "speed"),
 }
 
 
 def _spot(tables: dict[str, Any], words: list[str], path: str) -> Spot:
     room, name, *rest = words
+    axes = _AXES[tables.get("space", "plane")]
     if room == "frame":
-        return _coordinate(tables["frame"]["points"], rest, path)
+        return _coordinate(tables["frame"]["points"], rest, path, axes)
     if room == "links":
-        link = tables["links"][name]
-        if rest[:1] == ["points"]:
-            if not isinstance(link.get("points"), dict):
-                what = _("the points of link {name} have no coordinates of their own").format(name=name)
-                raise InputError("", what, f"links.{name}.length")
-            return _coordinate(link["points"], rest[1:], path)
-        return _coordinate(link, rest, path) if rest[:1] == ["centre"] else _number(link, room, rest, path)
-    entries = tables[room]
-    entry = next(entry for entry in entries if _identity(room, entry) == name)
-    if room == "guides" and rest[:1] == ["through"]:
-        return _coordinate(entry, rest, path)
+        return _in_link(tables["links"][name], words, path, axes)
+    entry = next(entry for entry in tables[room] if _identity(room, entry) == name)
+    if room == "guides" and rest[:1] in (["through"], ["pole"]):
+        return _coordinate(entry, rest, path, axes)
+    if room == "rolling" and rest[:1] == ["along"]:
+        entry, room, rest = entry["along"], "along", rest[1:]
+        if rest[:1] in (["through"], ["centre"]):
+            return _coordinate(entry, rest, path, axes)
     return _number(entry, room, rest, path)
+
+
+def _in_link(link: dict[str, Any], words: list[str], path: str, axes: tuple[str, str]) -> Spot:
+    room, name, *rest = words
+    if rest[:1] == ["points"]:
+        if not isinstance(link.get("points"), dict):
+            what = _("the points of link {name} have no coordinates of their own").format(name=name)
+            raise InputError("", what, f"links.{name}.length")
+        return _coordinate(link["points"], rest[1:], path, axes)
+    if rest[:1] == ["centre"]:
+        return _coordinate(link, rest, path, axes)
+    return _number(link, room, rest, path)
 
 
 def _identity(room: str, entry: dict[str, Any]) -> str:
     if room == "guides":
         return str(entry.get("name") or entry["point"])
+    if room == "gears":
+        return str(entry.get("name") or "-".join(entry["links"]))
+    if room == "rolling":
+        return str(entry.get("name") or entry["link"])
     return str(entry.get("link") or entry.get("guide") or "-".join(entry.get("distance", ())))
 
 
@@ -118,13 +150,13 @@ def _number(table: dict[str, Any], room: str, rest: list[str], path: str) -> Spo
     return table, rest[0]
 
 
-def _coordinate(table: dict[str, Any], rest: list[str], path: str) -> Spot:
+def _coordinate(table: dict[str, Any], rest: list[str], path: str, axes: tuple[str, str]) -> Spot:
     """The list of a point's coordinates and the axis; a placed one becomes given."""
-    if len(rest) != 2 or rest[1] not in _AXES:
-        raise _unknown(path, ".".join(rest[1:]), list(_AXES))
+    if len(rest) != 2 or rest[1] not in axes:
+        raise _unknown(path, ".".join(rest[1:]), list(axes))
     name, axis = rest
     if isinstance(table.get(name), dict):
         table[name] = table[name][PLACED]
     if not isinstance(table.get(name), list):
         raise InputError("", _("{path} is not a number here").format(path=path), _("give coordinates"))
-    return table[name], _AXES[axis]
+    return table[name], axes.index(axis)

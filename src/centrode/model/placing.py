@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from functools import cached_property
 from typing import TypeVar
 
-from centrode.locale import _
 from centrode.model.bodies import Frame
+from centrode.model.chain import chain_of
 from centrode.model.description import Description
 from centrode.model.frozen import FrozenMap
 from centrode.model.names import FRAME
 from centrode.model.pairs import Guide
-from centrode.model.problems import Place, Problem, Problems, shown, told
+from centrode.model.problems import Place, Problems, told
 from centrode.model.values import Placed, Vector
 
 M = TypeVar("M", bound=Description)
@@ -53,13 +51,13 @@ def _unresolved(guide: Guide) -> Guide:
 
 
 def resolved(mechanism: Description) -> tuple[Frame, tuple[Guide, ...]]:
-    """Frame and guides with nothing left to place (in the plane); raises Problems that name the missing angles."""
+    """Frame and guides with nothing left to place; raises Problems that name the missing angles."""
     points = mechanism.frame.points
     open_points = [name for name, position in points.items() if position == Placed()]
     open_guides = [index for index, guide in enumerate(mechanism.guides) if guide.unplaced]
-    if mechanism.space == "sphere" or not (open_points or open_guides):
+    if not (open_points or open_guides):
         return mechanism.frame, mechanism.guides
-    chain = _Chain(mechanism)
+    chain = chain_of(mechanism)
     problems = [
         chain.problem(name, ("frame", "points", name)) for name in open_points if name not in chain.points
     ]
@@ -81,72 +79,3 @@ def resolved(mechanism: Description) -> tuple[Frame, tuple[Guide, ...]]:
         for index, guide in enumerate(mechanism.guides)
     )
     return mechanism.frame.model_copy(update={"points": FrozenMap(frame)}), guides
-
-
-class _Chain:
-    """Positions that follow from the fixed points and the initial angles, link by link in description order."""
-
-    def __init__(self, mechanism: Description) -> None:
-        self.mechanism = mechanism
-        self.points: dict[str, Vector] = {}
-        self.poses: dict[str, tuple[Vector, float]] = {}
-        for name, position in mechanism.frame.points.items():
-            at = position.at if isinstance(position, Placed) else position
-            if at is not None:
-                self.points[name] = at
-        self.fixed = tuple(self.points)
-        while any([self._pose(name) for name in mechanism.links if name not in self.poses]):
-            pass
-
-    def _pose(self, name: str) -> bool:
-        """Pose a link that has an initial angle and a known point, and with it all its points."""
-        local = self.mechanism.links[name].coordinates
-        angle = self.mechanism.initial_angle(name)
-        known = next((point for point in local if point in self.points), None)
-        if angle is None or known is None:
-            return False
-        x, y = turned(local[known], angle)
-        origin = self.points[known][0] - x, self.points[known][1] - y
-        self.poses[name] = origin, angle
-        for point, coordinates in local.items():
-            dx, dy = turned(coordinates, angle)
-            self.points.setdefault(point, (origin[0] + dx, origin[1] + dy))
-        return True
-
-    def local(self, link: str, position: Vector) -> Vector:
-        """A position in the axes of a link that is posed, or of the frame."""
-        if link == FRAME:
-            return position
-        (x, y), angle = self.poses[link]
-        return turned((position[0] - x, position[1] - y), -angle)
-
-    def problem(self, point: str, at: Place, link: str = "") -> Problem:
-        """That the chain does not reach a point, naming the links on its shortest way that lack an angle."""
-        way = [*self._ways.get(point, ()), *([link] if link else [])]
-        missing = [name for name in dict.fromkeys(way) if self.mechanism.initial_angle(name) is None]
-        what = _("{point} cannot be placed: the chain from the frame does not reach it").format(
-            point=shown(point)
-        )
-        if not missing:
-            return Problem(what, _("give its coordinates"), at)
-        return Problem(what, _("give the initial angle of {links}").format(links=", ".join(missing)), at)
-
-    @cached_property
-    def _ways(self) -> dict[str, tuple[str, ...]]:
-        """Links on the shortest way from the fixed points to every point that can be reached."""
-        ways: dict[str, tuple[str, ...]] = dict.fromkeys(self.fixed, ())
-        waiting = list(self.fixed)
-        for point in waiting:
-            for name, link in self.mechanism.links.items():
-                if point in link.coordinates:
-                    for other in link.coordinates:
-                        if other not in ways:
-                            ways[other] = (*ways[point], name)
-                            waiting.append(other)
-        return ways
-
-
-def turned(vector: Vector, angle: float) -> Vector:
-    """A vector turned by an angle [rad]."""
-    cosine, sine = math.cos(angle), math.sin(angle)
-    return vector[0] * cosine - vector[1] * sine, vector[0] * sine + vector[1] * cosine

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from centrode.model import limits
+from centrode.laws import SEGMENT_CURVES
+from centrode.model import limits, segments
 from centrode.model.asked import Assembly, Display, Machine, Study
 from centrode.model.bodies import Frame, Link
 from centrode.model.description import Description
@@ -12,6 +13,7 @@ from centrode.model.driving import Drive
 from centrode.model.loads import KINDS, Load
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.part import Part
+from centrode.model.segments import Segment
 from centrode.model.units import KINDS as QUANTITIES
 
 Schema = dict[str, Any]
@@ -89,12 +91,13 @@ PROPERTIES: dict[type[Part], Schema] = {
         "pole": _THROUGH,
         "radius": _above_zero("arc"),
     },
-    Gear: {"links": _NAMES, "ratio": _quantity("ratio"), "carrier": _NAME},
+    Gear: {"links": _NAMES, "ratio": _quantity("ratio"), "carrier": _NAME, "name": _NAME},
     Track: {
         "through": _COORDINATES,
         "direction": _DIRECTION,
         "centre": _THROUGH,
         "radius": _above_zero("length"),
+        "inside": {"type": "boolean"},
     },
     Rolling: {
         "link": _NAME,
@@ -102,6 +105,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "radius": _above_zero("length"),
         "along": _ref(Track),
         "on": _NAME,
+        "name": _NAME,
     },
     Drive: {
         "link": _NAME,
@@ -112,6 +116,15 @@ PROPERTIES: dict[type[Part], Schema] = {
         "speed": _AMOUNT,
         "law": {**_TEXT, "description": "a formula in t [s], such as 0.3*sin(2*t)"},
         "table": {"anyOf": [_TEXT, _list(_list(_AMOUNT, 2, 2), 2, limits.TABLE_ROWS)]},
+        "segments": _list(_ref(Segment), 1, segments.MOST),
+        "repeat": {"type": "boolean"},
+    },
+    Segment: {
+        "to": _AMOUNT,
+        "time": _above_zero("time"),
+        "curve": {"enum": list(SEGMENT_CURVES)},
+        **dict.fromkeys((*segments.AT_START, *segments.AT_END), _AMOUNT),
+        "through": _list(_list(_AMOUNT, 2, 2), 0, segments.MOST_THROUGH),
     },
     Assembly: {"sides": _table(_SIDES, limits.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
     Load: {

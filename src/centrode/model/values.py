@@ -82,6 +82,9 @@ def positive(value: object, kind: str) -> float:
     if number < limits.LEAST:
         what = _("{value} is beyond what can be computed with").format(value=shown(value))
         raise Problem(what, _("stay above {least:g}").format(least=limits.LEAST))
+    if kind == "arc" and number >= math.pi:
+        what = _("{key} must be shorter than half a great circle, got {value}")
+        raise Problem(what.format(key=KEY, value=shown(value)), _("stay below 180 deg"))
     return number
 
 
@@ -109,6 +112,9 @@ def read_coordinates(value: object) -> Vector:
         longitude, latitude = numbers(
             value, ("arc", "arc"), _("[longitude, latitude] or a unit vector [x, y, z]")
         )
+        if abs(latitude) > math.pi / 2 + 1e-9:
+            what = _("a latitude lies between -90 and 90 deg, got {value:.9g} deg")
+            raise Problem(what.format(value=math.degrees(latitude)), _("write [longitude, latitude]"))
         return longitude, latitude
     x, y, z = numbers(value, ("ratio",) * 3, "[x, y, z]")
     if abs(math.hypot(x, y, z) - 1) > 1e-9:

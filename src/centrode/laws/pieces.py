@@ -1,0 +1,116 @@
+"""Formulas that hold one after the other: what curves, laws of segments and tables are made of."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from centrode.laws.law import Number
+
+Row = tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """value + powers of x + cycloid (y - sin y) + square (sin y)^2, with x = (t - origin) / unit, y = wave x.
+
+    Written so that what vanishes at the origin vanishes there exactly, with as many derivatives as it
+    should: the sense in which a drive sets out is that of its first derivative that is not zero.
+
+    Attributes
+    ----------
+    powers : tuple of float
+        Coefficients of x, x^2, ...
+    """
+
+    origin: float
+    value: float
+    powers: tuple[float, ...] = ()
+    wave: float = 0.0
+    cycloid: float = 0.0
+    square: float = 0.0
+    unit: float = 1.0
+
+    def mirrored(self) -> Piece:
+        """The piece of 1 - s(1 - u): the other half of a curve that is symmetric about its middle."""
+        powers = tuple(c if k % 2 else -c for k, c in enumerate(self.powers, 1))
+        return replace(
+            self, origin=1.0 - self.origin, value=1.0 - self.value, powers=powers, square=-self.square
+        )
+
+    def placed(self, start: float, unit: float, before: float, after: float) -> Piece:
+        """The piece of a curve that runs from (start, before) to (start + unit, after), not from (0, 0) to (1, 1)."""
+        rise = after - before
+        return Piece(
+            between(start, start + unit, self.origin),
+            between(before, after, self.value),
+            tuple(c * rise for c in self.powers),
+            self.wave,
+            self.cycloid * rise,
+            self.square * rise,
+            unit,
+        )
+
+    def row(self, degree: int) -> Row:
+        """Its numbers, with powers up to a degree."""
+        missing = (0.0,) * (degree - len(self.powers))
+        numbers = (self.origin, self.unit, self.wave, self.cycloid, self.square)
+        return (*numbers, self.value, *self.powers, *missing)
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Formulas by stretches: before the first break, between the breaks, after the last.
+
+    At a break the right one holds, at the last break the left one, with its derivatives.
+    """
+
+    breaks: tuple[float, ...]
+    rows: tuple[Row, ...]
+    waves: bool
+
+    @classmethod
+    def of(cls, breaks: Sequence[float], pieces: Sequence[Piece]) -> Pieces:
+        """From pieces, one more than breaks."""
+        degree = max(len(piece.powers) for piece in pieces)
+        rows = tuple(piece.row(degree) for piece in pieces)
+        return cls(tuple(breaks), rows, any(piece.wave for piece in pieces))
+
+    def jet(self, m: Any, t: Number) -> Number:
+        """The value at t over the algebra of `m`, which needs sin (with cos, on jets)."""
+        origin, unit, wave, cycloid, square, *powers = row_at(self.breaks, self.rows, plain(t))
+        x = (t - origin) / unit
+        value = x * 0.0 + powers.pop()
+        while powers:
+            value = value * x + powers.pop()
+        if not self.waves:
+            return value
+        y = x * wave
+        sine = m.sin(y)
+        return value + (y - sine) * cycloid + sine * sine * square
+
+
+def between(first: float, last: float, share: float) -> float:
+    """The number at a share of the way; exactly the ends at 0 and 1."""
+    return first * (1.0 - share) + last * share
+
+
+def plain(t: Number) -> Number:
+    """The plain value of a jet or a bounded number."""
+    return getattr(t, "value", t)
+
+
+def row_at(breaks: Sequence[float], rows: Sequence[Row], t: Number) -> Row:
+    """The row of the stretch that a plain t lies in; of an array a row of arrays.
+
+    Rows are one more than breaks. At a break the right one is taken, at the last break the left one.
+    """
+    if isinstance(t, float | int) or not hasattr(t, "__array_namespace__"):
+        place = bisect_right(breaks, t) - (1 if t == breaks[-1] else 0)
+        return rows[place]
+    # The array says itself which library it belongs to: this room imports none.
+    xp = t.__array_namespace__()
+    places = xp.searchsorted(xp.asarray(breaks), t, side="right") - (t == breaks[-1])
+    return tuple(xp.moveaxis(xp.asarray(rows)[places], -1, 0))

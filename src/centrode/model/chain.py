@@ -1,0 +1,116 @@
+"""Positions that follow from the fixed points and the links' initial angles, link by link."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+from centrode.locale import _
+from centrode.model.description import Description
+from centrode.model.names import FRAME
+from centrode.model.problems import Place, Problem, shown
+from centrode.model.sphere import (
+    axes,
+    carried,
+    heading,
+    longitude_latitude,
+    makes_arc,
+    turned_about,
+    unit_vector,
+)
+from centrode.model.values import Placed, Vector
+
+
+def chain_of(mechanism: Description) -> Chain:
+    """The chain of a mechanism in its space."""
+    return SphericalChain(mechanism) if mechanism.space == "sphere" else Chain(mechanism)
+
+
+class Chain:
+    """Positions that follow from the fixed points and the initial angles, link by link in description order."""
+
+    def __init__(self, mechanism: Description) -> None:
+        self.mechanism = mechanism
+        self.points: dict[str, Vector] = {}
+        self.poses: dict[str, tuple[Vector, float]] = {}
+        for name, position in mechanism.frame.points.items():
+            at = position.at if isinstance(position, Placed) else position
+            if at is not None:
+                self.points[name] = at
+        self.fixed = tuple(self.points)
+        while any([self._pose(name) for name in mechanism.links if name not in self.poses]):
+            pass
+
+    def _pose(self, name: str) -> bool:
+        """Pose a link that has an initial angle and a known point, and with it all its points."""
+        local = self.mechanism.links[name].coordinates
+        angle = self.mechanism.initial_angle(name)
+        known = next((point for point in local if point in self.points), None)
+        if angle is None or known is None:
+            return False
+        x, y = turned(local[known], angle)
+        origin = self.points[known][0] - x, self.points[known][1] - y
+        self.poses[name] = origin, angle
+        for point, coordinates in local.items():
+            dx, dy = turned(coordinates, angle)
+            self.points.setdefault(point, (origin[0] + dx, origin[1] + dy))
+        return True
+
+    def local(self, link: str, position: Vector) -> Vector:
+        """A position in the axes of a link that is posed, or of the frame."""
+        if link == FRAME:
+            return position
+        (x, y), angle = self.poses[link]
+        return turned((position[0] - x, position[1] - y), -angle)
+
+    def problem(self, point: str, at: Place, link: str = "") -> Problem:
+        """That the chain does not reach a point, naming the links on its shortest way that lack an angle."""
+        way = [*self._ways.get(point, ()), *([link] if link else [])]
+        missing = [name for name in dict.fromkeys(way) if self.mechanism.initial_angle(name) is None]
+        what = _("{point} cannot be placed: the chain from the frame does not reach it").format(
+            point=shown(point)
+        )
+        if not missing:
+            return Problem(what, _("give its coordinates"), at)
+        return Problem(what, _("give the initial angle of {links}").format(links=", ".join(missing)), at)
+
+    @cached_property
+    def _ways(self) -> dict[str, tuple[str, ...]]:
+        """Links on the shortest way from the fixed points to every point that can be reached."""
+        ways: dict[str, tuple[str, ...]] = dict.fromkeys(self.fixed, ())
+        waiting = list(self.fixed)
+        for point in waiting:
+            for name, link in self.mechanism.links.items():
+                if point in link.coordinates:
+                    for other in link.coordinates:
+                        if other not in ways:
+                            ways[other] = (*ways[point], name)
+                            waiting.append(other)
+        return ways
+
+
+class SphericalChain(Chain):
+    """The same on the unit sphere, in longitudes and latitudes [rad]."""
+
+    def _pose(self, name: str) -> bool:
+        """Put the points of a link whose first point, reference and initial angle are known."""
+        link, angle = self.mechanism.links[name], self.mechanism.initial_angle(name)
+        points, reference = list(link.coordinates), link.reference or ()
+        if angle is None or len(points) < 2 or not reference or not {*reference} <= self.points.keys():
+            return False
+        pivot, towards = (unit_vector(self.points[point]) for point in reference)
+        local = [unit_vector(place) for place in link.coordinates.values()]
+        if not (makes_arc(pivot, towards) and makes_arc(local[0], local[1])):
+            return False
+        forward = turned_about(pivot, heading(pivot, towards), angle)
+        mine, theirs = axes(local[0], heading(local[0], local[1])), axes(pivot, forward)
+        for point, place in zip(points, local, strict=True):
+            self.points.setdefault(point, longitude_latitude(carried(place, mine, theirs)))
+        self.poses[name] = self.points[points[0]], angle
+        return True
+
+
+def turned(vector: Vector, angle: float) -> Vector:
+    """A vector turned by an angle [rad]."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return vector[0] * cosine - vector[1] * sine, vector[0] * sine + vector[1] * cosine

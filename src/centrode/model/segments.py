@@ -1,0 +1,183 @@
+"""Segments of a drive: curves and dwells one after the other, as a file gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextvars import ContextVar
+from itertools import pairwise
+from typing import Annotated, Any
+
+from pydantic import PlainValidator, ValidationError, ValidationInfo, field_validator, model_validator
+
+from centrode import laws
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.part import Part, missing_key
+from centrode.model.problems import Problem, Problems, input_error, shown
+from centrode.model.values import choice, entries, numbers, positive, si
+
+MOST = 500
+"""Segments of a drive."""
+
+MOST_THROUGH = 10
+"""Points a polynomial is led through: the degree grows with them."""
+
+AT_START = ("speed_at_start", "acceleration_at_start", "jerk_at_start")
+AT_END = ("speed_at_end", "acceleration_at_end", "jerk_at_end")
+_FOR_POLYNOMIAL = (*AT_START, *AT_END, "through")
+_NOTHING: tuple[object, ...] = (None, (), [])
+_UNITS = {"angle": "rad", "length": "m"}
+
+DRIVEN: ContextVar[str] = ContextVar("DRIVEN", default="length")
+"""Kind of what is driven, "angle" or "length": it decides what the numbers of a segment mean."""
+
+
+def rate(value: object, kind: str, order: int) -> float:
+    """The derivative of that order by time, in SI, of an angle or a length: a number or a text such as "5 mm/s^2"."""
+    if order == 1:
+        return si(value, "angular speed" if kind == "angle" else "speed")
+    if not isinstance(value, str):
+        return si(value, "ratio")
+    try:
+        # An acceleration times a time squared is a length: units of every order are read by that.
+        return si(value.strip() + order * "*s", kind)
+    except Problem:
+        return _plain_rate(value, f"{_UNITS[kind]}/s^{order}")
+
+
+def _plain_rate(text: str, unit: str) -> float:
+    """A text without a unit, which counts as SI."""
+    try:
+        return si(text, "ratio")
+    except Problem:
+        what = _("expected a rate ({unit}), got {value}").format(unit=unit, value=shown(text))
+        repair = _('write a number in {unit}, or a text with a unit such as "{example}"')
+        raise Problem(what, repair.format(unit=unit, example=f"5 {unit}")) from None
+
+
+class Segment(Part):
+    """A stretch of a drive's law; see `centrode.laws.Segment`.
+
+    Attributes
+    ----------
+    to : float [rad or m]
+        The law's value at its end; a dwell has none.
+    time : float [s], positive
+    curve : str
+        A curve by its name, "dwell" or "polynomial".
+    speed_at_start, acceleration_at_start, jerk_at_start, speed_at_end, acceleration_at_end, jerk_at_end : float
+        Conditions on a polynomial, each with those of lower order.
+    through : tuple of (time [s], value [rad or m])
+        Values of a polynomial on the way, at times from the segment's start.
+    """
+
+    to: float | None = None
+    time: Annotated[float, PlainValidator(lambda value: positive(value, "time"))]
+    curve: Annotated[str, choice(*laws.SEGMENT_CURVES)]
+    speed_at_start: float | None = None
+    acceleration_at_start: float | None = None
+    jerk_at_start: float | None = None
+    speed_at_end: float | None = None
+    acceleration_at_end: float | None = None
+    jerk_at_end: float | None = None
+    through: tuple[tuple[float, float], ...] = ()
+
+    @classmethod
+    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
+        """What is wrong with the keys that are given, by the rules of this part."""
+        wrong = super().key_problems(given)
+        curve = given.get("curve")
+        if curve == laws.DWELL and given.get("to") is not None:
+            wrong.append(Problem(_("a dwell stays where it is and has no `to`"), _("take it out")))
+        if curve != laws.DWELL and given.get("to") is None:
+            wrong.append(missing_key("to"))
+        if curve != laws.POLYNOMIAL:
+            repair = _('take it out, or write curve = "polynomial"')
+            foreign = [key for key in _FOR_POLYNOMIAL if given.get(key) not in _NOTHING]
+            wrong += [Problem(_("{key} belongs to a polynomial").format(key=key), repair) for key in foreign]
+        return wrong + _gaps(given, AT_START) + _gaps(given, AT_END)
+
+    @field_validator("to", mode="plain")
+    @classmethod
+    def _value(cls, value: object) -> float | None:
+        return None if value is None else si(value, DRIVEN.get())
+
+    @field_validator(*AT_START, *AT_END, mode="plain")
+    @classmethod
+    def _rate(cls, value: object, info: ValidationInfo) -> float | None:
+        if value is None:
+            return None
+        keys = AT_START if info.field_name in AT_START else AT_END
+        return rate(value, DRIVEN.get(), 1 + keys.index(info.field_name or ""))
+
+    @field_validator("through", mode="plain")
+    @classmethod
+    def _through(cls, value: object) -> tuple[tuple[float, float], ...]:
+        rows = [numbers(row, ("time", DRIVEN.get()), "[time, value]") for row in entries(value, MOST_THROUGH)]
+        return tuple((time, number) for time, number in rows)
+
+    @model_validator(mode="after")
+    def _lawful(self) -> Segment:
+        try:
+            self.law.pieces(0.0, 0.0)
+        except InputError as error:
+            raise Problem(error.what, error.repair) from None
+        return self
+
+    @property
+    def law(self) -> laws.Segment:
+        """The segment of the law; raises InputError where its times do not increase."""
+        return laws.Segment(
+            self.time, self.to, self.curve, self._rates(AT_START), self._rates(AT_END), self.through
+        )
+
+    def _rates(self, keys: tuple[str, ...]) -> tuple[float, ...]:
+        return tuple(number for key in keys if (number := getattr(self, key)) is not None)
+
+
+def read_segments(value: object, kind: str) -> tuple[Segment, ...]:
+    """Segments of a drive of an angle or a length, each right in itself and all of them together a law."""
+    token = DRIVEN.set(kind)
+    try:
+        read = [_read(entry, number) for number, entry in enumerate(entries(value, MOST), 1)]
+    finally:
+        DRIVEN.reset(token)
+    wrong = [entry for entry in read if isinstance(entry, Problem)]
+    if wrong:
+        raise Problems(wrong)
+    segments = tuple(entry for entry in read if isinstance(entry, Segment))
+    try:
+        segmented(segments, False)
+    except InputError as error:
+        raise Problem(error.what, error.repair) from None
+    return segments
+
+
+def segmented(segments: tuple[Segment, ...], repeat: bool) -> laws.SegmentedLaw:
+    """The law of these segments."""
+    return laws.SegmentedLaw(tuple(segment.law for segment in segments), repeat)
+
+
+def read_repeat(value: object) -> bool:
+    """Whether, as true or false."""
+    if not isinstance(value, bool):
+        raise Problem(_("expected true or false, got {value}").format(value=shown(value)))
+    return value
+
+
+def _gaps(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
+    """Rates that are given without the one of lower order: what they are to mean for a polynomial is open."""
+    return [
+        Problem(_("{key} needs {lower} as well").format(key=key, lower=lower))
+        for lower, key in pairwise(keys)
+        if given.get(key) is not None and given.get(lower) is None
+    ]
+
+
+def _read(entry: object, number: int) -> Segment | Problem:
+    """A segment, or what is wrong with it and which it is."""
+    try:
+        return Segment.model_validate(entry)
+    except ValidationError as error:
+        told = input_error(error, _("segment {number}").format(number=number))
+    return Problem(f"{told.where}: {told.what}", told.repair)
