@@ -89,5 +89,13 @@ class RoundedFunctions:
             bound = np.where(x.value > 4.0 * x.bound, x.bound / (2.0 * value), near)
         return Rounded(value, bound + UNIT_ROUNDOFF * value)
 
+    def atan2(self, y: Number, x: Number) -> Rounded:
+        y, x = Rounded.of(y), Rounded.of(x)
+        value = np.arctan2(y.value, x.value)
+        carried = (np.abs(x.value) * y.bound + np.abs(y.value) * x.bound) / (
+            x.value * x.value + y.value * y.value
+        )
+        return Rounded(value, carried + UNIT_ROUNDOFF * np.abs(value))
+
 
 ROUNDED = RoundedFunctions()
