@@ -19,6 +19,7 @@ from centrode.kinematics.paths import path_of
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import is_drive
+from centrode.structure.groups import Newton
 from centrode.structure.plan import Structure, drives_against_mobility, structure_of
 from centrode.structure.positions import Positions
 from centrode.structure.rank import rank_of, residuals_at, scaled_jacobian
@@ -65,9 +66,24 @@ def ready(mechanism: Mechanism) -> Ready:
     structure = structure_of(mechanism)
     path = path_of(mechanism, float(structure.dimensions.scale))
     kinematics = Kinematics(structure, structure.dimensions, path)
+    if any(isinstance(group, Newton) for group in structure.groups):
+        _refuse_surplus_drives(structure)
     assembled = assemble(kinematics)
     mobility = _mobility(kinematics, assembled)
     return Ready(kinematics, assembled, mobility)
+
+
+def _refuse_surplus_drives(structure: Structure) -> None:
+    """Surplus drives tear groups apart: tell these rather than the group that is left over.
+
+    A mechanism that is rigid at a generic position may move by its special dimensions.
+    """
+    if 1 <= structure.generic_mobility < structure.drives:
+        raise InputError(
+            "[[drives]]",
+            drives_against_mobility(structure.drives, structure.generic_mobility),
+            _("give as many drives as the mobility"),
+        )
 
 
 def _mobility(kinematics: Kinematics, assembled: Assembled) -> int:
