@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from math import hypot, inf
 
 from centrode.geometry import plane
 from centrode.geometry.plane import (
@@ -12,7 +12,6 @@ from centrode.geometry.plane import (
     Line,
     Pose,
     Vector,
-    add,
     along,
     cross,
     dot,
@@ -22,7 +21,6 @@ from centrode.geometry.plane import (
     meet_lines,
     pose_with_point,
     reversed_rotor,
-    rotor_of,
     subtract,
     turned,
 )
@@ -35,9 +33,11 @@ class Plane:
     """See `Space`; lengths are in metres, a guide's curve is a line: a point and a unit vector."""
 
     name = "plane"
+    coordinates = ("x", "y")
     axes = ("x", "y")
     unit = "m"
     crosses_once = True
+    lacks: frozenset[str] = frozenset()
     at_rest = AT_REST
 
     def place(self, m: Namespace, pose: Pose, local: Vector) -> Vector:
@@ -90,16 +90,16 @@ class Plane:
             return meet_circles(one.centre, one.radius, other.centre, other.radius, root)
         return meet_circle_and_line(one.centre, one.radius, other.through, other.direction, root)
 
-    def lack(self, m: Namespace, one: Circle | Line, other: Circle | Line) -> tuple[Number, Number]:
+    def lack(
+        self, m: Namespace, one: Circle | Line, other: Circle | Line
+    ) -> tuple[float, float, float, float]:
         assert isinstance(one, Circle)  # two lines always meet, or never
         if isinstance(other, Line):
             offset = cross(other.direction, subtract(one.centre, other.through))
-            return m.abs(offset) - m.abs(one.radius), -1.0
-        apart, radii = (
-            self.distance(m, one.centre, other.centre),
-            (m.abs(one.radius), m.abs(other.radius)),
-        )
-        return apart - (radii[0] + radii[1]), m.abs(radii[0] - radii[1]) - apart
+            return float(abs(offset) - abs(one.radius)), -inf, -inf, -inf
+        apart = float(self.distance(m, one.centre, other.centre))
+        first, second = abs(float(one.radius)), abs(float(other.radius))
+        return apart - first - second, first - second - apart, second - first - apart, -inf
 
     def distance(self, m: Namespace, a: Vector, b: Vector) -> Number:
         x, y = subtract(a, b)
@@ -151,10 +151,10 @@ class Plane:
         return direction, (-direction[0], -direction[1], cross(direction, arm))
 
     def moved_point(self, m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
-        return add(point, (by[0], by[1]))
+        return plane.moved_point(m, point, by)
 
     def moved_pose(self, m: Namespace, pose: Pose, by: Sequence[Number]) -> Pose:
-        return Pose(add(pose.origin, (by[0], by[1])), turned(pose.rotor, rotor_of(m, by[2])))
+        return plane.moved_pose(m, pose, by)
 
     def shifts(self, m: Namespace, at: Vector, scale: Number) -> Sequence[Row]:
         return (scale, 0.0, 0.0), (0.0, scale, 0.0), (0.0, 0.0, 1.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import atan2, tau
 from typing import NamedTuple
 
 from centrode.geometry import sphere
@@ -44,9 +45,11 @@ class Sphere:
     """See `Space`; lengths are arcs [rad], a guide's curve is a circle: its pole and (its arc,)."""
 
     name = "sphere"
+    coordinates = ("longitude", "latitude")
     axes = ("x", "y", "z")
     unit = "rad"
     crosses_once = False
+    lacks = frozenset({"gears", "rolling", "distance", "guided links"})
     at_rest = AT_REST
 
     def place(self, m: Namespace, pose: Attitude, local: Coordinates) -> Vector:
@@ -117,11 +120,11 @@ class Sphere:
                 return locus.centre  # a stop is a place already
         return sphere.meet_circles(one.centre, one.half, other.centre, other.half, root)
 
-    def lack(self, m: Namespace, one: Circle, other: Circle) -> tuple[Number, Number]:
-        apart = self.distance(m, one.centre, other.centre)
-        first, second = (2.0 * m.atan2(m.abs(half[0]), half[1]) for half in (one.half, other.half))
-        around = 2.0 * PI - first - second
-        return apart - m.min(first + second, around), m.abs(first - second) - apart
+    def lack(self, m: Namespace, one: Circle, other: Circle) -> tuple[float, float, float, float]:
+        apart = float(self.distance(m, one.centre, other.centre))
+        first, second = (2.0 * atan2(abs(float(half[0])), float(half[1])) for half in (one.half, other.half))
+        around = first + second + apart - tau
+        return apart - first - second, first - second - apart, second - first - apart, around
 
     def distance(self, m: Namespace, a: Vector, b: Vector) -> Number:
         return sphere.arc(m, a, b)
@@ -211,9 +214,6 @@ class Sphere:
         return times(scale, first), times(scale, second), at
 
 
-PI = 3.141592653589793
-
-
 def _half(m: Namespace, arc: Number) -> HalfArc:
     return m.sin(0.5 * arc), m.cos(0.5 * arc)
 
@@ -253,7 +253,8 @@ def _arms(
 def _chart(m: Namespace, pose: Attitude, local: Coordinates) -> tuple[Vector, Vector, Vector]:
     """Place of a link's point and two unit vectors square to it that are fixed in the link."""
     inside = unit_vector(m, local)
-    return (carried(pose, inside), *(carried(pose, axis) for axis in basis(m, inside)))
+    first, second = basis(m, inside)
+    return carried(pose, inside), carried(pose, first), carried(pose, second)
 
 
 def _away(m: Namespace, point: Vector, pole: Vector) -> Vector:

@@ -39,6 +39,10 @@ class Space(Protocol):
         """Name of the space in a description."""
 
     @property
+    def coordinates(self) -> tuple[str, str]:
+        """Names of the coordinates in a link's own axes."""
+
+    @property
     def axes(self) -> tuple[str, ...]:
         """Names of the components of a place."""
 
@@ -49,6 +53,10 @@ class Space(Protocol):
     @property
     def crosses_once(self) -> bool:
         """Whether the curves of two guides meet in one place, not in two."""
+
+    @property
+    def lacks(self) -> frozenset[str]:
+        """What a description may name and the space has no formulas for: gears, rolling, distance, guided links."""
 
     @property
     def at_rest(self) -> Pose:
@@ -98,8 +106,12 @@ class Space(Protocol):
     def meet(self, one: Locus, other: Locus, root: Root, divisor: Root) -> Place:
         """Where two loci meet; circles of links stand first."""
 
-    def lack(self, m: Namespace, one: Locus, other: Locus) -> tuple[Number, Number]:
-        """By how much two loci are too far from each other, and too near, to meet: negative where they do."""
+    def lack(self, m: Namespace, one: Locus, other: Locus) -> tuple[float, float, float, float]:
+        """By how much two loci fail to meet, positive for the reason.
+
+        Both together too short; the first too long for the second, and the other way round; both together too
+        long, as only circles on the sphere can be.
+        """
 
     # measures
 
@@ -156,4 +168,7 @@ class Space(Protocol):
         """A link moved by its three coordinates."""
 
     def shifts(self, m: Namespace, at: Place, scale: Number) -> Sequence[Row]:
-        """Coordinates of three small motions of a link: shifts of a point of it by `scale`, and a turn about it."""
+        """Coordinates of three small motions of a link one of whose points is at a place.
+
+        Shifts by `scale` in two directions, and a turn of 1 rad: about the point, in the plane about the origin.
+        """
