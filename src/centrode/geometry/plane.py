@@ -23,6 +23,20 @@ class Pose(NamedTuple):
     rotor: Vector
 
 
+class Circle(NamedTuple):
+    """Locus of an unknown vector: a circle."""
+
+    centre: Vector
+    radius: Number
+
+
+class Line(NamedTuple):
+    """Locus of an unknown vector: a line with a unit direction."""
+
+    through: Vector
+    direction: Vector
+
+
 AT_REST = Pose((0.0, 0.0), (1.0, 0.0))
 """Pose of the frame."""
 

@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Side: TypeAlias = npt.NDArray[np.int8]
@@ -38,9 +37,9 @@ class NodeTurns:
         return self.turns[:, node] + passed
 
 
-def node_turns(positions: Positions, link: str, initial: float, start: int, nodes: int) -> NodeTurns:
-    """Turns of a link on a mesh of so many nodes; `initial` [rad] is its angle near the node `start`."""
-    cosine, sine = (_on_mesh(x, nodes) for x in positions.poses[link].rotor)
+def node_turns(rotor: tuple[object, object], initial: float, start: int, nodes: int) -> NodeTurns:
+    """Turns of an angle on a mesh of so many nodes; `initial` [rad] is its value near the node `start`."""
+    cosine, sine = (_on_mesh(x, nodes) for x in rotor)
     cosine, sine = _bridged(cosine, sine, start)
     below = _below(sine)
     turns = np.zeros(cosine.shape, dtype=np.int32)

@@ -11,6 +11,7 @@ import numpy as np
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
+from centrode.geometry.space import Space
 from centrode.kinematics.closure import shortfall
 from centrode.kinematics.evaluate import Choices, Hooks, Kinematics
 from centrode.kinematics.fitting import check_fit
@@ -21,9 +22,11 @@ from centrode.kinematics.sides import (
     angle_off,
     check_opens,
     check_sides,
+    is_measured,
     side_by_angles,
     side_choice,
     stated_side,
+    turned_apart,
 )
 from centrode.locale import _
 from centrode.structure.groups import Aim, Group, Meet, Newton, TwoPointLink, links_of, points_of
@@ -117,12 +120,16 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
     """Solve a group on the side that the description means; returns its sign."""
     options = {sign: _option(kinematics, group, at, sign, bound) for sign in (1.0, -1.0)}
     stated = stated_side(kinematics, group)
-    flat = _distance(group, *options.values()) < DEGENERATE * float(kinematics.numbers.scale)
+    left, right = options.values()
+    apart = _distance(kinematics.numbers.space, group, left, right)
+    flat = apart < DEGENERATE * float(kinematics.numbers.scale)
     if stated is None and flat:
         raise InputError(
             name_of(group),
             _("its triangle is flat in the initial position, so both assemblies meet there"),
-            _("say on which side it goes on: [assembly] sides, {word}").format(word=side_choice(group)),
+            _("say on which side it goes on: [assembly] sides, {word}").format(
+                word=side_choice(kinematics.numbers.space, group)
+            ),
         )
     sign = stated if stated is not None else side_by_angles(kinematics, group, options)
     at.points.update(options[sign].points)
@@ -160,23 +167,21 @@ class _OneSide(Hooks):
         return self.sign * np.sqrt(max(radicand, 0.0))
 
 
-def _distance(group: Group, one: Positions, other: Positions) -> float:
-    """How far apart the two assemblies of a group are [m]."""
-    apart = [np.hypot(*np.subtract(one.points[p], other.points[p])) for p in points_of(group)]
+def _distance(space: Space, group: Group, one: Positions, other: Positions) -> float:
+    """How far apart the two assemblies of a group are."""
+    apart = [np.linalg.norm(np.subtract(one.points[p], other.points[p])) for p in points_of(group)]
     if isinstance(group, Aim):
-        arm = one.points[group.target][0] - one.points[group.pivot][0]
-        arm = np.hypot(arm, one.points[group.target][1] - one.points[group.pivot][1])
-        turn = np.subtract(one.poses[group.link].rotor, other.poses[group.link].rotor)
-        apart.append(arm * np.hypot(*turn))
+        arm = np.linalg.norm(np.subtract(one.points[group.target], one.points[group.pivot]))
+        apart.append(arm * turned_apart(space, group.link, one, other))
     return float(max(apart, default=0.0))
 
 
 def _check_angles(kinematics: Kinematics, group: Group, at: Positions) -> None:
     for link in links_of(group):
         angle = kinematics.structure.mechanism.links[link].angle
-        if angle is None or link not in at.poses:
+        if angle is None or link not in at.poses or not is_measured(kinematics.numbers, at, link):
             continue
-        difference = angle_off(angle, at, link)
+        difference = angle_off(kinematics.numbers, angle, at, link)
         if abs(difference) > ANGLE_TOLERANCE:
             raise InputError(
                 f"[links.{link}] angle",
@@ -196,7 +201,8 @@ def _check_apart(kinematics: Kinematics, group: Group) -> None:
         pairs = [(group.link, group.first, group.second)]
     for link, first, second in pairs:
         local = kinematics.numbers.local[link]
-        if np.hypot(*np.subtract(local[first], local[second])) <= DEGENERATE * kinematics.numbers.scale:
+        leverage = kinematics.numbers.space.leverage(ARRAYS, local[first], local[second])
+        if leverage <= DEGENERATE * kinematics.numbers.scale:
             raise InputError(
                 f"[links.{link}]",
                 _("points {first} and {second} coincide, so they do not tell how the link turns").format(
@@ -208,7 +214,7 @@ def _check_apart(kinematics: Kinematics, group: Group) -> None:
 
 def _check_finite(group: Group, at: Positions) -> None:
     values = [x for p in points_of(group) for x in at.points[p]]
-    values += [x for link in links_of(group) for x in at.poses[link].rotor]
+    values += [x for link in links_of(group) for vector in at.poses[link] for x in vector]
     if not all(np.isfinite(float(x)) for x in values):
         raise _undetermined(group)
 
@@ -231,7 +237,7 @@ def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:
         if drive.kind == "angle" and drive.relative_to == "frame" and drive.link is not None:
             named[drive.link] = float(at.drives[drive.id])
     angles = {}
-    for link in mechanism.links:
-        near = at.angles.get(link, named[link])
-        angles[link] = (near or 0.0) + angle_off(near or 0.0, at, link)
+    for link in kinematics.numbers.ends:
+        near = at.angles.get(link, named[link]) or 0.0
+        angles[link] = near + angle_off(kinematics.numbers, near, at, link)
     return angles

@@ -2,45 +2,51 @@
 
 from __future__ import annotations
 
-from math import hypot
-from typing import cast
-
 from centrode.algebra.arrays import ARRAYS
-from centrode.geometry.plane import cross, subtract
-from centrode.kinematics.groups import Circle, Line, aim_line, loci_of
+from centrode.kinematics.groups import aim_curve, loci_of
 from centrode.locale import _
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Meet
+from centrode.structure.groups import Aim, Group, Meet, Rail
 from centrode.structure.positions import Positions
 
 
 def shortfall(group: Group, numbers: Dimensions, at: Positions) -> str:
-    """The sentence that says what is too short or too long, and by how much [m]."""
+    """The sentence that says what is too short or too long, and by how much."""
     if isinstance(group, Aim):
-        pivot = numbers.local[group.link][group.pivot]
-        through, direction = aim_line(group, numbers)
-        offset = abs(float(cross(direction, subtract(through, pivot))))
-        reach = hypot(*subtract(at.points[group.target], at.points[group.pivot]))
-        return _("the offset of guide {guide} exceeds the distance {a}-{b} by {by:.4g} m").format(
-            guide=group.guide, a=group.pivot, b=group.target, by=offset - reach
-        )
+        return _of_aim(group, numbers, at)
     assert isinstance(group, Meet)
     one, other = loci_of(group, ARRAYS, numbers, at)
-    first = group.rods[0]
-    if isinstance(one, Circle) and isinstance(other, Circle):
-        second = group.rods[1]
-        apart = hypot(*subtract(one.centre, other.centre))
-        radii = abs(float(one.radius)), abs(float(other.radius))
-        if apart > sum(radii):
-            return _("links {a} and {b} together are too short by {by:.4g} m").format(
-                a=first.link, b=second.link, by=apart - sum(radii)
-            )
-        longer, shorter = (first, second) if radii[0] > radii[1] else (second, first)
-        return _("link {a} is too long for link {b} by {by:.4g} m").format(
-            a=longer.link, b=shorter.link, by=abs(radii[0] - radii[1]) - apart
-        )
-    circle, line = cast(Circle, one), cast(Line, other)
-    offset = abs(float(cross(line.direction, subtract(circle.centre, line.through))))
-    return _("link {a} is too short to reach its guide by {by:.4g} m").format(
-        a=first.link, by=offset - abs(float(circle.radius))
+    lack = numbers.space.lack(ARRAYS, one, other)
+    by = f"{max(lack):.4g} {numbers.space.unit}"
+    reason = lack.index(max(lack))
+    links = [rod.link for rod in group.rods]
+    if len(links) == 2:
+        return _of_two_links(reason, (links[0], links[1]), by)
+    if len(links) == 1:
+        if reason in (1, 3):
+            return _("link {a} is too long for its guide by {by}").format(a=links[0], by=by)
+        return _("link {a} is too short to reach its guide by {by}").format(a=links[0], by=by)
+    guides = [locus.guide for locus in group.loci if isinstance(locus, Rail)]
+    return _("guides {names} do not meet by {by}").format(names=_(" and ").join(guides), by=by)
+
+
+def _of_aim(group: Aim, numbers: Dimensions, at: Positions) -> str:
+    space = numbers.space
+    pivot = space.place(ARRAYS, space.at_rest, numbers.local[group.link][group.pivot])
+    offset = space.reach(ARRAYS, aim_curve(group, numbers), pivot)
+    by = float(offset - space.distance(ARRAYS, at.points[group.target], at.points[group.pivot]))
+    if by <= 0.0:  # only circles can be too near as well
+        return _("guide {guide} does not reach as far as {b}").format(guide=group.guide, b=group.target)
+    return _("the offset of guide {guide} exceeds the distance {a}-{b} by {by}").format(
+        guide=group.guide, a=group.pivot, b=group.target, by=f"{by:.4g} {space.unit}"
     )
+
+
+def _of_two_links(reason: int, links: tuple[str, str], by: str) -> str:
+    first, second = links
+    if reason == 0:
+        return _("links {a} and {b} together are too short by {by}").format(a=first, b=second, by=by)
+    if reason == 3:
+        return _("links {a} and {b} together are too long by {by}").format(a=first, b=second, by=by)
+    longer, shorter = (first, second) if reason == 1 else (second, first)
+    return _("link {a} is too long for link {b} by {by}").format(a=longer, b=shorter, by=by)

@@ -17,7 +17,6 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
-from centrode.geometry.plane import Pose
 from centrode.kinematics.anchors import Anchors
 from centrode.kinematics.branches import Branches
 from centrode.kinematics.evaluate import Hooks, Kinematics
@@ -27,7 +26,7 @@ from centrode.kinematics.surroundings import Surroundings
 from centrode.kinematics.tracing import trace
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import links_of, points_of
-from centrode.structure.positions import Positions
+from centrode.structure.positions import Positions, mapped_pose
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -195,7 +194,7 @@ def _numbers(kinematics: Kinematics, group: int, at: Positions) -> list[Number]:
     which = kinematics.structure.groups[group]
     numbers = [x for point in points_of(which) for x in at.points[point]]
     for link in links_of(which):
-        numbers += [*at.poses[link].origin, *at.poses[link].rotor]
+        numbers += [x for vector in at.poses[link] for x in vector]
     return numbers + [at.angles[link] for link in links_of(which) if link in at.angles]
 
 
@@ -203,9 +202,9 @@ def _set_numbers(kinematics: Kinematics, group: int, at: Positions, numbers: lis
     which = kinematics.structure.groups[group]
     rest = iter(numbers)
     for point in points_of(which):
-        at.points[point] = (next(rest), next(rest))
+        at.points[point] = tuple(next(rest) for _old in at.points[point])
     for link in links_of(which):
-        at.poses[link] = Pose((next(rest), next(rest)), (next(rest), next(rest)))
+        at.poses[link] = mapped_pose(at.poses[link], lambda _old: next(rest))
     for link in links_of(which):
         if link in at.angles:
             at.angles[link] = next(rest)

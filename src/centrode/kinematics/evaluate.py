@@ -98,7 +98,7 @@ class Kinematics:
 
     def frame(self, m: Namespace, parameter: Number) -> Positions:
         """What is known before the first group of the plan."""
-        return Positions.of_frame(self.numbers, self.path.drive_values(m, parameter))
+        return Positions.of_frame(self.numbers, self.path.drive_values(m, parameter), m)
 
     def advance(self, at: Positions, groups: range, m: Namespace, hooks: Hooks) -> None:
         """Add what a stretch of the plan gives, the groups before it being known."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import Kinematics
 from centrode.locale import _
@@ -32,7 +31,8 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
                 drives_against_mobility(structure.drives, structure.generic_mobility),
                 _("give as many drives as the mobility"),
             )
-        off, unit = (value, "rad") if angular else (value * float(kinematics.numbers.scale), "m")
+        space = kinematics.numbers.space
+        off, unit = (value, "rad") if angular else (value * float(kinematics.numbers.scale), space.unit)
         raise InputError(
             label,
             _("the initial position does not assemble: this constraint is off by {off:.3g} {unit}").format(
@@ -52,11 +52,15 @@ def length_misfits(kinematics: Kinematics, at: Positions) -> dict[str, float]:
     Their constraints do not tell: such a link is stretched to fit.
     """
     misfits = {}
+    space = kinematics.numbers.space
     for group in kinematics.structure.groups:
         if isinstance(group, TwoPointLink):
             local = kinematics.numbers.local[group.link]
-            given = np.hypot(*np.subtract(local[group.first], local[group.second]))
-            reached = np.hypot(*np.subtract(at.points[group.first], at.points[group.second]))
+            first, second = (
+                space.place(ARRAYS, space.at_rest, local[point]) for point in (group.first, group.second)
+            )
+            given = space.distance(ARRAYS, first, second)
+            reached = space.distance(ARRAYS, at.points[group.first], at.points[group.second])
             label = _("length of link {link}").format(link=group.link)
             misfits[label] = float(abs(reached - given)) / float(kinematics.numbers.scale)
     return misfits

@@ -6,29 +6,23 @@ Each takes the positions known before it and adds its own; where a formula has s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
 from centrode.geometry.plane import (
+    Circle,
+    Line,
     Pose,
-    Root,
     Vector,
     add,
-    aim,
-    along,
-    length_of,
-    meet_circle_and_line,
-    meet_circles,
-    meet_lines,
     place,
-    pose_by_two_points,
     pose_with_point,
     reversed_rotor,
     rotor_of,
     subtract,
     turned,
 )
+from centrode.geometry.space import Curve, Root
+from centrode.geometry.space import Pose as AnyPose
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import (
     Aim,
@@ -45,26 +39,10 @@ from centrode.structure.groups import (
     Turning,
     TwoPointLink,
 )
-from centrode.structure.positions import Positions, line_of
+from centrode.structure.positions import Positions
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
-
-
-@dataclass(frozen=True)
-class Circle:
-    """Locus of the unknown vector: a circle."""
-
-    centre: Vector
-    radius: Number
-
-
-@dataclass(frozen=True)
-class Line:
-    """Locus of the unknown vector: a line with a unit direction."""
-
-    through: Vector
-    direction: Vector
 
 
 class Choices(Protocol):
@@ -86,52 +64,68 @@ class Choices(Protocol):
 def solve_group(group: Group, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> None:
     """Add the places of a group's points and links to the positions."""
     if isinstance(group, RigidPoint):
-        at.points[group.point] = place(at.poses[group.link], numbers.local[group.link][group.point])
+        local = numbers.local[group.link][group.point]
+        at.points[group.point] = numbers.space.place(m, at.poses[group.link], local)
     elif isinstance(group, TwoPointLink):
-        _two_points(group.link, group.first, group.second, numbers, at)
+        _two_points(group.link, group.first, group.second, m, numbers, at)
     elif isinstance(group, TurnedLink):
-        local = numbers.local[group.link][group.pivot]
-        rotor = turning_rotor(group.turning, group.link, m, numbers, at)
-        at.poses[group.link] = pose_with_point(local, at.points[group.pivot], rotor)
+        at.poses[group.link] = _turned_link(group, m, numbers, at)
     elif isinstance(group, Aim):
-        _aim(group, numbers, at, choices.root)
+        _aim(group, m, numbers, at, choices.root)
     elif isinstance(group, Meet):
         _meet(group, m, numbers, at, choices)
     elif isinstance(group, Newton):
         choices.higher(m, at)
 
 
-def turning_rotor(turning: Turning, link: str, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
-    """Rotor of a link whose angle a drive or a guide gives against a body that is known."""
+def _difference(turning: Turning, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
+    """Rotor from the body that a turning is relative to, to its link."""
     if turning.drive is not None:
-        difference = rotor_of(m, at.drives[turning.drive])
-    else:
-        difference = numbers.turn[turning.guide or ""]
+        return rotor_of(m, at.drives[turning.drive])
+    return numbers.turn[turning.guide or ""]
+
+
+def _turned_link(group: TurnedLink, m: Namespace, numbers: Dimensions, at: Positions) -> AnyPose:
+    turning = group.turning
+    rotor, reference = _difference(turning, m, numbers, at), numbers.reference(turning.link)
+    base = turning.relative_to
+    if group.link != turning.link:  # it is the base that is unknown
+        rotor, base = reversed_rotor(rotor), turning.link
+        reference = reference and reference[2:] + reference[:2]
+    local = numbers.local[group.link][group.pivot]
+    return numbers.space.turned_pose(m, at.poses[base], rotor, local, at.points[group.pivot], reference)
+
+
+def turning_rotor(turning: Turning, link: str, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
+    """Rotor of a link whose angle a drive or a guide gives against a body that is known, in the plane."""
+    difference = _difference(turning, m, numbers, at)
     if link == turning.link:
         return turned(at.poses[turning.relative_to].rotor, difference)
     return turned(at.poses[turning.link].rotor, reversed_rotor(difference))
 
 
-def _two_points(link: str, first: str, second: str, numbers: Dimensions, at: Positions) -> None:
+def _two_points(link: str, first: str, second: str, m: Namespace, numbers: Dimensions, at: Positions) -> None:
     local = numbers.local[link]
-    at.poses[link] = pose_by_two_points(local[first], local[second], at.points[first], at.points[second])
+    at.poses[link] = numbers.space.pose_by_two_points(
+        m, local[first], local[second], at.points[first], at.points[second]
+    )
 
 
-def aim_line(group: Aim, numbers: Dimensions) -> tuple[Vector, Vector]:
-    """Line of the aimed link on which the target lies, in the link's axes."""
+def aim_curve(group: Aim, numbers: Dimensions) -> Curve:
+    """Curve of the aimed link on which the target lies, in the link's axes."""
+    if group.block is None or group.sliding is None:
+        return numbers.curve(group.guide)
+    # the block keeps its angle to the aimed link, so its pivot runs on a parallel of the guide
     through, direction = numbers.through[group.guide], numbers.direction[group.guide]
-    if group.block is not None and group.sliding is not None:
-        # the block keeps its angle to the aimed link, so its pivot runs on a parallel of the guide
-        inside = numbers.local[group.block]
-        shift = subtract(inside[group.target], inside[group.sliding])
-        through = add(through, turned(shift, numbers.turn[group.guide]))
-    return through, direction
+    inside = numbers.local[group.block]
+    shift = subtract(inside[group.target], inside[group.sliding])
+    return add(through, turned(shift, numbers.turn[group.guide])), direction
 
 
-def _aim(group: Aim, numbers: Dimensions, at: Positions, root: Root) -> None:
-    through, direction = aim_line(group, numbers)
-    pivot = numbers.local[group.link][group.pivot]
-    pose = aim(pivot, at.points[group.pivot], through, direction, at.points[group.target], root)
+def _aim(group: Aim, m: Namespace, numbers: Dimensions, at: Positions, root: Root) -> None:
+    pivot, target = at.points[group.pivot], at.points[group.target]
+    local, curve = numbers.local[group.link][group.pivot], aim_curve(group, numbers)
+    pose = numbers.space.aim(m, local, pivot, curve, target, root)
     at.poses[group.link] = pose
     if group.block is not None and group.sliding is not None:
         rotor = turned(pose.rotor, numbers.turn[group.guide])
@@ -154,8 +148,8 @@ def _arms(group: Meet, numbers: Dimensions, rotor: Vector | None) -> dict[str, V
     return {point: turned(local[point], rotor) for point in group.points}
 
 
-def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions) -> list[Circle | Line]:
-    """The two loci of a group's unknown vector, circles first."""
+def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions) -> list[Any]:
+    """The two loci of a group's unknown vector, circles of links first."""
     rotor = _carriage_rotor(group, m, numbers, at)
     arms = _arms(group, numbers, rotor)
     return [_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci]
@@ -164,24 +158,14 @@ def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions) -> li
 def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> None:
     rotor = _carriage_rotor(group, m, numbers, at)
     arms = _arms(group, numbers, rotor)
-    loci = [_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci]
-    vector = _where_they_meet(loci, choices)
+    one, other = (_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci)
+    vector = numbers.space.meet(one, other, choices.root, choices.divisor)
     if group.carriage is not None and rotor is not None:
         at.poses[group.carriage] = Pose(vector, rotor)
     for point in group.points:
         at.points[point] = vector if rotor is None else add(vector, arms[point])
     for rod in group.rods:
-        _two_points(rod.link, rod.centre, rod.point, numbers, at)
-
-
-def _where_they_meet(loci: Sequence[Circle | Line], choices: Choices) -> Vector:
-    one, other = loci
-    if isinstance(one, Circle):
-        if isinstance(other, Circle):
-            return meet_circles(one.centre, one.radius, other.centre, other.radius, choices.root)
-        return meet_circle_and_line(one.centre, one.radius, other.through, other.direction, choices.root)
-    assert isinstance(other, Line)  # circles stand first
-    return meet_lines(one.through, one.direction, other.through, other.direction, choices.divisor)
+        _two_points(rod.link, rod.centre, rod.point, m, numbers, at)
 
 
 def _locus(
@@ -191,20 +175,29 @@ def _locus(
     at: Positions,
     arms: dict[str, Vector],
     rotor: Vector | None,
-) -> Circle | Line:
+) -> Any:
     """Locus of the group's unknown vector: that of the point, moved back by the point's arm on the carriage."""
+    found = _of_point(locus, m, numbers, at, rotor)
+    if rotor is None:
+        return found
+    arm = arms.get(locus.point, (0.0, 0.0))
+    if isinstance(found, Circle):
+        return Circle(subtract(found.centre, arm), found.radius)
+    return Line(subtract(found.through, arm), found.direction)
+
+
+def _of_point(locus: Locus, m: Namespace, numbers: Dimensions, at: Positions, rotor: Vector | None) -> Any:
+    """Locus of a point of the group; of the unknown vector itself, if it is a slot of the carriage."""
     if isinstance(locus, Rod):
         local = numbers.local[locus.link]
-        # the sign of a two-point link's length depends on which end is known; circles do not feel it
-        radius = length_of(m, subtract(local[locus.point], local[locus.centre]))
-        return Circle(subtract(at.points[locus.centre], arms[locus.point]), radius)
-    if isinstance(locus, Slot) and rotor is not None:
+        return numbers.space.circle(m, at.points[locus.centre], local[locus.centre], local[locus.point])
+    if isinstance(locus, Slot):
+        assert rotor is not None
         arm = turned(numbers.through[locus.guide], rotor)
         direction = turned(numbers.direction[locus.guide], rotor)
         return Line(subtract(at.points[locus.point], arm), direction)
     assert isinstance(locus, (Rail, Stop))
-    through, direction = line_of(numbers, at, locus.guide, locus.on)
-    if isinstance(locus, Stop):
-        through = along(through, direction, at.drives[locus.drive])
-        direction = (-direction[1], direction[0])
-    return Line(subtract(through, arms[locus.point]), direction)
+    pose, curve = at.poses[locus.on], numbers.curve(locus.guide)
+    if isinstance(locus, Rail):
+        return numbers.space.rail(m, pose, curve)
+    return numbers.space.stop(m, pose, curve, at.drives[locus.drive])

@@ -154,6 +154,8 @@ def _drawn_value(mechanism: Mechanism, drive: Drive) -> float | None:
     if drive.kind != "angle" or drive.link is None:
         return None
     angle = mechanism.links[drive.link].angle
+    if mechanism.links[drive.link].reference is not None:
+        return angle  # it is measured where the drive's is
     reference = 0.0 if drive.relative_to == "frame" else mechanism.initial_angle(drive.relative_to)
     return None if angle is None or reference is None else angle - reference
 

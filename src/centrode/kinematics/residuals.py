@@ -1,4 +1,4 @@
-"""How well every constraint holds at every sample, redundant constraints and the unit length of rotors included."""
+"""How well every constraint holds at every sample, redundant constraints and the unit length of axes included."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import Status
 from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.sampling import Samples, positions_from, settle
+from centrode.kinematics.layout import positions_from
+from centrode.kinematics.sampling import Samples, settle
 from centrode.locale import _
 from centrode.structure.constraints import Constraint
 from centrode.structure.positions import Positions
@@ -27,7 +28,7 @@ CLOSED = 1e-7
 
 @dataclass(frozen=True)
 class UnitLength:
-    """What a link's direction keeps: the length of its unit vector, that is, the distances within the link."""
+    """What a link's axes keep: their unit length, that is, the distances within the link."""
 
     link: str
 
@@ -59,14 +60,14 @@ def residuals(kinematics: Kinematics, samples: Samples, parameter: Array) -> tup
 
 def _each(kinematics: Kinematics, at: Positions) -> Iterator[tuple[Kept, Array]]:
     """Every constraint, drives included, with the size of its residual."""
-    scale = kinematics.numbers.scale
+    scale, space = kinematics.numbers.scale, kinematics.numbers.space
     for constraint in kinematics.structure.constraints:
         unit = 1.0 if constraint.angular else scale
         size = [np.abs(r) for r in constraint.residual(ARRAYS, kinematics.numbers, at)]
         yield constraint, functools.reduce(np.maximum, size) / unit
     for link in kinematics.structure.mechanism.links:
-        rotor = at.poses[link].rotor
-        yield UnitLength(link), np.abs(rotor[0] * rotor[0] + rotor[1] * rotor[1] - 1.0)
+        stretch = [np.abs(x) for x in space.stretch(space.attitude(at.poses[link]))]
+        yield UnitLength(link), functools.reduce(np.maximum, stretch)
 
 
 def open_what_does_not_close(samples: Samples, residual: Array) -> None:

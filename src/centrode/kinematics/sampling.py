@@ -1,7 +1,7 @@
 """Values and derivatives at samples of the path, with a status for each.
 
-Arrays are ordered (derivative, column, lane, sample): columns are the coordinates of moving points, the
-rotors of links and the displacements of guides; lanes are the mechanisms of a batch.
+Arrays are ordered (derivative, column, lane, sample): what the columns hold, the layout says; lanes are the
+mechanisms of a batch.
 """
 
 from __future__ import annotations
@@ -12,17 +12,16 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import SAFETY
 from centrode.errors import Status
-from centrode.geometry.plane import Pose, dot, subtract, turned
 from centrode.kinematics.continuation import Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import guard_with_bound
 from centrode.kinematics.higher import Judged
+from centrode.kinematics.layout import Layout
 from centrode.kinematics.paths import JETS
-from centrode.structure.positions import Positions, line_of
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -33,30 +32,6 @@ ORDERS = 3
 """Value, first and second derivative."""
 SUSPECT = 1e-8
 """Radicands below this fraction of their greatest value are compared with their rounding error."""
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Which column of the arrays holds what."""
-
-    points: tuple[str, ...]
-    links: tuple[str, ...]
-    guides: tuple[str, ...]
-
-    @property
-    def width(self) -> int:
-        """Number of columns."""
-        return 2 * len(self.points) + 2 * len(self.links) + len(self.guides)
-
-    @property
-    def first_rotor(self) -> int:
-        """Column of the first link's rotor."""
-        return 2 * len(self.points)
-
-    @property
-    def first_slide(self) -> int:
-        """Column of the first guide's displacement."""
-        return self.first_rotor + 2 * len(self.links)
 
 
 @dataclass
@@ -78,16 +53,6 @@ class Samples:
         with np.errstate(all="ignore"):
             complete: Mask = np.isfinite(self.columns.sum(axis=(0, 1)))
         return complete if complete.all() else np.asarray(np.isfinite(self.columns).all(axis=(0, 1)))
-
-
-def layout_of(kinematics: Kinematics) -> Layout:
-    """Columns for a mechanism: moving points, links and guides in description order."""
-    mechanism = kinematics.structure.mechanism
-    return Layout(
-        tuple(mechanism.moving_points),
-        tuple(mechanism.links),
-        tuple(guide.id for guide in mechanism.guides),
-    )
 
 
 def evaluate_columns(continuation: Continuation, layout: Layout, parameter: Array, columns: Array) -> Judging:
@@ -146,23 +111,13 @@ def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Ar
 
 
 def _fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
-    numbers: list[Number] = [x for point in layout.points for x in at.points[point]]
-    numbers += [x for link in layout.links for x in at.poses[link].rotor]
-    numbers += [_slide(kinematics, at, guide) for guide in layout.guides]
-    for k, number in enumerate(numbers):
+    for k, number in enumerate(layout.numbers(JETS, kinematics.numbers, at)):
         if isinstance(number, Jet):
             columns[0, k], columns[1, k] = number.coefficients[:2]
             np.multiply(number.coefficients[2], 2.0, out=columns[2, k])  # Taylor coefficients are over k!
         else:
             columns[0, k] = number
             columns[1:, k] = 0.0
-
-
-def _slide(kinematics: Kinematics, at: Positions, guide_id: str) -> Number:
-    """Displacement of a guide's point along its line, from the point the line goes through."""
-    guide = kinematics.structure.mechanism.guide(guide_id)
-    through, direction = line_of(kinematics.numbers, at, guide_id, guide.on)
-    return dot(direction, subtract(at.points[guide.point], through))
 
 
 def sample(continuation: Continuation, parameter: Array, samples: Samples) -> None:
@@ -184,17 +139,3 @@ def settle(samples: Samples) -> None:
     samples.columns[:, :, (samples.status == Status.OPEN) | (samples.status == Status.UNCONVERGED)] = np.nan
     samples.columns[1:, :, samples.status == Status.SINGULAR] = np.nan
     samples.columns[~np.isfinite(samples.columns)] = np.nan
-
-
-def positions_from(kinematics: Kinematics, layout: Layout, values: Array, parameter: Array) -> Positions:
-    """Positions as plain arrays from the values of the columns (columns first), to evaluate constraints on."""
-    numbers = kinematics.numbers
-    at = Positions.of_frame(numbers, kinematics.path.drive_values(ARRAYS, parameter))
-    for k, point in enumerate(layout.points):
-        at.points[point] = (values[2 * k], values[2 * k + 1])
-    for k, link in enumerate(layout.links):
-        column = layout.first_rotor + 2 * k
-        rotor = (values[column], values[column + 1])
-        point, local = next(iter(numbers.local[link].items()))
-        at.poses[link] = Pose(subtract(at.points[point], turned(local, rotor)), rotor)
-    return at

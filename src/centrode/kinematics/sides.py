@@ -7,10 +7,14 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
+from centrode.geometry.space import Space
 from centrode.kinematics.evaluate import FixedSigns, Kinematics
+from centrode.kinematics.layout import rotor_of_angle
 from centrode.locale import _
+from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet, Newton, links_of, points_of
 from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
@@ -33,11 +37,12 @@ def stated_side(kinematics: Kinematics, group: Group) -> float | None:
     if not said:
         return None
     name, word = said[0]
-    if word not in side_words(group):
+    space = kinematics.numbers.space
+    if word not in side_words(space, group):
         raise InputError(
             f"[assembly] sides.{name}",
             _("{word} does not apply to a group {kind}").format(word=f'"{word}"', kind=group.kind),
-            _("write {words}").format(words=side_choice(group)),
+            _("write {words}").format(words=side_choice(space, group)),
         )
     return SIDES[word]
 
@@ -47,14 +52,15 @@ def side_names(group: Group) -> tuple[str, ...]:
     return (group.guide, group.target) if isinstance(group, Aim) else points_of(group)
 
 
-def side_words(group: Group) -> tuple[str, str]:
-    """The words that tell the sides of a group."""
-    return ("left", "right") if isinstance(group, Meet) and group.kind == "RRR" else ("ahead", "behind")
+def side_words(space: Space, group: Group) -> tuple[str, str]:
+    """The words that tell the sides of a group: of the line between two centres, or along a line."""
+    between_centres = isinstance(group, Meet) and group.kind == "RRR"
+    return ("left", "right") if between_centres or not space.crosses_once else ("ahead", "behind")
 
 
-def side_choice(group: Group) -> str:
+def side_choice(space: Space, group: Group) -> str:
     """How a side of the group is written."""
-    first, second = side_words(group)
+    first, second = side_words(space, group)
     return f'{side_names(group)[0]} = "{first}" | "{second}"'
 
 
@@ -66,26 +72,31 @@ def side_by_angles(kinematics: Kinematics, group: Group, options: dict[float, Po
         link: links[link].angle
         for link in links_of(group)
         # a link that points the same way in both assemblies tells nothing
-        if links[link].angle is not None and _turned_apart(link, left, right)
+        if links[link].angle is not None
+        and is_measured(kinematics.numbers, left, link)
+        and turned_apart(kinematics.numbers.space, link, left, right) > DEGENERATE
     }
     if not hints:
         raise InputError(
             name_of(group),
             _("nothing says on which side it is assembled"),
             _("give the initial angle of {links}, or [assembly] sides, {words}").format(
-                links=_(" or ").join(links_of(group)), words=side_choice(group)
+                links=_(" or ").join(links_of(group)), words=side_choice(kinematics.numbers.space, group)
             ),
         )
     misfit = {
-        sign: sum(abs(angle_off(hint or 0.0, option, link)) for link, hint in hints.items())
+        sign: sum(
+            abs(angle_off(kinematics.numbers, hint or 0.0, option, link)) for link, hint in hints.items()
+        )
         for sign, option in options.items()
     }
     return min(misfit, key=misfit.__getitem__)
 
 
-def _turned_apart(link: str, one: Positions, other: Positions) -> bool:
-    apart = np.subtract(one.poses[link].rotor, other.poses[link].rotor)
-    return bool(np.hypot(*apart) > DEGENERATE)
+def turned_apart(space: Space, link: str, one: Positions, other: Positions) -> float:
+    """How far a link is turned from one position to another: the length of the difference of its axes."""
+    first, second = (space.attitude(at.poses[link]) for at in (one, other))
+    return float(np.linalg.norm(np.subtract(first, second)))
 
 
 def check_sides(kinematics: Kinematics) -> None:
@@ -121,7 +132,12 @@ def check_opens(kinematics: Kinematics, index: int, signs: dict[int, float]) -> 
         )
 
 
-def angle_off(angle: float, at: Positions, link: str) -> float:
+def is_measured(numbers: Dimensions, at: Positions, link: str) -> bool:
+    """Whether everything that a link's angle is measured between has a place already."""
+    return link in numbers.ends and all(end in at.points for end in numbers.ends[link])
+
+
+def angle_off(numbers: Dimensions, angle: float, at: Positions, link: str) -> float:
     """By how much a link is turned from an angle, in (-pi, pi]."""
-    cosine, sine = at.poses[link].rotor
+    cosine, sine = rotor_of_angle(ARRAYS, numbers, at, link)
     return remainder(float(np.arctan2(sine, cosine)) - angle, tau)

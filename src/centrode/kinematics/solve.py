@@ -9,17 +9,20 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError, Status
 from centrode.kinematics.angles import angle_and_rates, node_turns
 from centrode.kinematics.branches import Branches, Event, branches_at_start
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan, mesh_of
+from centrode.kinematics.layout import Layout, layout_of, rotor_of_angle
 from centrode.kinematics.paths import in_time
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
-from centrode.kinematics.sampling import ORDERS, Layout, Samples, layout_of, sample, settle
+from centrode.kinematics.sampling import ORDERS, Samples, sample, settle
 from centrode.kinematics.spans import Span, span_of
+from centrode.kinematics.spins import spins_of
 from centrode.locale import _
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import Positions
@@ -43,8 +46,9 @@ class Solved:
     """Motion of a batch of mechanisms on one span of samples.
 
     Arrays hold value, first and second derivative by the path's parameter first: `points` (3, lanes, n,
-    points, 2) [m], `angles` (3, lanes, n, links) [rad], `slides` (3, lanes, n, guides) [m]; `status` and
-    `residual` (lanes, n). `all_points` has the frame's points before the moving ones.
+    points, axes), `angles` (3, lanes, n, angles) [rad], `slides` (3, lanes, n, guides); `status` and `residual`
+    (lanes, n). `all_points` has the frame's points before the moving ones. `spins` (2, lanes, n, links, 3) are
+    rotation vectors [rad] by the parameter and their derivatives; none where angles say it all.
     """
 
     ready: Ready
@@ -55,6 +59,7 @@ class Solved:
     points: Array
     angles: Array
     slides: Array
+    spins: Array | None
     status: npt.NDArray[np.int8]
     residual: Array
     worst_constraint: Kept
@@ -88,12 +93,13 @@ def solve(
     ready = _in_time(ready, span)
     kinematics = ready.kinematics if numbers is None else replace(ready.kinematics, numbers=_upright(numbers))
     samples = len(span.parameter)
-    layout, fixed = layout_of(kinematics), 2 * len(kinematics.numbers.frame)
+    layout = layout_of(kinematics)
+    axes, fixed = layout.axes, layout.axes * len(kinematics.numbers.frame)
     _check_size(layout, lanes, samples)
     size = max(1, CHUNK // max(samples, len(mesh_of(kinematics.path, span.parameter))))
     # one room for everything that depends on the samples: what is big is written once
     room = np.empty((ORDERS, fixed + layout.width, lanes, samples))
-    angles = np.empty((ORDERS, len(layout.links), lanes, samples))
+    angles = np.empty((ORDERS, len(layout.angles), lanes, samples))
     whole = Samples(layout, room[:, fixed:], np.zeros((lanes, samples), dtype=np.int8))
     parts = []
     for first in range(0, lanes, size):
@@ -103,18 +109,17 @@ def solve(
         if progress is not None:
             progress(rows.stop, lanes)
     _fill_frame(room[:, :fixed], kinematics.numbers, whole)
-    points = room[:, : fixed + layout.first_rotor].reshape(
-        ORDERS, fixed // 2 + len(layout.points), 2, lanes, samples
-    )
+    points = room[:, : fixed + layout.first_attitude].reshape(ORDERS, -1, axes, lanes, samples)
     return Solved(
         ready,
         span,
         layout,
         _joined([part.branches for part in parts]),
         np.moveaxis(points, (1, 2), (3, 4)),
-        np.moveaxis(points[:, fixed // 2 :], (1, 2), (3, 4)),
+        np.moveaxis(points[:, fixed // axes :], (1, 2), (3, 4)),
         np.moveaxis(angles, 1, 3),
-        np.moveaxis(whole.columns[:, layout.first_slide :], 1, 3),
+        np.moveaxis(whole.columns[:, layout.first_slide : layout.first_rotor], 1, 3),
+        spins_of(layout, whole.columns),
         whole.status,
         np.concatenate([part.residual for part in parts]),
         max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0))).worst_constraint,
@@ -187,26 +192,33 @@ def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Sampl
     settle(samples)
     residual, worst = residuals(kinematics, samples, span.parameter)
     open_what_does_not_close(samples, residual)
-    _fill_angles(ready, on_mesh, mesh, samples, span.parameter, angles)
+    _fill_angles(ready, kinematics.numbers, on_mesh, mesh, samples, span.parameter, angles)
     return _Part(continuation.branches, residual, worst)
 
 
 def _fill_angles(
-    ready: Ready, on_mesh: Positions, mesh: Array, samples: Samples, parameter: Array, angles: Array
+    ready: Ready,
+    numbers: Dimensions,
+    on_mesh: Positions,
+    mesh: Array,
+    samples: Samples,
+    parameter: Array,
+    angles: Array,
 ) -> None:
-    path = ready.kinematics.path
+    path, layout = ready.kinematics.path, samples.layout
     start = int(np.argmin(np.abs(mesh - path.initial)))
     nearest = np.clip(np.round((parameter - mesh[0]) / path.step).astype(np.intp), 0, len(mesh) - 1)
-    for k, link in enumerate(samples.layout.links):
-        nodes = node_turns(on_mesh, link, ready.assembled.angles[link], start, len(mesh))
-        column = samples.layout.first_rotor + 2 * k
-        angle_and_rates(samples.columns[:, column : column + 2], nodes, nearest, angles[:, k])
+    for k, link in enumerate(layout.angles):
+        rotor = rotor_of_angle(ARRAYS, numbers, on_mesh, link)
+        nodes = node_turns(rotor, ready.assembled.angles[link], start, len(mesh))
+        angle_and_rates(samples.columns[:, layout.rotor(link)], nodes, nearest, angles[:, k])
 
 
 def _fill_frame(columns: Array, numbers: Dimensions, samples: Samples) -> None:
     """Points of the frame: their places are constant, absent where the motion is."""
     columns[1:] = 0.0
-    for k, place in enumerate(x for at in numbers.frame.values() for x in at):
+    fixed = Positions.of_frame(numbers, {}).points
+    for k, place in enumerate(x for at in fixed.values() for x in at):
         columns[0, k] = place
     opened = samples.status == Status.OPEN
     if opened.any():

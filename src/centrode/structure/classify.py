@@ -40,6 +40,7 @@ class Unsolved:
     points: tuple[str, ...]
     links: tuple[str, ...]
     constraints: tuple[Constraint, ...]
+    crosses_once: bool = True
 
     def ends(self, link: str) -> tuple[str, ...]:
         """Points that the group's constraints fix in a link."""
@@ -72,14 +73,21 @@ def _turning_of(constraint: Constraint) -> Turning | None:
 
 
 def classify(
-    mechanism: Mechanism, unknowns: Sequence[Entity], equations: Sequence[tuple[Constraint, int]]
+    mechanism: Mechanism,
+    unknowns: Sequence[Entity],
+    equations: Sequence[tuple[Constraint, int]],
+    crosses_once: bool = True,
 ) -> Group:
-    """The group that unknowns form under the equations (constraint and row) matched to them."""
+    """The group that unknowns form under the equations (constraint and row) matched to them.
+
+    `crosses_once` says whether the curves of two guides meet in one place, as lines do.
+    """
     group = Unsolved(
         mechanism,
         tuple(e.name for e in unknowns if e.kind == "point"),
         tuple(e.name for e in unknowns if e.kind == "link"),
         tuple(dict.fromkeys(constraint for constraint, _row in equations)),
+        crosses_once,
     )
     for attempt in (_rigid_point, _single_link, _aim_with_block, _meet):
         found = attempt(group)
@@ -164,7 +172,7 @@ def _meet(group: Unsolved) -> Group | None:
             used.add(c)
     if len(loci) != 2 or used != set(group.constraints):
         return None
-    return Meet(group.points, (loci[0], loci[1]), carriage, turning)
+    return Meet(group.points, (loci[0], loci[1]), carriage, turning, group.crosses_once)
 
 
 def _carries_all(group: Unsolved, carriage: str) -> bool:

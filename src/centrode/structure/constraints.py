@@ -10,19 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
-from centrode.geometry.plane import (
-    Vector,
-    cross,
-    dot,
-    place,
-    rotor_of,
-    subtract,
-    turned,
-)
+from centrode.algebra.arrays import ARRAYS
+from centrode.geometry.plane import rotor_of
+from centrode.geometry.space import Coordinates, Rows
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Entity, Positions, angle_between, line_of
+from centrode.structure.positions import Entity, Positions
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
@@ -38,7 +32,7 @@ class Constraint(Protocol):
 
     @property
     def angular(self) -> bool:
-        """Whether residuals are angles [rad]; otherwise they are lengths [m]."""
+        """Whether residuals are angles [rad]; otherwise they are lengths."""
 
     @property
     def bodies(self) -> tuple[Entity, ...]:
@@ -73,23 +67,21 @@ class PointInLink:
         return _("point {point} in link {link}").format(point=self.point, link=self.link)
 
     def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
-        return list(subtract(at.points[self.point], place(at.poses[self.link], self._local(numbers))))
+        point, pose = at.points[self.point], at.poses[self.link]
+        return numbers.space.in_link(m, point, pose, self._local(numbers))
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
-        point, link = self.bodies
-        arm = turned(self._local(numbers), at.poses[self.link].rotor)
-        return [
-            {point: (1.0, 0.0), link: (-1.0, 0.0, arm[1])},
-            {point: (0.0, 1.0), link: (0.0, -1.0, -arm[0])},
-        ]
+        point, pose = at.points[self.point], at.poses[self.link]
+        slopes = numbers.space.in_link_rows(ARRAYS, point, pose, self._local(numbers))
+        return [_row(self.bodies, slope) for slope in slopes]
 
-    def _local(self, numbers: Dimensions) -> Vector:
+    def _local(self, numbers: Dimensions) -> Coordinates:
         return numbers.local[self.link][self.point]
 
 
 @dataclass(frozen=True)
 class PointOnGuide:
-    """A point stays on the line of a guide."""
+    """A point stays on the curve of a guide."""
 
     point: str
     guide: str
@@ -106,19 +98,13 @@ class PointOnGuide:
         return _("point {point} on guide {guide}").format(point=self.point, guide=self.guide)
 
     def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
-        through, direction = line_of(numbers, at, self.guide, self.on)
-        return [cross(direction, subtract(at.points[self.point], through))]
+        point, pose = at.points[self.point], at.poses[self.on]
+        return [numbers.space.on_guide(m, point, pose, numbers.curve(self.guide))]
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
-        point, link = self.bodies
-        direction = line_of(numbers, at, self.guide, self.on)[1]
-        arm = subtract(at.points[self.point], at.poses[self.on].origin)
-        return [
-            {
-                point: (-direction[1], direction[0]),
-                link: (direction[1], -direction[0], -dot(direction, arm)),
-            }
-        ]
+        point, pose = at.points[self.point], at.poses[self.on]
+        slope = numbers.space.on_guide_row(ARRAYS, point, pose, numbers.curve(self.guide))
+        return [_row(self.bodies, slope)]
 
 
 @dataclass(frozen=True)
@@ -142,12 +128,12 @@ class NoTurning:
         )
 
     def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
-        reference = turned(at.poses[self.on].rotor, numbers.turn[self.guide])
-        return [angle_between(m, at.poses[self.link].rotor, reference)]
+        pose, base = at.poses[self.link], at.poses[self.on]
+        return [numbers.space.turn(m, pose, base, numbers.turn[self.guide], None)]
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
-        link, on = self.bodies
-        return [{link: (0.0, 0.0, 1.0), on: (0.0, 0.0, -1.0)}]
+        pose, base = at.poses[self.link], at.poses[self.on]
+        return [_row(self.bodies, numbers.space.turn_row(ARRAYS, pose, base, None))]
 
 
 @dataclass(frozen=True)
@@ -169,17 +155,19 @@ class AngleDrive:
         return _("drive of link {link}").format(link=self.link)
 
     def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
-        reference = turned(at.poses[self.relative_to].rotor, rotor_of(m, at.drives[self.drive]))
-        return [angle_between(m, at.poses[self.link].rotor, reference)]
+        pose, base = at.poses[self.link], at.poses[self.relative_to]
+        rotor = rotor_of(m, at.drives[self.drive])
+        return [numbers.space.turn(m, pose, base, rotor, numbers.reference(self.link))]
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
-        link, reference = self.bodies
-        return [{link: (0.0, 0.0, 1.0), reference: (0.0, 0.0, -1.0)}]
+        pose, base = at.poses[self.link], at.poses[self.relative_to]
+        slope = numbers.space.turn_row(ARRAYS, pose, base, numbers.reference(self.link))
+        return [_row(self.bodies, slope)]
 
 
 @dataclass(frozen=True)
 class DisplacementDrive:
-    """A drive gives the displacement of a point along its guide, from the point the guide goes through."""
+    """A drive gives the displacement of a point along its guide."""
 
     drive: str
     point: str
@@ -197,14 +185,18 @@ class DisplacementDrive:
         return _("drive of guide {guide}").format(guide=self.guide)
 
     def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
-        through, direction = line_of(numbers, at, self.guide, self.on)
-        return [dot(direction, subtract(at.points[self.point], through)) - at.drives[self.drive]]
+        point, pose = at.points[self.point], at.poses[self.on]
+        return [numbers.space.slid(m, point, pose, numbers.curve(self.guide), at.drives[self.drive])]
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
-        point, link = self.bodies
-        direction = line_of(numbers, at, self.guide, self.on)[1]
-        arm = subtract(at.points[self.point], at.poses[self.on].origin)
-        return [{point: direction, link: (-direction[0], -direction[1], cross(direction, arm))}]
+        point, pose = at.points[self.point], at.poses[self.on]
+        slope = numbers.space.slid_row(ARRAYS, point, pose, numbers.curve(self.guide))
+        return [_row(self.bodies, slope)]
+
+
+def _row(bodies: tuple[Entity, ...], slopes: Rows) -> Row:
+    """The derivatives of one equation by the coordinates of the two bodies it ties."""
+    return dict(zip(bodies, slopes, strict=True))
 
 
 def constraints_of(mechanism: Mechanism) -> tuple[Constraint, ...]:

@@ -4,33 +4,47 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import hypot
 from typing import Any, TypeAlias
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
+from centrode.geometry.in_plane import PLANE
+from centrode.geometry.on_sphere import SPHERE
 from centrode.geometry.plane import Vector
+from centrode.geometry.space import Curve, Place, Reference, Space
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Guide, Link, Mechanism
+from centrode.structure.references import ends_of, references_of
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
+SPACES: Mapping[str, Space] = {space.name: space for space in (PLANE, SPHERE)}
+QUARTER = math.pi / 2
+"""Arc of a guide's circle where none is given: a great circle."""
 
 
 @dataclass(frozen=True)
 class Dimensions:
     """Lengths, coordinates and directions of one mechanism, or of a batch of mechanisms of one structure.
 
-    Every number is a float [m, or the components of a unit vector], or an array with one value a mechanism.
+    Every number is a float [m, or the components of a unit vector; on the sphere rad], or an array with one
+    value a mechanism.
 
     Attributes
     ----------
     frame : point -> coordinates of the fixed points
     local : link -> point -> coordinates in the link's axes
-    through, direction : guide -> point and unit vector of its line, in the axes of the body that carries it
+    through, direction : guide -> its curve in the axes of the body that carries it: point and unit vector of
+        a line, on the sphere pole and (arc,) of a circle
     turn : guide -> rotor of the constant angle from that body to the guided link
     bodies : guide -> the body that carries it
+    space : the geometry, chosen here and nowhere else
+    ends : link whose angle is measured -> what it is measured between: on the sphere three points (pivot, end
+        of the reference arc, the link's second point), in the plane nothing but the link's own axes
+    references : driven link -> on the sphere the ends of its own arc and of the reference arc, each in the
+        axes of its body
     """
 
     frame: Mapping[str, Vector]
@@ -39,47 +53,60 @@ class Dimensions:
     direction: Mapping[str, Vector]
     turn: Mapping[str, Vector]
     bodies: Mapping[str, str]
+    space: Space = PLANE
+    ends: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    references: Mapping[str, tuple[Vector, ...]] = field(default_factory=dict)
 
     def mapped(self, function: Callable[[Number], Number]) -> Dimensions:
         """The same dimensions with every number replaced by function(number)."""
 
         def vectors(pairs: Mapping[str, Vector]) -> dict[str, Vector]:
-            return {name: (function(v[0]), function(v[1])) for name, v in pairs.items()}
+            return {name: tuple(map(function, v)) for name, v in pairs.items()}
 
-        return Dimensions(
-            vectors(self.frame),
-            {link: vectors(points) for link, points in self.local.items()},
-            vectors(self.through),
-            vectors(self.direction),
-            vectors(self.turn),
-            self.bodies,
+        return replace(
+            self,
+            frame=vectors(self.frame),
+            local={link: vectors(points) for link, points in self.local.items()},
+            through=vectors(self.through),
+            direction=vectors(self.direction),
+            turn=vectors(self.turn),
+            references={
+                link: tuple((function(x), function(y)) for x, y in arcs)
+                for link, arcs in self.references.items()
+            },
         )
+
+    def curve(self, guide: str) -> Curve:
+        """Where a guide's point can be, in the axes of the body that carries it."""
+        return self.through[guide], self.direction[guide]
+
+    def reference(self, link: str) -> Reference:
+        """What a driven link's angle is measured between, where that is not its axes."""
+        return self.references.get(link)
 
     @cached_property
     def scale(self) -> Number:
-        """Greatest length in the mechanism [m]: what lengths and residuals are compared with.
+        """Greatest length in the mechanism [m, rad on the sphere]: what lengths and residuals are compared with.
 
-        Distances within links and within the frame count, and those of guide lines from their bodies; where the
+        Distances within links and within the frame count, and those of guides from their bodies; where the
         origin lies does not.
         """
         longest: Number = 0.0
         for points in (self.frame, *self.local.values()):
-            first = next(iter(points.values()), None)
-            for x, y in points.values():
-                if first is not None:
-                    longest = _larger(longest, _size(x - first[0], y - first[1]))
+            places = [self._inside(at) for at in points.values()]
+            for at in places:
+                longest = _larger(longest, self.space.distance(ARRAYS, at, places[0]))
         for guide, on in self.bodies.items():
             points = self.frame if on == FRAME else self.local[on]
-            through, direction = self.through[guide], self.direction[guide]
-            for x, y in list(points.values())[:1]:
-                offset = direction[0] * (through[1] - y) - direction[1] * (through[0] - x)
-                longest = _larger(longest, _size(offset, 0.0))
+            for at in list(points.values())[:1]:
+                reach = self.space.reach(ARRAYS, self.curve(guide), self._inside(at))
+                longest = _larger(longest, reach)
         # sliders alone have no length of their own
         return 1.0 if isinstance(longest, float) and longest == 0.0 else longest
 
-
-def _size(x: Number, y: Number) -> Number:
-    return hypot(x, y) if isinstance(x, float) and isinstance(y, float) else (x * x + y * y) ** 0.5
+    def _inside(self, local: Vector) -> Place:
+        """Place of a point as its own body sees it."""
+        return self.space.place(ARRAYS, self.space.at_rest, local)
 
 
 def _larger(a: Number, b: Number) -> Number:
@@ -94,24 +121,32 @@ def dimensions_of(
     """Numbers of a description, those named in `varied` replaced.
 
     `varied` maps paths ("links.AC.length", "links.K.points.P.y", "frame.points.D.x", "guides.C.through.y",
-    "guides.C.direction") to floats, or with a namespace `m` of arrays to arrays, one value a mechanism
-    [m or rad].
+    "guides.C.direction"; on the sphere "frame.points.D.longitude", "guides.C.pole.latitude",
+    "guides.C.radius") to floats, or with a namespace `m` of arrays to arrays, one value a mechanism [m or rad].
 
-    Raises InputError if a guide goes through a point that is not on its body, or a path names no dimension.
+    Raises InputError if a guide goes through a point that is not on its body, a driven link has no reference
+    arc, or a path names no dimension.
     """
-    values = _Values(dict(varied or {}), m)
+    space = SPACES[mechanism.space]
+    values = _Values(dict(varied or {}), m, space)
     frame = {name: values.vector(f"frame.points.{name}", at) for name, at in mechanism.frame.points.items()}
     local = {name: _local(name, link, values) for name, link in mechanism.links.items()}
     through, direction, turn = {}, {}, {}
     for guide in mechanism.guides:
         places = frame if guide.on == FRAME else local[guide.on]
-        through[guide.id] = _through(guide, places, values)
-        direction[guide.id] = values.direction(f"guides.{guide.id}.direction", guide.unit)
+        curve = _circle if space is SPHERE else _line
+        through[guide.id], direction[guide.id] = curve(guide, places, values)
         angle = mechanism.guide_turn(guide)
         turn[guide.id] = (math.cos(angle), math.sin(angle)) if angle else (1.0, 0.0)
     values.refuse_the_rest()
     bodies = {guide.id: guide.on for guide in mechanism.guides}
-    return Dimensions(frame, local, through, direction, turn, bodies)
+    links = mechanism.links
+    ends: dict[str, tuple[str, ...]] = {name: () for name in links}
+    references = {}
+    if space is SPHERE:
+        ends = {name: ends_of(name, link) for name, link in links.items() if link.reference is not None}
+        references = references_of(mechanism, frame, local, ends)
+    return Dimensions(frame, local, through, direction, turn, bodies, space, ends, references)
 
 
 def _local(name: str, link: Link, values: _Values) -> dict[str, Vector]:
@@ -123,24 +158,38 @@ def _local(name: str, link: Link, values: _Values) -> dict[str, Vector]:
     return {first: (0.0, 0.0), second: (values.length(f"links.{name}.length", link.length), 0.0)}
 
 
-def _through(guide: Guide, places: Mapping[str, Vector], values: _Values) -> Vector:
-    if not isinstance(guide.through, str):
-        return values.vector(f"guides.{guide.id}.through", guide.through)
-    if guide.through not in places:
+def _line(guide: Guide, places: Mapping[str, Vector], values: _Values) -> Curve:
+    return (
+        _spot(guide, "through", guide.through, places, values),
+        values.direction(f"guides.{guide.id}.direction", guide.unit),
+    )
+
+
+def _circle(guide: Guide, places: Mapping[str, Vector], values: _Values) -> Curve:
+    arc = values.length(f"guides.{guide.id}.radius", QUARTER if guide.radius is None else guide.radius)
+    return _spot(guide, "pole", guide.pole, places, values), (arc,)
+
+
+def _spot(guide: Guide, key: str, spot: Any, places: Mapping[str, Vector], values: _Values) -> Vector:
+    """A point that tells where a guide lies: coordinates, or a point of the body that carries it."""
+    if not isinstance(spot, str):
+        return values.vector(f"guides.{guide.id}.{key}", spot)
+    if spot not in places:
         raise InputError(
             _("guide {guide}").format(guide=guide.id),
-            _("point {point} does not lie on {body}").format(point=guide.through, body=guide.on),
+            _("point {point} does not lie on {body}").format(point=spot, body=guide.on),
             _("give coordinates, or a point of {body}").format(body=guide.on),
         )
-    return places[guide.through]
+    return places[spot]
 
 
 class _Values:
     """Numbers by path: the varied one where there is one, else the description's own."""
 
-    def __init__(self, varied: dict[str, Number], m: Namespace) -> None:
+    def __init__(self, varied: dict[str, Number], m: Namespace, space: Space) -> None:
         self.varied = varied
         self.m = m
+        self.space = space
         self.used: set[str] = set()
 
     def number(self, path: str, own: float) -> Number:
@@ -157,7 +206,8 @@ class _Values:
     def vector(self, path: str, own: Any) -> Vector:
         # a point that the description places carries its resolved coordinates
         x, y = getattr(own, "at", own)
-        return self.number(f"{path}.x", x), self.number(f"{path}.y", y)
+        first, second = self.space.coordinates
+        return self.number(f"{path}.{first}", x), self.number(f"{path}.{second}", y)
 
     def direction(self, path: str, own: Vector) -> Vector:
         self.used.add(path)

@@ -135,6 +135,8 @@ class Meet:
     loci: tuple[Locus, Locus]
     carriage: str | None = None
     turning: Turning | None = None
+    crosses_once: bool = True
+    """Whether the curves of two guides meet in one place."""
 
     @property
     def rods(self) -> tuple[Rod, ...]:
@@ -151,7 +153,9 @@ class Meet:
 
     @property
     def signed(self) -> bool:
-        return bool(self.rods)
+        if self.rods or self.crosses_once:
+            return bool(self.rods)
+        return not any(isinstance(locus, Stop) for locus in self.loci)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from centrode.errors import InputError, NotComputedYet
+from centrode.geometry.space import Space
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.structure.classify import classify
@@ -55,9 +56,10 @@ def structure_of(mechanism: Mechanism) -> Structure:
         The description names what this version does not compute.
     """
     _refuse_what_is_not_computed(mechanism)
+    dimensions = dimensions_of(mechanism)
+    _refuse_what_the_space_lacks(mechanism, dimensions.space)
     constraints = constraints_of(mechanism)
     unknowns = unknowns_of(mechanism)
-    dimensions = dimensions_of(mechanism)
     matrix = generic_jacobian(mechanism, constraints, unknowns, dimensions)
     owners = [c for c in constraints for _row in range(c.size)]
     kept = _independent(mechanism, matrix, owners)
@@ -66,7 +68,7 @@ def structure_of(mechanism: Mechanism) -> Structure:
     free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
     mobility = matrix.shape[1] - free_rank
     _check_drives(mechanism, constraints, unknowns, kept, owners, mobility)
-    groups = _groups(mechanism, unknowns, kept, owners)
+    groups = _groups(mechanism, dimensions.space, unknowns, kept, owners)
     redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
     return Structure(mechanism, dimensions, constraints, redundant, unknowns, groups, mobility)
 
@@ -93,7 +95,6 @@ def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constrai
 
 def _refuse_what_is_not_computed(mechanism: Mechanism) -> None:
     refused = [
-        ("space", mechanism.space != "plane", _("spherical linkages are not computed yet")),
         ("[[gears]]", bool(mechanism.gears), _("gears are not computed yet")),
         ("[[rolling]]", bool(mechanism.rolling), _("rolling contacts are not computed yet")),
         (
@@ -105,6 +106,20 @@ def _refuse_what_is_not_computed(mechanism: Mechanism) -> None:
     for where, found, what in refused:
         if found:
             raise NotComputedYet(where, what, _("leave it out, or wait for the version that computes it"))
+
+
+def _refuse_what_the_space_lacks(mechanism: Mechanism, space: Space) -> None:
+    guided = next((guide.id for guide in mechanism.guides if guide.link is not None), None)
+    distance = any(drive.kind == "distance" for drive in mechanism.drives)
+    asked = [
+        ("guided links", guided is not None, f"[[guides]] {guided}, link", _("hinge the link at the pole")),
+        ("gears", bool(mechanism.gears), "[[gears]]", _("take them out, or work in the plane")),
+        ("rolling", bool(mechanism.rolling), "[[rolling]]", _("take it out, or work in the plane")),
+        ("distance", distance, "[[drives]] distance", _("drive the angle of a link")),
+    ]
+    for what, found, where, repair in asked:
+        if found and what in space.lacks:
+            raise NotComputedYet(where, _("it is not computed on the sphere"), repair)
 
 
 def _check_drives(
@@ -143,6 +158,7 @@ def _unique(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
 
 def _groups(
     mechanism: Mechanism,
+    space: Space,
     unknowns: Sequence[Entity],
     kept: Sequence[bool],
     owners: Sequence[Constraint],
@@ -175,5 +191,5 @@ def _groups(
     for component in in_order(strong_components(depends), depends):
         rows = sorted(row for entity in component for row in matched[entity])
         equations = [(owners[row], row - first[owners[row]]) for row in rows]
-        groups.append(classify(mechanism, component, equations))
+        groups.append(classify(mechanism, component, equations, space.crosses_once))
     return tuple(groups)

@@ -6,7 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple, TypeAlias
 
-from centrode.geometry.plane import AT_REST, Pose, Vector, place, reversed_rotor, turned
+from centrode.algebra.arrays import ARRAYS
+from centrode.geometry.plane import Vector, place, reversed_rotor, turned
+from centrode.geometry.space import Place, Pose
 from centrode.structure.dimensions import Dimensions
 
 Number: TypeAlias = Any
@@ -34,25 +36,25 @@ class Positions:
     gear turns, and of links whose turns something else depends on.
     """
 
-    points: dict[str, Vector]
+    points: dict[str, Place]
     poses: dict[str, Pose]
     drives: Mapping[str, Number]
     angles: dict[str, Number] = field(default_factory=lambda: {FRAME: 0.0})
 
     @classmethod
-    def of_frame(cls, dimensions: Dimensions, drives: Mapping[str, Number]) -> Positions:
+    def of_frame(
+        cls, dimensions: Dimensions, drives: Mapping[str, Number], m: Namespace = ARRAYS
+    ) -> Positions:
         """What is known before any group is solved: the frame and the drives."""
-        return cls(dict(dimensions.frame), {FRAME: AT_REST}, drives)
+        space = dimensions.space
+        fixed = {name: space.place(m, space.at_rest, at) for name, at in dimensions.frame.items()}
+        return cls(fixed, {FRAME: space.at_rest}, drives)
 
     def mapped(self, function: Callable[[Number], Number]) -> Positions:
         """The same positions with every number replaced by function(number)."""
-
-        def vector(v: Vector) -> Vector:
-            return function(v[0]), function(v[1])
-
         return Positions(
-            {name: vector(v) for name, v in self.points.items()},
-            {name: Pose(vector(pose.origin), vector(pose.rotor)) for name, pose in self.poses.items()},
+            {name: tuple(map(function, at)) for name, at in self.points.items()},
+            {name: mapped_pose(pose, function) for name, pose in self.poses.items()},
             {name: function(value) for name, value in self.drives.items()},
             {name: function(value) for name, value in self.angles.items()},
         )
@@ -60,6 +62,11 @@ class Positions:
     def copied(self) -> Positions:
         """The same positions, to which others may be added apart."""
         return Positions(dict(self.points), dict(self.poses), self.drives, dict(self.angles))
+
+
+def mapped_pose(pose: Pose, function: Callable[[Number], Number]) -> Pose:
+    """The same pose with every number replaced by function(number), in their order."""
+    return type(pose)(*(tuple(map(function, vector)) for vector in pose))
 
 
 def line_of(numbers: Dimensions, at: Positions, guide: str, on: str) -> tuple[Vector, Vector]:

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
+from centrode.geometry.space import Row
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Constraint
 from centrode.structure.dimensions import Dimensions
@@ -133,22 +134,25 @@ def generic_jacobian(
 def scaled_jacobian(
     constraints: Sequence[Constraint], unknowns: Sequence[Entity], numbers: Dimensions, at: Positions
 ) -> Matrix:
-    """Jacobian at real positions with lengths measured in the mechanism's own scale, so that rank has a threshold."""
+    """Jacobian at real positions with lengths measured in the mechanism's own scale, so that rank has a threshold.
+
+    Links are moved by shifts of one of their points and turns about it.
+    """
     scale = float(numbers.scale)
-    small = numbers.mapped(lambda x: x / scale)
-    shrunk = Positions(
-        {name: _shrunk(v, scale) for name, v in at.points.items()},
-        {name: Pose(_shrunk(pose.origin, scale), pose.rotor) for name, pose in at.poses.items()},
-        at.drives,
-    )
-    restored = Dimensions(
-        small.frame, small.local, small.through, numbers.direction, numbers.turn, numbers.bodies
-    )
-    return jacobian(constraints, unknowns, restored, shrunk)
+    matrix = jacobian(constraints, unknowns, numbers, at)
+    for entity, column in columns_of(unknowns)[0].items():
+        own = slice(column, column + entity.unknowns)
+        matrix[:, own] = matrix[:, own] @ np.array(_motions(entity, numbers, at, scale)).T
+    units = [1.0 if c.angular else scale for c in constraints for _row in range(c.size)]
+    return np.asarray(matrix / np.array(units)[:, None])
 
 
-def _shrunk(v: Vector, scale: float) -> Vector:
-    return v[0] / scale, v[1] / scale
+def _motions(entity: Entity, numbers: Dimensions, at: Positions, scale: float) -> Sequence[Row]:
+    """Coordinates of a body's small motions: by the scale, or 1 rad."""
+    if entity.kind == "point":
+        return (scale, 0.0), (0.0, scale)
+    first = next(iter(numbers.local[entity.name]))
+    return numbers.space.shifts(ARRAYS, at.points[first], scale)
 
 
 def rank_of(matrix: Matrix) -> int:

@@ -1,0 +1,169 @@
+"""The plane as a space: the formulas of `plane`, by the names that structure and motion use."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot, inf
+
+from centrode.geometry import plane
+from centrode.geometry.plane import (
+    AT_REST,
+    Circle,
+    Line,
+    Pose,
+    Vector,
+    along,
+    cross,
+    dot,
+    length_of,
+    meet_circle_and_line,
+    meet_circles,
+    meet_lines,
+    pose_with_point,
+    reversed_rotor,
+    subtract,
+    turned,
+)
+from centrode.geometry.space import Namespace, Number, Reference, Root, Row, Rows, Space
+
+Curve = tuple[Vector, Vector]
+
+
+class Plane:
+    """See `Space`; lengths are in metres, a guide's curve is a line: a point and a unit vector."""
+
+    name = "plane"
+    coordinates = ("x", "y")
+    axes = ("x", "y")
+    unit = "m"
+    crosses_once = True
+    lacks: frozenset[str] = frozenset()
+    at_rest = AT_REST
+
+    def place(self, m: Namespace, pose: Pose, local: Vector) -> Vector:
+        return plane.place(pose, local)
+
+    def attitude(self, pose: Pose) -> Vector:
+        return pose.rotor
+
+    def pose_of(self, m: Namespace, attitude: Sequence[Number], local: Vector, at: Vector) -> Pose:
+        cosine, sine = attitude
+        return Pose(subtract(at, turned(local, (cosine, sine))), (cosine, sine))
+
+    def stretch(self, attitude: Sequence[Number]) -> list[Number]:
+        cosine, sine = attitude
+        return [cosine * cosine + sine * sine - 1.0]
+
+    def rotor(self, m: Namespace, pose: Pose, ends: Sequence[Vector]) -> Vector:
+        return pose.rotor
+
+    def pose_by_two_points(
+        self, m: Namespace, first: Vector, second: Vector, at_first: Vector, at_second: Vector
+    ) -> Pose:
+        return plane.pose_by_two_points(first, second, at_first, at_second)
+
+    def turned_pose(
+        self, m: Namespace, base: Pose, rotor: Vector, pivot: Vector, at: Vector, reference: Reference
+    ) -> Pose:
+        return pose_with_point(pivot, at, turned(base.rotor, rotor))
+
+    def aim(self, m: Namespace, pivot: Vector, at: Vector, curve: Curve, target: Vector, root: Root) -> Pose:
+        through, direction = curve
+        return plane.aim(pivot, at, through, direction, target, root)
+
+    def circle(self, m: Namespace, centre: Vector, first: Vector, second: Vector) -> Circle:
+        # the sign of a two-point link's length depends on which end is known; circles do not feel it
+        return Circle(centre, length_of(m, subtract(second, first)))
+
+    def rail(self, m: Namespace, pose: Pose, curve: Curve) -> Line:
+        return Line(*_line(pose, curve))
+
+    def stop(self, m: Namespace, pose: Pose, curve: Curve, displacement: Number) -> Line:
+        through, direction = _line(pose, curve)
+        return Line(along(through, direction, displacement), (-direction[1], direction[0]))
+
+    def meet(self, one: Circle | Line, other: Circle | Line, root: Root, divisor: Root) -> Vector:
+        if isinstance(one, Line):
+            assert isinstance(other, Line)  # circles stand first
+            return meet_lines(one.through, one.direction, other.through, other.direction, divisor)
+        if isinstance(other, Circle):
+            return meet_circles(one.centre, one.radius, other.centre, other.radius, root)
+        return meet_circle_and_line(one.centre, one.radius, other.through, other.direction, root)
+
+    def lack(
+        self, m: Namespace, one: Circle | Line, other: Circle | Line
+    ) -> tuple[float, float, float, float]:
+        assert isinstance(one, Circle)  # two lines always meet, or never
+        if isinstance(other, Line):
+            offset = cross(other.direction, subtract(one.centre, other.through))
+            return float(abs(offset) - abs(one.radius)), -inf, -inf, -inf
+        apart = float(self.distance(m, one.centre, other.centre))
+        first, second = abs(float(one.radius)), abs(float(other.radius))
+        return apart - first - second, first - second - apart, second - first - apart, -inf
+
+    def distance(self, m: Namespace, a: Vector, b: Vector) -> Number:
+        x, y = subtract(a, b)
+        return hypot(x, y) if isinstance(x, float) and isinstance(y, float) else m.sqrt(x * x + y * y)
+
+    def distance_row(self, m: Namespace, a: Vector, b: Vector) -> Rows:
+        x, y = subtract(a, b)
+        length = m.sqrt(x * x + y * y)
+        return (x / length, y / length), (-x / length, -y / length)
+
+    def leverage(self, m: Namespace, first: Vector, second: Vector) -> Number:
+        return self.distance(m, first, second)
+
+    def reach(self, m: Namespace, curve: Curve, at: Vector) -> Number:
+        through, direction = curve
+        return m.abs(cross(direction, subtract(through, at)))
+
+    def slide(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Number:
+        through, direction = _line(pose, curve)
+        return dot(direction, subtract(point, through))
+
+    def in_link(self, m: Namespace, point: Vector, pose: Pose, local: Vector) -> list[Number]:
+        return list(subtract(point, plane.place(pose, local)))
+
+    def in_link_rows(self, m: Namespace, point: Vector, pose: Pose, local: Vector) -> list[Rows]:
+        arm = turned(local, pose.rotor)
+        return [((1.0, 0.0), (-1.0, 0.0, arm[1])), ((0.0, 1.0), (0.0, -1.0, -arm[0]))]
+
+    def on_guide(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Number:
+        through, direction = _line(pose, curve)
+        return cross(direction, subtract(point, through))
+
+    def on_guide_row(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Rows:
+        direction, arm = turned(curve[1], pose.rotor), subtract(point, pose.origin)
+        return (-direction[1], direction[0]), (direction[1], -direction[0], -dot(direction, arm))
+
+    def turn(self, m: Namespace, pose: Pose, base: Pose, rotor: Vector, reference: Reference) -> Number:
+        cosine, sine = turned(pose.rotor, reversed_rotor(turned(base.rotor, rotor)))
+        return m.atan2(sine, cosine)
+
+    def turn_row(self, m: Namespace, pose: Pose, base: Pose, reference: Reference) -> Rows:
+        return (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
+
+    def slid(self, m: Namespace, point: Vector, pose: Pose, curve: Curve, displacement: Number) -> Number:
+        return self.slide(m, point, pose, curve) - displacement
+
+    def slid_row(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Rows:
+        direction, arm = turned(curve[1], pose.rotor), subtract(point, pose.origin)
+        return direction, (-direction[0], -direction[1], cross(direction, arm))
+
+    def moved_point(self, m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
+        return plane.moved_point(m, point, by)
+
+    def moved_pose(self, m: Namespace, pose: Pose, by: Sequence[Number]) -> Pose:
+        return plane.moved_pose(m, pose, by)
+
+    def shifts(self, m: Namespace, at: Vector, scale: Number) -> Sequence[Row]:
+        return (scale, 0.0, 0.0), (0.0, scale, 0.0), (0.0, 0.0, 1.0)
+
+
+def _line(pose: Pose, curve: Curve) -> Curve:
+    """Point and direction of a guide's line as it lies now."""
+    through, direction = curve
+    return plane.place(pose, through), turned(direction, pose.rotor)
+
+
+PLANE: Space = Plane()

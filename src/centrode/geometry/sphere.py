@@ -1,0 +1,221 @@
+"""Vectors, attitudes and meeting points on the unit sphere, as formulas over any algebra.
+
+A place is a unit vector of three numbers; coordinates are (longitude, latitude) [rad]. An attitude holds the
+three axes of a link as they stand in the frame. Arcs enter by sine and cosine of their halves, and places by
+their differences, so that small linkages keep their relative accuracy. Where a formula has two answers it
+takes `root`, as the formulas of the plane do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias
+
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+Vector: TypeAlias = tuple[Number, Number, Number]
+Coordinates: TypeAlias = tuple[Number, Number]
+HalfArc: TypeAlias = tuple[Number, Number]
+"""Sine and cosine of half an arc."""
+Root: TypeAlias = Callable[[Number], Number]
+
+
+class Attitude(NamedTuple):
+    """How a link stands: its own axes in those of the frame."""
+
+    x: Vector
+    y: Vector
+    z: Vector
+
+
+AT_REST = Attitude((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+"""Attitude of the frame."""
+
+
+def is_literal(x: Number, value: float) -> bool:
+    """Whether a number is this plain float, and no array or jet that happens to have its value."""
+    return type(x) is float and x == value
+
+
+def add(a: Vector, b: Vector) -> Vector:
+    """Sum of two vectors."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def subtract(a: Vector, b: Vector) -> Vector:
+    """Vector from b to a."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def times(factor: Number, a: Vector) -> Vector:
+    """A vector multiplied by a number."""
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
+def dot(a: Vector, b: Vector) -> Number:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """Vector product; at place a it points to the left of the way to b, seen from outside."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def combined(*terms: tuple[Number, Vector]) -> Vector:
+    """Sum of vectors times factors; factors that are plainly zero or one cost nothing."""
+    total: Vector | None = None
+    for factor, vector in terms:
+        if is_literal(factor, 0.0):
+            continue
+        term = vector if is_literal(factor, 1.0) else times(factor, vector)
+        total = term if total is None else add(total, term)
+    return (0.0, 0.0, 0.0) if total is None else total
+
+
+def unit_vector(m: Namespace, at: Coordinates) -> Vector:
+    """Place of (longitude, latitude) [rad]."""
+    longitude, latitude = at
+    if is_literal(latitude, 0.0):
+        # the points of a two-point link lie on its own equator, the first at longitude 0
+        if is_literal(longitude, 0.0):
+            return 1.0, 0.0, 0.0
+        return m.cos(longitude), m.sin(longitude), 0.0
+    off_axis = m.cos(latitude)
+    return off_axis * m.cos(longitude), off_axis * m.sin(longitude), m.sin(latitude)
+
+
+def meridian(m: Namespace, at: Coordinates) -> tuple[Vector, Vector]:
+    """Unit vectors to the north and to the west of a place: the west is the left of the north."""
+    longitude, latitude = at
+    cosine, sine = m.cos(longitude), m.sin(longitude)
+    lower = m.sin(latitude)
+    return (-lower * cosine, -lower * sine, m.cos(latitude)), (sine, -cosine, 0.0)
+
+
+def carried(attitude: Attitude, inside: Vector) -> Vector:
+    """Vector of a link's own axes, as it stands in the frame."""
+    return combined(*zip(inside, attitude, strict=True))
+
+
+def tangent(a: Vector, b: Vector) -> Vector:
+    """Vector at place a square to it, towards b; its length is the sine of the arc."""
+    line = subtract(b, a)
+    return add(line, times(0.5 * dot(line, line), a))
+
+
+def tangent_inside(m: Namespace, first: Coordinates, second: Coordinates) -> Vector:
+    """The same between two points of a link, in its own axes."""
+    if is_literal(first[1], 0.0) and is_literal(second[1], 0.0):
+        sine = m.sin(second[0] - first[0])
+        if is_literal(first[0], 0.0):
+            return 0.0, sine, 0.0
+        return -sine * m.sin(first[0]), sine * m.cos(first[0]), 0.0
+    return tangent(unit_vector(m, first), unit_vector(m, second))
+
+
+def half_arc(m: Namespace, first: Coordinates, second: Coordinates) -> HalfArc:
+    """Half the arc between two points of a link; its sign is that of the longitude on a two-point link."""
+    if is_literal(first[1], 0.0) and is_literal(second[1], 0.0):
+        half = 0.5 * (second[0] - first[0])
+        return m.sin(half), m.cos(half)
+    return half_arc_of(m, unit_vector(m, first), unit_vector(m, second))
+
+
+def half_arc_of(m: Namespace, a: Vector, b: Vector) -> HalfArc:
+    """Half the arc between two places."""
+    apart, together = subtract(a, b), add(a, b)
+    return 0.5 * m.sqrt(dot(apart, apart)), 0.5 * m.sqrt(dot(together, together))
+
+
+def arc(m: Namespace, a: Vector, b: Vector) -> Number:
+    """Arc between two places [rad], in [0, pi]."""
+    sine, cosine = half_arc_of(m, a, b)
+    return 2.0 * m.atan2(sine, cosine)
+
+
+def attitude_on(inside: Vector, along: Vector, at: Vector, towards: Vector, squared: Number) -> Attitude:
+    """Attitude that brings a link's own place `inside` to `at` and its own tangent `along` there to `towards`.
+
+    `squared` is the product of the two tangents' lengths.
+    """
+    left = cross(at, towards)
+    # of a two-point link only two terms of the nine are left
+    left_inside = (0.0, -along[2], along[1]) if is_literal(inside[0], 1.0) else cross(inside, along)
+
+    def axis(k: int) -> Vector:
+        return combined(
+            (inside[k], at), (_ratio(along[k], squared), towards), (_ratio(left_inside[k], squared), left)
+        )
+
+    return Attitude(axis(0), axis(1), axis(2))
+
+
+def _ratio(a: Number, b: Number) -> Number:
+    return a if is_literal(a, 0.0) else a / b
+
+
+def attitude_by_two_points(
+    m: Namespace, first: Coordinates, second: Coordinates, at_first: Vector, at_second: Vector
+) -> Attitude:
+    """Attitude of a link from the places of two of its points.
+
+    Its axes are unit vectors as far as the places keep the link's own arc; the residual of a motion contains
+    their lengths, so an arc that does not fit shows.
+    """
+    along = tangent_inside(m, first, second)
+    towards = tangent(at_first, at_second)
+    return attitude_on(unit_vector(m, first), along, at_first, towards, dot(along, along))
+
+
+def turned(m: Namespace, at: Vector, towards: Vector, rotor: tuple[Number, Number]) -> Vector:
+    """Tangent at a place turned by a rotor (cos, sin), counter-clockwise seen from outside."""
+    return combined((rotor[0], towards), (rotor[1], cross(at, towards)))
+
+
+def meet_circles(centre_1: Vector, half_1: HalfArc, centre_2: Vector, half_2: HalfArc, root: Root) -> Vector:
+    """Place where two circles meet, to the left of the arc centre_1 -> centre_2 for a positive root.
+
+    Circles are given by their centres and half their arcs. With h the squared sine of half the arc between
+    the centres, the radicand 4 (h - sin((r1 - r2)/2)^2)(sin((r1 + r2)/2)^2 - h) is the square of the triple
+    product of the three places, kept factored, so that it changes sign exactly where the triangle opens.
+    """
+    line = subtract(centre_2, centre_1)
+    h = 0.25 * dot(line, line)
+    one, other = half_1[0] * half_2[1], half_1[1] * half_2[0]
+    total, difference = one + other, one - other
+    radicand = 4.0 * (h - difference * difference) * (total * total - h)
+    squared = 4.0 * h * (1.0 - h)
+    lowered = 2.0 * half_1[0] * half_1[0]
+    ahead = 2.0 * (total * difference + h - lowered * h) / squared
+    left = root(radicand) / squared
+    return combined(
+        (1.0 + (2.0 * h * ahead - lowered), centre_1), (ahead, line), (left, cross(centre_1, line))
+    )
+
+
+def place_on_circle(m: Namespace, pole: Coordinates, radius: Number, angle: Number) -> Vector:
+    """Place on a circle about a pole at an angle from the north, counter-clockwise seen from outside."""
+    north, west = meridian(m, pole)
+    sine = m.sin(radius)
+    return combined(
+        (m.cos(radius), unit_vector(m, pole)), (sine * m.cos(angle), north), (sine * m.sin(angle), west)
+    )
+
+
+def basis(m: Namespace, at: Vector) -> tuple[Vector, Vector]:
+    """Two unit vectors square to a place and to each other, a function of the place alone.
+
+    Duff and others, Building an orthonormal basis, revisited (Journal of Computer Graphics Techniques 6, 2017).
+    """
+    x, y, z = at
+    side = m.sign(m.sign(z) + 0.5)  # zero counts as positive
+    a = -1.0 / (side + z)
+    b = x * y * a
+    return (1.0 + side * x * x * a, side * b, -side * x), (b, side + y * y * a, -y)
+
+
+def rotated(vector: Vector, half: Vector) -> Vector:
+    """A vector turned by Cayley's rotation: about `half`, by twice the arc tangent of its length."""
+    once = cross(half, vector)
+    return add(vector, times(2.0 / (1.0 + dot(half, half)), add(once, cross(half, once))))
