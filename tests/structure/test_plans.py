@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import centrode as ct
-from centrode.structure.assur import structural_formula
+from centrode.structure.assur import assur_groups, structural_formula
 from centrode.structure.mobility import count
 from centrode.structure.plan import structure_of
 
@@ -144,7 +144,7 @@ def test_hinges_of_three_links_are_counted_twice() -> None:
     assert (counted.moving_links, counted.lower_pairs, counted.loops) == (11, 16, 5)
 
 
-CLASS_III = {
+HIGHER = {
     "Watt driven at the rod": bars({"O": O, "D": D}, drive="PW", OA=1.0, K=K, R=R, PW=1.2, QW=1.1),
     "Stephenson driven at the rocker": bars(
         {"O": O, "D": D, "F": F}, drive="FW", OA=1.0, K=K, DB=2.5, PW=1.5, FW=1.5
@@ -152,12 +152,20 @@ CLASS_III = {
 }
 
 
-@pytest.mark.parametrize("name", CLASS_III)
-def test_groups_of_class_three_are_not_computed_yet(name: str) -> None:
-    assert "higher class" in [group.kind for group in structure_of(CLASS_III[name]).groups]
-    with pytest.raises(ct.NotComputedYet, match="higher class, which is not computed yet") as caught:
-        ct.check(CLASS_III[name])
-    assert caught.value.exit_code == 2
+@pytest.mark.parametrize(
+    ("name", "roman", "order", "links"),
+    [("Stephenson driven at the rocker", "III", 3, 4), ("Watt driven at the rod", "IV", 2, 5)],
+)
+def test_classes_of_higher_groups(name: str, roman: str, order: int, links: int) -> None:
+    """A ternary link with three inner joints is class III; a closed chain of four joints (B, Q, W, P) class IV."""
+    (group,) = [one for one in assur_groups(structure_of(HIGHER[name])) if one.kind == "higher class"]
+    assert (group.roman, group.order, len(group.members)) == (roman, order, links)
+
+
+def test_group_of_class_four() -> None:
+    groups = assur_groups(structure_of(ct.example("fourth-class-group")))
+    (group,) = [one for one in groups if one.roman == "IV"]
+    assert (group.order, set(group.members)) == (2, {"plate", "BD", "CG", "lever"})
 
 
 def driven(links: list[str], **lengths: Any) -> ct.Mechanism:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.structure.contours import contours_of
 from centrode.structure.groups import (
     Aim,
     Group,
@@ -32,7 +33,7 @@ class AssurGroup:
 
     Attributes
     ----------
-    roman : "I" for an input, "II" for a dyad, "III" for a higher group, "0" for a link that only follows
+    roman : "I" for an input, "II" for a dyad, "III" and on for higher groups, "0" for a link that only follows
     order : number of outer joints, 0 where that says nothing
     kind : "RRR", ..., or what else it is
     members : links, sliders that are understood included
@@ -60,7 +61,7 @@ def assur_groups(structure: Structure) -> tuple[AssurGroup, ...]:
         members = tuple(name for name in own if name not in taken)
         taken.update(members)
         if members:
-            found.append(_term(group, members))
+            found.append(_term(structure.mechanism, group, members))
     return tuple(found)
 
 
@@ -69,14 +70,26 @@ def structural_formula(structure: Structure) -> str:
     return " -> ".join(group.text for group in assur_groups(structure))
 
 
-def _term(group: Group, members: tuple[str, ...]) -> AssurGroup:
+def _term(mechanism: Mechanism, group: Group, members: tuple[str, ...]) -> AssurGroup:
     if is_input(group):
         return AssurGroup("I", 1, group.kind, members)
     if isinstance(group, (Meet, Aim)):
         return AssurGroup("II", 2, group.kind, members)
     if isinstance(group, Newton):
-        return AssurGroup("III", 0, _("higher class"), members)
+        contours = contours_of(mechanism, group)
+        return AssurGroup(_roman(contours.highest), contours.outer, _("higher class"), members)
     return AssurGroup("0", 0, group.kind, members)
+
+
+def _roman(number: int) -> str:
+    """A small number in Roman figures."""
+    figures = ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I"))
+    found = ""
+    for value, figure in figures:
+        while number >= value:
+            found += figure
+            number -= value
+    return found
 
 
 def is_input(group: Group) -> bool:
