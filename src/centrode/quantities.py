@@ -75,6 +75,14 @@ class Quantity:
         powers[drive_unit] = powers.get(drive_unit, 0) - self.by_drive
         return replace(self, unit=_unit_text(powers))
 
+    def on_sphere(self) -> Quantity:
+        """The same quantity on the unit sphere, where displacements along guides are arcs and places plain numbers."""
+        powers = _powers(self.unit)
+        length = powers.pop("m", 0)
+        if self.name.startswith("slide"):
+            powers = {"rad": length + powers.pop("rad", 0), **powers}
+        return replace(self, unit=_unit_text({base: power for base, power in powers.items() if power}))
+
     def label(self, length: str = "m", angle: str = "rad") -> str:
         """Title, symbol and the unit it is shown in, for the axis of a plot: "angular velocity ω, deg/s"."""
         shown = display_unit(self.unit, length, angle)[1]
@@ -91,6 +99,9 @@ _ALL = (
     Quantity("angle", "φ", "rad", mark("angle")),
     Quantity("angular_velocity", "ω", "rad/s", mark("angular velocity")),
     Quantity("angular_acceleration", "ε", "rad/s^2", mark("angular acceleration")),
+    Quantity("joint_angle", "θ", "rad", mark("angle from the reference arc")),
+    Quantity("joint_velocity", "ω_θ", "rad/s", mark("angular velocity from the reference arc")),
+    Quantity("joint_acceleration", "ε_θ", "rad/s^2", mark("angular acceleration from the reference arc")),
     Quantity("slide", "s", "m", mark("displacement along the guide")),
     Quantity("slide_velocity", "v_s", "m/s", mark("velocity along the guide")),
     Quantity("slide_acceleration", "a_s", "m/s^2", mark("acceleration along the guide")),
@@ -102,6 +113,16 @@ _ALL = (
         "φ″",
         "1/rad",
         mark("angular acceleration coefficient"),
+        by_drive=2,
+    ),
+    Quantity(
+        "joint_velocity_coefficient", "θ′", "1", mark("velocity coefficient of the joint angle"), by_drive=1
+    ),
+    Quantity(
+        "joint_acceleration_coefficient",
+        "θ″",
+        "1/rad",
+        mark("acceleration coefficient of the joint angle"),
         by_drive=2,
     ),
     Quantity(

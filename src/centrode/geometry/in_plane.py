@@ -117,6 +117,9 @@ class Plane:
         through, direction = curve
         return m.abs(cross(direction, subtract(through, at)))
 
+    def period(self, m: Namespace, curve: Curve) -> None:
+        return None
+
     def slide(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Number:
         through, direction = _line(pose, curve)
         return dot(direction, subtract(point, through))

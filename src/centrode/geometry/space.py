@@ -127,10 +127,14 @@ class Space(Protocol):
     def reach(self, m: Namespace, curve: Curve, at: Place) -> Number:
         """Distance of a guide's curve from a place in the axes of the body that carries it."""
 
-    def slide(self, m: Namespace, point: Place, pose: Pose, curve: Curve) -> Number:
-        """Displacement of a point along a guide: in the plane from the point the line goes through, on the
+    def period(self, m: Namespace, curve: Curve) -> Number | None:
+        """Length of a guide's curve if it closes."""
 
-        sphere from the meridian of the pole to its north, as an arc, counter-clockwise seen from outside.
+    def slide(self, m: Namespace, point: Place, pose: Pose, curve: Curve) -> Number:
+        """Displacement of a point along a guide.
+
+        In the plane from the point the line goes through. On the sphere from the meridian of the pole to its
+        north, counter-clockwise seen from outside the pole, in (-period/2, period/2].
         """
 
     # constraints

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -46,52 +47,90 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     return data
 
 
-def _named(name: str, dimensions: tuple[str, ...], values: Any, drive_unit: str = "rad") -> Variable:
-    return dimensions, values, dict(_words(name, drive_unit))
+def _named(
+    name: str, dimensions: tuple[str, ...], values: Any, drive_unit: str = "rad", length_unit: str = "m"
+) -> Variable:
+    return dimensions, values, dict(_words(name, drive_unit, length_unit))
 
 
 @functools.cache
-def _words(name: str, drive_unit: str) -> Mapping[str, Any]:
+def _words(name: str, drive_unit: str, length_unit: str) -> Mapping[str, Any]:
     quantity = QUANTITIES[name].for_drive(drive_unit)
+    if length_unit != "m":
+        quantity = quantity.on_sphere()
     return {"units": quantity.unit, "symbol": quantity.symbol, "long_name": quantity.long_name}
 
 
-def _lanes(array: npt.NDArray[Any], batch: tuple[str, ...]) -> npt.NDArray[Any]:
+def _lanes(array: Any, batch: tuple[str, ...]) -> Any:
     return array if batch else array[0]
 
 
 def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Values and derivatives by time, by the chain rule from those by the path's parameter."""
-    span = solved.span
-    kinds = (
-        (("position", "velocity", "acceleration"), solved.all_points, ("sample", "point", "axis")),
-        (("angle", "angular_velocity", "angular_acceleration"), solved.angles, ("sample", "link")),
-        (("slide", "slide_velocity", "slide_acceleration"), solved.slides, ("sample", "guide")),
-    )
+    span, unit = solved.span, _length_unit(solved)
     found: dict[str, Variable] = {}
-    for names, by_parameter, dimensions in kinds:
-        along = (slice(None), *[None] * (by_parameter.ndim - 3))  # samples, then what stands behind them
-        factors = (None, span.rate, span.rate**2)
-        for order, (name, factor) in enumerate(zip(names, factors, strict=True)):
-            values = by_parameter[order] if factor is None else by_parameter[order] * factor[along]
+    for kind in _kinds(solved):
+        along = (slice(None), *[None] * len(kind.dimensions))  # samples, then what stands behind them
+        for order, factor in ((0, None), (1, span.rate), (2, span.rate**2)):
+            by_parameter = kind.orders[order]
+            if by_parameter is None:
+                continue
+            values = by_parameter if factor is None else by_parameter * factor[along]
             if order == 2 and span.second_rate.any():
-                values += by_parameter[1] * span.second_rate[along]
-            found[name] = _named(name, front + dimensions, _lanes(values, front))
+                values += kind.orders[1] * span.second_rate[along]
+            name, dimensions = kind.names[order], (*front, "sample", *kind.dimensions)
+            found[name] = _named(name, dimensions, _lanes(values, front), length_unit=unit)
     return found
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What has a value and two derivatives by the path's parameter: names by time, prefix per unit of the drive."""
+
+    names: tuple[str, str, str]
+    prefix: str
+    dimensions: tuple[str, ...]
+    orders: tuple[Array | None, Array, Array]
+
+
+def _kinds(solved: Solved) -> list[_Kind]:
+    def orders(values: Array) -> tuple[Array | None, Array, Array]:
+        return values[0], values[1], values[2]
+
+    points = ("position", "velocity", "acceleration")
+    slides = ("slide", "slide_velocity", "slide_acceleration")
+    turning = ("angle", "angular_velocity", "angular_acceleration")
+    found = [_Kind(points, "", ("point", "axis"), orders(solved.all_points))]
+    if solved.spins is None:
+        found.append(_Kind(turning, "angular_", ("link",), orders(solved.angles)))
+    else:
+        spins = (None, solved.spins[0], solved.spins[1])
+        found.append(_Kind(turning, "angular_", ("link", "axis"), spins))
+        joints = ("joint_angle", "joint_velocity", "joint_acceleration")
+        found.append(_Kind(joints, "joint_", ("joint",), orders(solved.angles)))
+    return [*found, _Kind(slides, "slide_", ("guide",), orders(solved.slides))]
 
 
 def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Kinematic coefficients: derivatives by the drive's value."""
-    unit = "rad" if solved.ready.kinematics.path.driven[0].drive.kind == "angle" else "m"
+    unit = _units(solved)[0]
     found = {}
     for order, word in ((1, "velocity"), (2, "acceleration")):
-        for name, values, dimensions in (
-            (f"{word}_coefficient", solved.all_points[order], ("sample", "point", "axis")),
-            (f"angular_{word}_coefficient", solved.angles[order], ("sample", "link")),
-            (f"slide_{word}_coefficient", solved.slides[order], ("sample", "guide")),
-        ):
-            found[name] = _named(name, front + dimensions, _lanes(values, front), unit)
+        for kind in _kinds(solved):
+            name, dimensions = f"{kind.prefix}{word}_coefficient", (*front, "sample", *kind.dimensions)
+            values = _lanes(kind.orders[order], front)
+            found[name] = _named(name, dimensions, values, unit, _length_unit(solved))
     return found
+
+
+def _length_unit(solved: Solved) -> str:
+    return solved.layout.space.unit
+
+
+def _units(solved: Solved) -> list[str]:
+    """SI unit of each drive's value."""
+    driven = solved.ready.kinematics.path.driven
+    return ["rad" if one.drive.kind == "angle" else _length_unit(solved) for one in driven]
 
 
 def _judgements(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
@@ -107,7 +146,7 @@ def _judgements(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
 def _events(solved: Solved) -> dict[str, Variable]:
     events = solved.events()
     by_time = solved.ready.kinematics.path.by_time
-    kind = "rad" if by_time or solved.ready.kinematics.path.driven[0].drive.kind == "angle" else "m"
+    kind = "rad" if by_time else _units(solved)[0]
     with speaking("en"):
         groups = [name_of(solved.ready.structure.groups[event.group]) for event in events]
     kinds = np.array([EVENT_KINDS.index(event.kind) for event in events], dtype=np.int8)
@@ -129,19 +168,21 @@ def _coordinates(solved: Solved) -> dict[str, Any]:
     values = path.drive_values(ARRAYS, solved.span.parameter)
     count = len(solved.span.time)
     drives = np.stack([np.broadcast_to(value, (count,)) for value in values.values()], axis=-1)
-    units = ["rad" if one.drive.kind == "angle" else "m" for one in path.driven]
+    units = _units(solved)
     drive_value = _named("drive_value", ("sample", "drive"), drives, units[0])
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)
     frame = tuple(solved.ready.structure.dimensions.frame)
+    joints = {} if solved.spins is None else {"joint": _labels(solved.layout.angles)}
     return {
         "time": _named("time", ("sample",), solved.span.time),
         "drive_value": drive_value,
         "point": _labels(frame + solved.layout.points),
         "link": _labels(solved.layout.links),
+        **joints,
         "guide": _labels(solved.layout.guides),
         "drive": _labels(tuple(values)),
-        "axis": _labels(("x", "y")),
+        "axis": _labels(solved.layout.space.axes),
     }
 
 

@@ -80,8 +80,7 @@ class Layout:
         found = [x for point in self.points for x in at.points[point]]
         found += [x for link in self.links for x in self.space.attitude(at.poses[link])]
         for guide, point in zip(self.guides, self.guided, strict=True):
-            pose, curve = at.poses[dimensions.bodies[guide]], dimensions.curve(guide)
-            found.append(self.space.slide(m, at.points[point], pose, curve))
+            found.append(slide_of(m, dimensions, at, guide, point))
         if not self._own:
             found += [x for link in self.angles for x in rotor_of_angle(m, dimensions, at, link)]
         return found
@@ -103,6 +102,11 @@ def layout_of(kinematics: Kinematics) -> Layout:
 def rotor_of_angle(m: Namespace, numbers: Dimensions, at: Positions, link: str) -> tuple[Number, Number]:
     """Cosine and sine of a link's angle."""
     return numbers.space.rotor(m, at.poses[link], [at.points[end] for end in numbers.ends[link]])
+
+
+def slide_of(m: Namespace, numbers: Dimensions, at: Positions, guide: str, point: str) -> Number:
+    """Displacement of a guide's point along its curve."""
+    return numbers.space.slide(m, at.points[point], at.poses[numbers.bodies[guide]], numbers.curve(guide))
 
 
 def positions_from(kinematics: Kinematics, layout: Layout, values: Array, parameter: Array) -> Positions:

@@ -9,20 +9,19 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError, Status
-from centrode.kinematics.angles import angle_and_rates, node_turns
 from centrode.kinematics.branches import Branches, Event, branches_at_start
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan, mesh_of
-from centrode.kinematics.layout import Layout, layout_of, rotor_of_angle
+from centrode.kinematics.layout import Layout, layout_of
 from centrode.kinematics.paths import in_time
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
 from centrode.kinematics.sampling import ORDERS, Samples, sample, settle
 from centrode.kinematics.spans import Span, span_of
 from centrode.kinematics.spins import spins_of
+from centrode.kinematics.turning import Course, fill_angles, fill_slides
 from centrode.locale import _
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import Positions
@@ -192,26 +191,10 @@ def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Sampl
     settle(samples)
     residual, worst = residuals(kinematics, samples, span.parameter)
     open_what_does_not_close(samples, residual)
-    _fill_angles(ready, kinematics.numbers, on_mesh, mesh, samples, span.parameter, angles)
+    course = Course(ready, kinematics.numbers, on_mesh, mesh)
+    fill_angles(course, samples, span.parameter, angles)
+    fill_slides(course, samples, span.parameter)
     return _Part(continuation.branches, residual, worst)
-
-
-def _fill_angles(
-    ready: Ready,
-    numbers: Dimensions,
-    on_mesh: Positions,
-    mesh: Array,
-    samples: Samples,
-    parameter: Array,
-    angles: Array,
-) -> None:
-    path, layout = ready.kinematics.path, samples.layout
-    start = int(np.argmin(np.abs(mesh - path.initial)))
-    nearest = np.clip(np.round((parameter - mesh[0]) / path.step).astype(np.intp), 0, len(mesh) - 1)
-    for k, link in enumerate(layout.angles):
-        rotor = rotor_of_angle(ARRAYS, numbers, on_mesh, link)
-        nodes = node_turns(rotor, ready.assembled.angles[link], start, len(mesh))
-        angle_and_rates(samples.columns[:, layout.rotor(link)], nodes, nearest, angles[:, k])
 
 
 def _fill_frame(columns: Array, numbers: Dimensions, samples: Samples) -> None:

@@ -14,7 +14,9 @@ from centrode.quantities import display_unit, typeset_unit
 if TYPE_CHECKING:
     from centrode.model.mechanism import Display, Mechanism
 
-MATHEMATICAL = str.maketrans({"φ": r"\varphi ", "ω": r"\omega ", "ε": r"\varepsilon ", "′": "'", "″": "''"})
+MATHEMATICAL = str.maketrans(
+    {"φ": r"\varphi ", "θ": r"\theta ", "ω": r"\omega ", "ε": r"\varepsilon ", "′": "'", "″": "''"}
+)
 
 
 def shown_as(unit: str, display: Display | None) -> tuple[float, str]:
@@ -27,7 +29,7 @@ def shown_as(unit: str, display: Display | None) -> tuple[float, str]:
 
 def drive_unit(mechanism: Mechanism, number: int = 0) -> str:
     """SI unit of the value of a drive."""
-    return "rad" if mechanism.drives[number].kind == "angle" else "m"
+    return "rad" if mechanism.drives[number].kind == "angle" or mechanism.space == "sphere" else "m"
 
 
 def plain(name: str) -> str:

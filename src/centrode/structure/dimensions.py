@@ -140,11 +140,10 @@ def dimensions_of(
         turn[guide.id] = (math.cos(angle), math.sin(angle)) if angle else (1.0, 0.0)
     values.refuse_the_rest()
     bodies = {guide.id: guide.on for guide in mechanism.guides}
-    links = mechanism.links
-    ends: dict[str, tuple[str, ...]] = {name: () for name in links}
+    ends: dict[str, tuple[str, ...]] = {name: () for name in mechanism.links}
     references = {}
     if space is SPHERE:
-        ends = {name: ends_of(name, link) for name, link in links.items() if link.reference is not None}
+        ends = ends_of(mechanism)
         references = references_of(mechanism, frame, local, ends)
     return Dimensions(frame, local, through, direction, turn, bodies, space, ends, references)
 

@@ -15,6 +15,7 @@ from centrode.kinematics.spans import is_uniform, span_at
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
+from centrode.structure.dimensions import SPACES
 from centrode.study.checking import Check, check_of
 from centrode.study.wording import Words, extremes, unit_of_drive
 
@@ -103,7 +104,8 @@ def range_value(mechanism: Mechanism, text: str, where: str) -> float:
     """
     drive = mechanism.drives[0] if mechanism.drives else None
     by_time = drive is None or len(mechanism.drives) > 1 or drive.speed is None
-    kind = "time" if by_time else "angle" if drive is not None and drive.kind == "angle" else "length"
+    length = "angle" if SPACES[mechanism.space].unit == "rad" else "length"
+    kind = "time" if by_time else "angle" if drive is not None and drive.kind == "angle" else length
     try:
         return to_si(text, kind)
     except InputError as error:
@@ -112,7 +114,7 @@ def range_value(mechanism: Mechanism, text: str, where: str) -> float:
 
 def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
     path = solved.ready.kinematics.path
-    unit = "s" if path.by_time else unit_of_drive(path.driven[0].drive)
+    unit = "s" if path.by_time else unit_of_drive(solved, path.driven[0].drive)
     parameter = solved.span.parameter
     found = {
         "mobility": Scalar(checked.mobility, "1"),
@@ -145,7 +147,7 @@ def _times(solved: Solved) -> dict[str, Scalar]:
     if not is_uniform(solved.ready.kinematics.path):
         found |= {"first_time": Scalar(first, "s"), "last_time": Scalar(last, "s")}
         for drive, low, high in extremes(solved):
-            unit = unit_of_drive(drive)
+            unit = unit_of_drive(solved, drive)
             found |= {f"least_{drive.id}": Scalar(low, unit), f"greatest_{drive.id}": Scalar(high, unit)}
     return found
 

@@ -15,9 +15,9 @@ from centrode.quantities import display_unit
 from centrode.structure.steps import name_of
 
 
-def unit_of_drive(drive: Drive) -> str:
+def unit_of_drive(solved: Solved, drive: Drive) -> str:
     """SI unit of a drive's value."""
-    return "rad" if drive.kind == "angle" else "m"
+    return "rad" if drive.kind == "angle" else solved.layout.space.unit
 
 
 def extremes(solved: Solved) -> list[tuple[Drive, float, float]]:
@@ -35,7 +35,7 @@ class Words:
         self.solved = solved
         path = solved.ready.kinematics.path
         display = solved.ready.mechanism.display
-        self.unit = "s" if path.by_time else unit_of_drive(path.driven[0].drive)
+        self.unit = "s" if path.by_time else unit_of_drive(solved, path.driven[0].drive)
         self.display = display
 
     def value(self, at: float, unit: str = "") -> str:
@@ -59,7 +59,7 @@ class Words:
         )
 
     def _reached(self, drive: Drive, low: float, high: float) -> str:
-        unit = unit_of_drive(drive)
+        unit = unit_of_drive(self.solved, drive)
         return _("{drive} between {low} and {high}").format(
             drive=drive.id, low=self.value(low, unit), high=self.value(high, unit)
         )

@@ -1,0 +1,70 @@
+"""Angles and displacements that run on over turns: filled in for samples by way of the mesh of the path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.kinematics.angles import NodeTurns, angle_and_rates, node_turns
+from centrode.kinematics.layout import rotor_of_angle, slide_of
+from centrode.kinematics.ready import Ready
+from centrode.kinematics.sampling import Samples
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.positions import Positions
+
+Array: TypeAlias = npt.NDArray[np.float64]
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Course:
+    """Positions of some mechanisms of a batch on the mesh, from the initial one outwards."""
+
+    ready: Ready
+    numbers: Dimensions
+    on_mesh: Positions
+    mesh: Array
+
+    def turns(self, rotor: tuple[object, object], initial: float) -> NodeTurns:
+        """Turns along the mesh of what a rotor shows; `initial` [rad] is its angle in the initial position."""
+        start = int(np.argmin(np.abs(self.mesh - self.ready.kinematics.path.initial)))
+        return node_turns(rotor, initial, start, len(self.mesh))
+
+    def nearest(self, parameter: Array) -> npt.NDArray[np.intp]:
+        """The node nearest to each parameter."""
+        nodes = np.round((parameter - self.mesh[0]) / self.ready.kinematics.path.step).astype(np.intp)
+        return np.asarray(np.clip(nodes, 0, len(self.mesh) - 1))
+
+
+def fill_angles(course: Course, samples: Samples, parameter: Array, angles: Array) -> None:
+    """Fill in the angles (3, angles, lanes, n) that are measured."""
+    nearest = course.nearest(parameter)
+    for k, link in enumerate(samples.layout.angles):
+        rotor = rotor_of_angle(ARRAYS, course.numbers, course.on_mesh, link)
+        nodes = course.turns(rotor, course.ready.assembled.angles[link])
+        angle_and_rates(samples.columns[:, samples.layout.rotor(link)], nodes, nearest, angles[:, k])
+
+
+def fill_slides(course: Course, samples: Samples, parameter: Array) -> None:
+    """Add its rounds to the displacement along a guide that closes."""
+    space, layout = course.numbers.space, samples.layout
+    for k, (guide, point) in enumerate(zip(layout.guides, layout.guided, strict=True)):
+        period = space.period(ARRAYS, course.numbers.curve(guide))
+        if period is None:
+            continue
+        angle = slide_of(ARRAYS, course.numbers, course.on_mesh, guide, point) * (TURN / period)
+        nodes = course.turns((np.cos(angle), np.sin(angle)), _initial(course, guide, point))
+        slide = samples.columns[0, layout.first_slide + k]
+        angle = slide * (TURN / period)
+        slide += period * nodes.at(course.nearest(parameter), np.cos(angle), np.sin(angle))
+
+
+def _initial(course: Course, guide: str, point: str) -> float:
+    """Angle about the pole [rad] in the initial position: the drive's where one drives it, else in (-pi, pi]."""
+    at, numbers = course.ready.assembled.positions, course.ready.kinematics.numbers
+    slide = at.drives.get(guide, slide_of(ARRAYS, numbers, at, guide, point))
+    return float(slide * TURN / numbers.space.period(ARRAYS, numbers.curve(guide)))
