@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import degrees, radians
+from math import degrees, radians, tau
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -14,9 +14,11 @@ from centrode.errors import InputError
 from centrode.geometry.space import Space
 from centrode.kinematics.closure import shortfall
 from centrode.kinematics.evaluate import Choices, Hooks, Kinematics
-from centrode.kinematics.fitting import check_fit
+from centrode.kinematics.fitting import check_fit, check_touch
 from centrode.kinematics.groups import solve_group
 from centrode.kinematics.guesses import bound_higher, start_higher
+from centrode.kinematics.newton import System
+from centrode.kinematics.phases import phases_after, phases_before, phases_in, standing_links, with_phases
 from centrode.kinematics.sides import (
     DEGENERATE,
     angle_off,
@@ -29,6 +31,7 @@ from centrode.kinematics.sides import (
     turned_apart,
 )
 from centrode.locale import _
+from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet, Newton, TwoPointLink, links_of, points_of
 from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
@@ -41,12 +44,17 @@ ANGLE_TOLERANCE = radians(5.0)
 
 @dataclass(frozen=True)
 class Assembled:
-    """The initial position: sign of each signed group, places of everything, and how well it closes."""
+    """The initial position: sign of each signed group, places of everything, and how well it closes.
+
+    `angles` has those of all links and the bearings of rolling wheels; `numbers` are the dimensions with the
+    constants of gears and rolling contacts, which are found here.
+    """
 
     signs: dict[int, float]
     positions: Positions
     angles: dict[str, float]
     residual: float
+    numbers: Dimensions
 
 
 def assemble(kinematics: Kinematics) -> Assembled:
@@ -66,41 +74,74 @@ def assemble(kinematics: Kinematics) -> Assembled:
     )
     signs: dict[int, float] = {}
     check_sides(kinematics)
+    starting = _Starting(kinematics)
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
             try:
+                phases = phases_before(kinematics, group, at, Choices(starting, i))
+                kinematics = with_phases(kinematics, phases)
                 if isinstance(group, Newton):
-                    mechanism = kinematics.structure.mechanism
-                    bound_higher(start_higher(mechanism, kinematics.numbers, group, at), at, bounded)
+                    kinematics = _start_higher(kinematics, group, at, bounded)
                 elif group.signed:
                     signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
                     check_opens(kinematics, i, signs)
                 else:
-                    solve_group(group, ARRAYS, kinematics.numbers, at, Choices(Hooks(), i))
+                    solve_group(group, ARRAYS, kinematics.numbers, at, Choices(starting, i))
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
                 raise _undetermined(group) from None
             _check_finite(group, at)
             _check_angles(kinematics, group, at)
             if isinstance(group, Newton):
                 continue
-            bounding = _Bounding(group, signs.get(i, 1.0))
+            kinematics.count(i, at, ARRAYS, starting)
+            bounding = _Bounding(kinematics, group, signs.get(i, 1.0))
             solve_group(group, ROUNDED, kinematics.numbers, bounded, Choices(bounding, i))
+            kinematics.count(i, bounded, ROUNDED, bounding)
+    kinematics = with_phases(kinematics, phases_after(kinematics, at))
+    check_touch(kinematics, at)
     residual = check_fit(kinematics, at)
-    return Assembled(signs, at, _angles(kinematics, at), residual)
+    return Assembled(signs, at, _angles(kinematics, at) | starting.found, residual, kinematics.numbers)
+
+
+def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded: Positions) -> Kinematics:
+    """Solve a group of higher class; its wheels mesh as they stand then."""
+    known = at.copied()
+    standing = standing_links(kinematics, group, at)
+    start_higher(kinematics.structure.mechanism, kinematics.numbers, standing, at)
+    kinematics = with_phases(kinematics, phases_in(kinematics, group, at))
+    bound_higher(System(group, kinematics.numbers, known, 1), at, bounded)
+    return kinematics
 
 
 def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
     """Rounding error of a group's radicand, from positions with bounds known before it."""
-    bounding = _Bounding(group, 1.0)
+    bounding = _Bounding(kinematics, group, 1.0)
     solve_group(group, ROUNDED, kinematics.numbers, bounded.copied(), Choices(bounding, 0))
     return bounding.bound
 
 
-class _Bounding(Hooks):
+class _Starting(Hooks):
+    """Angles in the turn that the description names; keeps those of what is no link."""
+
+    def __init__(self, kinematics: Kinematics) -> None:
+        self.links = kinematics.structure.mechanism.links
+        self.found: dict[str, float] = {}
+
+    def continued(self, group: int, key: str, angle: Number) -> Number:
+        value = float(angle.value if isinstance(angle, Rounded) else angle)
+        if key not in self.links:
+            self.found[key] = value
+            return angle
+        near = self.links[key].angle
+        return angle if near is None else angle + tau * np.round((near - value) / tau)
+
+
+class _Bounding(_Starting):
     """A group with rounding bounds: keeps that of its radicand, refuses a divisor that may be zero."""
 
-    def __init__(self, group: Group, sign: float) -> None:
+    def __init__(self, kinematics: Kinematics, group: Group, sign: float) -> None:
+        super().__init__(kinematics)
         self.solved = group
         self.sign = sign
         self.bound = 0.0
@@ -134,6 +175,7 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
     sign = stated if stated is not None else side_by_angles(kinematics, group, options)
     at.points.update(options[sign].points)
     at.poses.update(options[sign].poses)
+    at.angles.update(options[sign].angles)
     return sign
 
 
@@ -145,15 +187,18 @@ def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bo
     return trial
 
 
-@dataclass(frozen=True)
-class _OneSide(Hooks):
+class _OneSide(_Starting):
     """One of a group's two assemblies; refused if it falls short of closing."""
 
-    kinematics: Kinematics
-    solved: Group
-    known: Positions
-    sign: float
-    bound: float
+    def __init__(
+        self, kinematics: Kinematics, group: Group, known: Positions, sign: float, bound: float
+    ) -> None:
+        super().__init__(kinematics)
+        self.kinematics = kinematics
+        self.solved = group
+        self.known = known
+        self.sign = sign
+        self.bound = bound
 
     def root(self, group: int, radicand: Number) -> Number:
         if radicand < -SAFETY * self.bound:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.paths import Path
+from centrode.kinematics.turns import Turns
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -42,6 +43,8 @@ class Branches:
     events : found so far, in plan order
     crossings : group -> (lanes, k) change points, padded with NaN
     largest : group -> (lanes,) greatest radicand on the mesh
+    angles : link, or bearing of a rolling wheel -> its angle [rad] in the initial position
+    turns : the same -> how it runs on over turns, once it is found
     smooth : whether signs flip at change points ("smooth") or stay ("keep")
     """
 
@@ -51,6 +54,8 @@ class Branches:
     lanes: int
     signs: dict[int, Array]
     smooth: bool
+    angles: Mapping[str, float] = field(default_factory=dict)
+    turns: dict[str, Turns] = field(default_factory=dict)
     events: list[Event] = field(default_factory=list)
     crossings: dict[int, Array] = field(default_factory=dict)
     largest: dict[int, Array] = field(default_factory=dict)
@@ -115,7 +120,9 @@ class Branches:
         return limit.at <= self.initial
 
 
-def branches_at_start(path: Path, signs: Mapping[int, float], smooth: bool, lanes: int = 1) -> Branches:
-    """Signs in the initial position, before any event is known."""
+def branches_at_start(
+    path: Path, signs: Mapping[int, float], angles: Mapping[str, float], smooth: bool, lanes: int = 1
+) -> Branches:
+    """Signs and angles in the initial position, before any event is known."""
     first = {group: np.full(lanes, sign) for group, sign in signs.items()}
-    return Branches(path.initial, path.forward, path.unit, lanes, first, smooth)
+    return Branches(path.initial, path.forward, path.unit, lanes, first, smooth, angles)

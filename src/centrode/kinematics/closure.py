@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from centrode.algebra.arrays import ARRAYS
+from centrode.kinematics.evaluate import Choices, Hooks
 from centrode.kinematics.groups import aim_curve, loci_of
 from centrode.locale import _
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Meet, Rail
+from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Stroke
 from centrode.structure.positions import Positions
+from centrode.structure.wheel_groups import Touch
 
 
 def shortfall(group: Group, numbers: Dimensions, at: Positions) -> str:
@@ -15,13 +17,15 @@ def shortfall(group: Group, numbers: Dimensions, at: Positions) -> str:
     if isinstance(group, Aim):
         return _of_aim(group, numbers, at)
     assert isinstance(group, Meet)
-    one, other = loci_of(group, ARRAYS, numbers, at)
+    one, other = loci_of(group, ARRAYS, numbers, at, Choices(Hooks(), 0))
     lack = numbers.space.lack(ARRAYS, one, other)
     by = f"{max(lack):.4g} {numbers.space.unit}"
     reason = lack.index(max(lack))
     links = [rod.link for rod in group.rods]
     if len(links) == 2:
         return _of_two_links(reason, (links[0], links[1]), by)
+    if group.circles > len(links):
+        return _of_circles(reason, [circle_name(locus) for locus in group.loci], by)
     if len(links) == 1:
         if reason in (1, 3):
             return _("link {a} is too long for its guide by {by}").format(a=links[0], by=by)
@@ -36,9 +40,9 @@ def _of_aim(group: Aim, numbers: Dimensions, at: Positions) -> str:
     offset = space.reach(ARRAYS, aim_curve(group, numbers), pivot)
     by = float(offset - space.distance(ARRAYS, at.points[group.target], at.points[group.pivot]))
     if by <= 0.0:  # only circles can be too near as well
-        return _("guide {guide} does not reach as far as {b}").format(guide=group.guide, b=group.target)
-    return _("the offset of guide {guide} exceeds the distance {a}-{b} by {by}").format(
-        guide=group.guide, a=group.pivot, b=group.target, by=f"{by:.4g} {space.unit}"
+        return _("{line} does not reach as far as {b}").format(line=line_name(group), b=group.target)
+    return _("the offset of {line} exceeds the distance {a}-{b} by {by}").format(
+        line=line_name(group), a=group.pivot, b=group.target, by=f"{by:.4g} {space.unit}"
     )
 
 
@@ -50,3 +54,32 @@ def _of_two_links(reason: int, links: tuple[str, str], by: str) -> str:
         return _("links {a} and {b} together are too long by {by}").format(a=first, b=second, by=by)
     longer, shorter = (first, second) if reason == 1 else (second, first)
     return _("link {a} is too long for link {b} by {by}").format(a=longer, b=shorter, by=by)
+
+
+def _of_circles(reason: int, names: list[str], by: str) -> str:
+    """Circles of which at least one is that of a cylinder or of a wheel; the other may be a line."""
+    first, second = names
+    if not second:
+        return _("{a} is too short to reach its line by {by}").format(a=first, by=by)
+    if reason == 0:
+        return _("{a} and {b} together are too short by {by}").format(a=first, b=second, by=by)
+    longer, shorter = (first, second) if reason == 1 else (second, first)
+    return _("{a} is too long for {b} by {by}").format(a=longer, b=shorter, by=by)
+
+
+def circle_name(locus: Locus) -> str:
+    """What draws the circle of a locus; nothing for a line."""
+    if isinstance(locus, Rod):
+        return _("link {link}").format(link=locus.link)
+    if isinstance(locus, Stroke):
+        return _("cylinder {drive}").format(drive=locus.drive)
+    if isinstance(locus, Touch) and locus.letter == "R":
+        return _("wheel {wheel}").format(wheel=locus.contact.rolling)
+    return ""
+
+
+def line_name(group: Aim) -> str:
+    """What an aimed link passes its target with."""
+    if group.contact is not None:
+        return _("wheel {wheel}").format(wheel=group.contact.rolling)
+    return _("guide {guide}").format(guide=group.guide)

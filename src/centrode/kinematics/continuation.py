@@ -176,6 +176,11 @@ class Smooth(Hooks):
     def judge(self, group: int, judged: Judged) -> None:
         """Look at where a group of higher class is not what it should be."""
 
+    def continued(self, group: int, key: str, angle: Number) -> Number:
+        # not counted yet: the group itself is still being searched, and nothing behind it is asked for
+        turns = self.continuation.branches.turns.get(key)
+        return angle if turns is None else turns.continued(angle, self.parameter, self.lanes)
+
     def after(self, group: int, at: Positions) -> None:
         self.continuation.mend(group, at, self.parameter, self.lanes)
 

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 from centrode.kinematics.groups import solve_group
 from centrode.kinematics.paths import Path
+from centrode.kinematics.wheels import Continued
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.plan import Structure
 from centrode.structure.positions import Positions
@@ -40,14 +41,20 @@ class Hooks:
 
 
 class FixedSigns(Hooks):
-    """Given signs, wherever the drive stands."""
+    """Given signs and turns, wherever the drive stands."""
 
-    def __init__(self, m: Namespace, signs: Mapping[int, Number]) -> None:
+    def __init__(
+        self, m: Namespace, signs: Mapping[int, Number], continued: Continued = lambda _key, angle: angle
+    ) -> None:
         self.m = m
         self.signs = signs
+        self.turned = continued
 
     def root(self, group: int, radicand: Number) -> Number:
         return self.m.sqrt(radicand) * self.signs[group]
+
+    def continued(self, group: int, key: str, angle: Number) -> Number:
+        return self.turned(key, angle)
 
 
 @dataclass(frozen=True)
@@ -105,6 +112,14 @@ class Kinematics:
         for i in groups:
             solve_group(self.structure.groups[i], m, self.numbers, at, Choices(hooks, i))
             hooks.after(i, at)
+            self.count(i, at, m, hooks)
+
+    def count(self, group: int, at: Positions, m: Namespace, hooks: Hooks) -> None:
+        """Add the angles, with their turns, of links of a group on which gears or rolling wheels depend."""
+        for link in self.structure.counted[group]:
+            if link not in at.angles:
+                cosine, sine = at.poses[link].rotor
+                at.angles[link] = hooks.continued(group, link, m.atan2(sine, cosine))
 
     def guard(self, m: Namespace, parameter: Number, group: int, hooks: Hooks) -> Number:
         """The number whose sign decides whether a group closes: its radicand, or the divisor of a group without one."""

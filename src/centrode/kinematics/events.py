@@ -23,6 +23,7 @@ from centrode.kinematics.continuation import REACH, Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics, Reached
 from centrode.kinematics.paths import JETS, Path
 from centrode.kinematics.roots import bracketed_roots
+from centrode.kinematics.turns import counted
 from centrode.structure.groups import Aim, Meet, Newton
 from centrode.structure.positions import Positions
 
@@ -77,8 +78,7 @@ class Scan:
             with suppress(Reached):  # slopes are needed up to the last radicand, and not beyond
                 self.kinematics.advance(at, range(last + 1), JETS, _Searching(self, last))
             plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
-            smooth = self.continuation.hooks(ARRAYS, along, None)
-            self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, smooth)
+            self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, _Counting(self, ARRAYS))
         return plain
 
     def find(self, group: int, radicand: Jet) -> None:
@@ -172,12 +172,24 @@ class Scan:
         return guard_with_bound(self.continuation, group, lanes, at)
 
 
-class _Searching(Smooth):
+class _Counting(Smooth):
+    """Counts the turns of angles along the mesh, for all that is asked for afterwards."""
+
+    def __init__(self, scan: Scan, m: Namespace) -> None:
+        super().__init__(scan.continuation, m, scan.mesh[None, :], None)
+        self.scan = scan
+
+    def continued(self, group: int, key: str, angle: Number) -> Number:
+        branches, mesh = self.scan.branches, self.scan.mesh
+        branches.turns[key] = counted(angle, mesh, branches.angles.get(key, 0.0), branches.initial)
+        return super().continued(group, key, angle)
+
+
+class _Searching(_Counting):
     """Looks for the events of every group before it asks for its sign; goes no further than the last radicand."""
 
     def __init__(self, scan: Scan, last: int) -> None:
-        super().__init__(scan.continuation, JETS, scan.mesh[None, :], None)
-        self.scan = scan
+        super().__init__(scan, JETS)
         self.last = last
 
     def root(self, group: int, radicand: Jet) -> Number:

@@ -6,10 +6,12 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import Kinematics
 from centrode.locale import _
+from centrode.structure.gearing import Straight
 from centrode.structure.groups import TwoPointLink
 from centrode.structure.plan import drives_against_mobility
 from centrode.structure.positions import Positions
 from centrode.structure.rank import residuals_at
+from centrode.structure.wheels import Contact
 
 RESIDUAL_TOLERANCE = 1e-9
 """Greatest residual of a closed mechanism, in units of its greatest length."""
@@ -44,6 +46,33 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
             ),
         )
     return value
+
+
+def check_touch(kinematics: Kinematics, at: Positions) -> None:
+    """Refuse a wheel whose centre something else keeps off its track."""
+    numbers = kinematics.numbers
+    for constraint in kinematics.structure.redundant:
+        if not isinstance(constraint, Contact):
+            continue
+        (off,) = (float(x) for x in constraint.residual(ARRAYS, numbers, at))
+        if abs(off) <= RESIDUAL_TOLERANCE * float(numbers.scale):
+            continue
+        track = numbers.gearing.track[constraint.rolling]
+        what = (
+            _(
+                "the wheel does not touch its track in the initial position: its centre is {by:.4g} m too far away"
+            )
+            if off > 0.0
+            else _(
+                "the wheel does not touch its track in the initial position: its centre is {by:.4g} m too near"
+            )
+        )
+        repair = (
+            _("correct the radius or the line; its direction has the wheel's centre on its left")
+            if isinstance(track, Straight)
+            else _("correct the radii; inside = true rolls inside the circle, false outside")
+        )
+        raise InputError(f"[[rolling]] {constraint.rolling}", what.format(by=abs(off)), repair)
 
 
 def length_misfits(kinematics: Kinematics, at: Positions) -> dict[str, float]:

@@ -23,6 +23,14 @@ from centrode.geometry.plane import (
 )
 from centrode.geometry.space import Curve, Root
 from centrode.geometry.space import Pose as AnyPose
+from centrode.kinematics.wheels import (
+    beside_track,
+    followed,
+    rolloff_line,
+    solve_train,
+    touched_circle,
+    touched_line,
+)
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import (
     Aim,
@@ -35,11 +43,13 @@ from centrode.structure.groups import (
     Rod,
     Slot,
     Stop,
+    Stroke,
     TurnedLink,
     Turning,
     TwoPointLink,
 )
 from centrode.structure.positions import Positions
+from centrode.structure.wheel_groups import Following, Rolloff, Touch, Train
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
@@ -69,11 +79,13 @@ def solve_group(group: Group, m: Namespace, numbers: Dimensions, at: Positions, 
     elif isinstance(group, TwoPointLink):
         _two_points(group.link, group.first, group.second, m, numbers, at)
     elif isinstance(group, TurnedLink):
-        at.poses[group.link] = _turned_link(group, m, numbers, at)
+        at.poses[group.link] = _turned_link(group, m, numbers, at, choices)
     elif isinstance(group, Aim):
         _aim(group, m, numbers, at, choices.root)
     elif isinstance(group, Meet):
         _meet(group, m, numbers, at, choices)
+    elif isinstance(group, Train):
+        solve_train(group, m, numbers, at, choices.continued)
     elif isinstance(group, Newton):
         choices.higher(m, at)
 
@@ -85,8 +97,14 @@ def _difference(turning: Turning, m: Namespace, numbers: Dimensions, at: Positio
     return numbers.turn[turning.guide or ""]
 
 
-def _turned_link(group: TurnedLink, m: Namespace, numbers: Dimensions, at: Positions) -> AnyPose:
+def _turned_link(
+    group: TurnedLink, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices
+) -> AnyPose:
     turning = group.turning
+    if not isinstance(turning, Turning):
+        at_pivot = numbers.local[group.link][group.pivot], at.points[group.pivot]
+        return pose_with_point(*at_pivot, turn_link(turning, group.link, m, numbers, at, choices))
+    _add_angle(turning, group.link, at)
     rotor, reference = _difference(turning, m, numbers, at), numbers.reference(turning.link)
     base = turning.relative_to
     if group.link != turning.link:  # it is the base that is unknown
@@ -94,6 +112,32 @@ def _turned_link(group: TurnedLink, m: Namespace, numbers: Dimensions, at: Posit
         reference = reference and reference[2:] + reference[:2]
     local = numbers.local[group.link][group.pivot]
     return numbers.space.turned_pose(m, at.poses[base], rotor, local, at.points[group.pivot], reference)
+
+
+def turn_link(
+    turning: Turning | Following,
+    link: str,
+    m: Namespace,
+    numbers: Dimensions,
+    at: Positions,
+    choices: Choices,
+) -> Vector:
+    """Rotor of a link whose angle follows, in the plane; the angle is added where it is known with its turns."""
+    if isinstance(turning, Turning):
+        _add_angle(turning, link, at)
+        return turning_rotor(turning, link, m, numbers, at)
+    rotor, angle = followed(turning, link, m, numbers, at, choices.continued)
+    if angle is not None:
+        at.angles[link] = angle
+    return rotor
+
+
+def _add_angle(turning: Turning, link: str, at: Positions) -> None:
+    """Add the angle of a driven link with its turns, if that of the other link is known."""
+    other = turning.relative_to if link == turning.link else turning.link
+    if turning.drive is not None and other in at.angles:
+        value = at.drives[turning.drive]
+        at.angles[link] = value + at.angles[other] if link == turning.link else at.angles[other] - value
 
 
 def turning_rotor(turning: Turning, link: str, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
@@ -113,6 +157,8 @@ def _two_points(link: str, first: str, second: str, m: Namespace, numbers: Dimen
 
 def aim_curve(group: Aim, numbers: Dimensions) -> Curve:
     """Curve of the aimed link on which the target lies, in the link's axes."""
+    if group.contact is not None:
+        return beside_track(group.contact.rolling, numbers)
     if group.block is None or group.sliding is None:
         return numbers.curve(group.guide)
     # the block keeps its angle to the aimed link, so its pivot runs on a parallel of the guide
@@ -134,10 +180,16 @@ def _aim(group: Aim, m: Namespace, numbers: Dimensions, at: Positions, root: Roo
         at.points[group.sliding] = place(block, numbers.local[group.block][group.sliding])
 
 
-def _carriage_rotor(group: Meet, m: Namespace, numbers: Dimensions, at: Positions) -> Vector | None:
+def _carriage_rotor(
+    group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices
+) -> Vector | None:
     if group.carriage is None or group.turning is None:
         return None
-    return turning_rotor(group.turning, group.carriage, m, numbers, at)
+    rotor = turn_link(group.turning, group.carriage, m, numbers, at, choices)
+    rolls = [locus.rolling for locus in group.loci if isinstance(locus, Rolloff)]
+    if group.carriage not in at.angles and any(group.carriage in (r.link, r.on) for r in rolls):
+        at.angles[group.carriage] = choices.continued(group.carriage, m.atan2(rotor[1], rotor[0]))
+    return rotor
 
 
 def _arms(group: Meet, numbers: Dimensions, rotor: Vector | None) -> dict[str, Vector]:
@@ -148,15 +200,15 @@ def _arms(group: Meet, numbers: Dimensions, rotor: Vector | None) -> dict[str, V
     return {point: turned(local[point], rotor) for point in group.points}
 
 
-def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions) -> list[Any]:
+def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> list[Any]:
     """The two loci of a group's unknown vector, circles of links first."""
-    rotor = _carriage_rotor(group, m, numbers, at)
+    rotor = _carriage_rotor(group, m, numbers, at, choices)
     arms = _arms(group, numbers, rotor)
     return [_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci]
 
 
 def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> None:
-    rotor = _carriage_rotor(group, m, numbers, at)
+    rotor = _carriage_rotor(group, m, numbers, at, choices)
     arms = _arms(group, numbers, rotor)
     one, other = (_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci)
     vector = numbers.space.meet(one, other, choices.root, choices.divisor)
@@ -177,7 +229,10 @@ def _locus(
     rotor: Vector | None,
 ) -> Any:
     """Locus of the group's unknown vector: that of the point, moved back by the point's arm on the carriage."""
-    found = _of_point(locus, m, numbers, at, rotor)
+    if isinstance(locus, Stroke | Touch | Rolloff):
+        found = _driven_or_rolled(locus, numbers, at, rotor)
+    else:
+        found = _of_point(locus, m, numbers, at, rotor)
     if rotor is None:
         return found
     arm = arms.get(locus.point, (0.0, 0.0))
@@ -186,7 +241,9 @@ def _locus(
     return Line(subtract(found.through, arm), found.direction)
 
 
-def _of_point(locus: Locus, m: Namespace, numbers: Dimensions, at: Positions, rotor: Vector | None) -> Any:
+def _of_point(
+    locus: Rod | Rail | Slot | Stop, m: Namespace, numbers: Dimensions, at: Positions, rotor: Vector | None
+) -> Any:
     """Locus of a point of the group; of the unknown vector itself, if it is a slot of the carriage."""
     if isinstance(locus, Rod):
         local = numbers.local[locus.link]
@@ -201,3 +258,18 @@ def _of_point(locus: Locus, m: Namespace, numbers: Dimensions, at: Positions, ro
     if isinstance(locus, Rail):
         return numbers.space.rail(m, pose, curve)
     return numbers.space.stop(m, pose, curve, at.drives[locus.drive])
+
+
+def _driven_or_rolled(
+    locus: Stroke | Touch | Rolloff, numbers: Dimensions, at: Positions, rotor: Vector | None
+) -> Circle | Line:
+    """Locus of a point at a cylinder or a track; of the unknown vector itself, if the carriage holds the track."""
+    if isinstance(locus, Stroke):
+        return Circle(at.points[locus.centre], at.drives[locus.drive])
+    if isinstance(locus, Rolloff):
+        turn = at.angles[locus.rolling.link] - at.angles[locus.rolling.on]
+        return Line(*rolloff_line(locus, turn, numbers, at, rotor))
+    if locus.letter == "R":
+        reach = numbers.gearing.reach(locus.contact.rolling)
+        return Circle(touched_circle(locus, numbers, at, rotor), reach)
+    return Line(*touched_line(locus, numbers, at, rotor))

@@ -34,7 +34,7 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
     Raises InputError where an initial angle is missing, where nothing closes near the angles given, and where
     the group is singular.
     """
-    guess = _guessed(mechanism, numbers, group, at)
+    guess = guessed(mechanism, numbers, group, at)
     system = System(group, numbers, at.copied(), 1)
     with np.errstate(all="ignore"):
         found = newton(system, system.state_of(guess), STEPS)
@@ -69,7 +69,7 @@ def _floats(pair: tuple[Array, Array]) -> tuple[float, float]:
     return float(pair[0][0]), float(pair[1][0])
 
 
-def _guessed(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> Positions:
+def guessed(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> Positions:
     """Where the initial angles put the group's links, link by link from what is known."""
     guess = at.copied()
     left = list(group.links)

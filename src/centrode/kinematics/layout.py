@@ -65,6 +65,11 @@ class Layout:
         return self.first_rotor + (0 if self._own else 2 * len(self.angles))
 
     @property
+    def runs_on(self) -> bool:
+        """Whether an angle is that of a link's own axes, so that one the plan counts with its turns says it all."""
+        return self._own
+
+    @property
     def _own(self) -> bool:
         """Whether a link's attitude is the rotor of its angle, so that it needs no columns of its own."""
         return self.attitude == 2
@@ -109,8 +114,10 @@ def slide_of(m: Namespace, numbers: Dimensions, at: Positions, guide: str, point
     return numbers.space.slide(m, at.points[point], at.poses[numbers.bodies[guide]], numbers.curve(guide))
 
 
-def positions_from(kinematics: Kinematics, layout: Layout, values: Array, parameter: Array) -> Positions:
-    """Positions as plain arrays from the values of the columns (columns first), to evaluate constraints on."""
+def positions_from(
+    kinematics: Kinematics, layout: Layout, values: Array, angles: Array, parameter: Array
+) -> Positions:
+    """Positions as plain arrays from the values of columns and angles (columns first), to evaluate constraints on."""
     numbers, size = kinematics.numbers, layout.attitude
     at = Positions.of_frame(numbers, kinematics.path.drive_values(ARRAYS, parameter))
     for k, point in enumerate(layout.points):
@@ -120,4 +127,5 @@ def positions_from(kinematics: Kinematics, layout: Layout, values: Array, parame
         point, local = next(iter(numbers.local[link].items()))
         attitude = values[column : column + size]
         at.poses[link] = numbers.space.pose_of(ARRAYS, tuple(attitude), local, at.points[point])
+    at.angles.update(zip(layout.angles, angles, strict=True))
     return at

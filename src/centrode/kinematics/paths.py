@@ -7,7 +7,7 @@ is time.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import isfinite, tau
+from math import dist, isfinite, tau
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,6 +18,7 @@ from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.laws import Law
 from centrode.locale import _
+from centrode.model.chain import chain_of
 from centrode.model.mechanism import Drive, Mechanism
 
 Number: TypeAlias = Any
@@ -88,6 +89,16 @@ class Path:
             return {self.driven[0].drive.id: parameter}
         return {one.drive.id: one.value(m, parameter) for one in self.driven}
 
+    def impossible(self, parameter: Any) -> Any:
+        """Where a cylinder would be shorter than zero: the mechanism is open there, whatever its formulas say."""
+        found = np.zeros(np.shape(parameter), dtype=bool)
+        if any(one.drive.kind == "distance" for one in self.driven):
+            values = self.drive_values(ARRAYS, parameter)
+            for one in self.driven:
+                if one.drive.kind == "distance":
+                    found |= values[one.drive.id] <= 0.0
+        return found
+
 
 def path_of(mechanism: Mechanism, scale: float) -> Path:
     """The path that a description's drives take; `scale` is the mechanism's greatest length [m]."""
@@ -130,6 +141,8 @@ def _driven_by(mechanism: Mechanism, drive: Drive) -> DrivenBy:
     law = drive.motion_law
     at_zero = _at_zero(drive, law)
     drawn = _drawn_value(mechanism, drive)
+    if drive.kind == "distance":
+        return DrivenBy(drive, law, _start_of_cylinder(drive, drawn, at_zero))
     if drive.start is None:
         return DrivenBy(drive, law, (0.0 if drawn is None else drawn) - at_zero)
     _check_agreement(drive, drive.start + at_zero, drawn)
@@ -150,14 +163,38 @@ def _at_zero(drive: Drive, law: Law) -> float:
 
 
 def _drawn_value(mechanism: Mechanism, drive: Drive) -> float | None:
-    """The value that the links' initial angles say an angle drive has."""
-    if drive.kind != "angle" or drive.link is None:
+    """The value that the links' initial angles say a drive has: of an angle, or of a cylinder they reach."""
+    if drive.distance is not None:
+        known = chain_of(mechanism).points
+        reached = [known[point] for point in drive.distance if point in known]
+        return dist(*reached) if len(reached) == 2 else None
+    if drive.link is None:
         return None
     angle = mechanism.links[drive.link].angle
     if mechanism.links[drive.link].reference is not None:
         return angle  # it is measured where the drive's is
     reference = 0.0 if drive.relative_to == "frame" else mechanism.initial_angle(drive.relative_to)
     return None if angle is None or reference is None else angle - reference
+
+
+def _start_of_cylinder(drive: Drive, drawn: float | None, at_zero: float) -> float:
+    """Start of a cylinder, by itself or by the initial angles; its length at t = 0 has to be positive."""
+    if drive.start is None and drawn is None:
+        raise InputError(
+            f"[[drives]] {drive.id}",
+            _("nothing says how long the cylinder is in the initial position"),
+            _("give start, or the initial angles of the links between its points"),
+        )
+    start = drive.start if drive.start is not None else (drawn or 0.0) - at_zero
+    if not start + at_zero > 0.0:
+        raise InputError(
+            f"[[drives]] {drive.id}",
+            _("a cylinder shorter than zero: its length at t = 0 is {value:g} m").format(
+                value=start + at_zero
+            ),
+            _("give the distance of the points as start"),
+        )
+    return start
 
 
 def _check_agreement(drive: Drive, value: float, drawn: float | None) -> None:

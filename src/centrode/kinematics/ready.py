@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -69,6 +69,7 @@ def ready(mechanism: Mechanism) -> Ready:
     if any(isinstance(group, Newton) for group in structure.groups):
         _refuse_surplus_drives(structure)
     assembled = assemble(kinematics)
+    kinematics = replace(kinematics, numbers=assembled.numbers)
     mobility = _mobility(kinematics, assembled)
     return Ready(kinematics, assembled, mobility)
 
@@ -117,7 +118,7 @@ def _places(kinematics: Kinematics, assembled: Assembled) -> Iterator[Positions]
     path = kinematics.path
     looks = path.initial + path.unit * np.array(LOOKS)
     mesh = mesh_of(path, looks)
-    branches = branches_at_start(path, assembled.signs, smooth=True)
+    branches = branches_at_start(path, assembled.signs, assembled.angles, smooth=True)
     continuation = Continuation(kinematics, branches, assembled.positions, kinematics.numbers)
     on_mesh = Scan(continuation, mesh).run()
     for node in np.argmin(np.abs(mesh[:, None] - looks), axis=0):

@@ -13,7 +13,6 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import Status
 from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.layout import positions_from
 from centrode.kinematics.sampling import Samples, settle
 from centrode.locale import _
 from centrode.structure.constraints import Constraint
@@ -41,12 +40,11 @@ class UnitLength:
 Kept: TypeAlias = Constraint | UnitLength
 
 
-def residuals(kinematics: Kinematics, samples: Samples, parameter: Array) -> tuple[Array, Kept]:
-    """Greatest residual at each sample (lanes, n), and the constraint that is worst of all.
+def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[Array, Kept]:
+    """Greatest residual at each sample (lanes, n), from its positions, and the constraint that is worst of all.
 
     Lengths are measured in the mechanism's greatest length, angles in rad; NaN where there is no position.
     """
-    at = positions_from(kinematics, samples.layout, samples.columns[0], parameter)
     worst = np.zeros(samples.status.shape)
     greatest: dict[Kept, float] = {}
     with np.errstate(all="ignore"):

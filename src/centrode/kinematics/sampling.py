@@ -6,7 +6,7 @@ mechanisms of a batch.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -16,7 +16,6 @@ from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import SAFETY
 from centrode.errors import Status
 from centrode.kinematics.continuation import Continuation, Smooth
-from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import guard_with_bound
 from centrode.kinematics.higher import Judged
 from centrode.kinematics.layout import Layout
@@ -36,15 +35,20 @@ SUSPECT = 1e-8
 
 @dataclass
 class Samples:
-    """Columns with their derivatives by the path's parameter, and a status for each sample."""
+    """Columns with their derivatives by the path's parameter, angles likewise, and a status for each sample.
+
+    `followed` names the links whose angles the plan gives with their turns; those of others follow from rotors.
+    """
 
     layout: Layout
     columns: Array
+    angles: Array
     status: npt.NDArray[np.int8]
+    followed: set[str] = field(default_factory=set)
 
     def of(self, rows: slice) -> Samples:
         """A view of some mechanisms of the batch."""
-        return Samples(self.layout, self.columns[:, :, rows], self.status[rows])
+        return Samples(self.layout, self.columns[:, :, rows], self.angles[:, :, rows], self.status[rows])
 
     @property
     def complete(self) -> Mask:
@@ -55,13 +59,18 @@ class Samples:
         return complete if complete.all() else np.asarray(np.isfinite(self.columns).all(axis=(0, 1)))
 
 
-def evaluate_columns(continuation: Continuation, layout: Layout, parameter: Array, columns: Array) -> Judging:
-    """Fill in columns (3, columns, lanes, n); returns where groups are open, at a limit, or not converged."""
-    along = parameter[None, :]
-    judging = Judging(continuation, along, columns.shape[2:])
+def evaluate_columns(continuation: Continuation, samples: Samples, parameter: Array) -> Judging:
+    """Fill in columns and known angles; returns where groups are open, at a limit, or not converged."""
+    along, layout = parameter[None, :], samples.layout
+    judging = Judging(continuation, along, samples.status.shape)
     with np.errstate(all="ignore"):
         at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)
-        _fill_columns(continuation.kinematics, layout, at, columns)
+        for k, number in enumerate(layout.numbers(JETS, continuation.kinematics.numbers, at)):
+            _fill(samples.columns[:, k], number)
+    for k, link in enumerate(layout.angles):
+        if layout.runs_on and link in at.angles:
+            _fill(samples.angles[:, k], at.angles[link])
+            samples.followed.add(link)
     return judging
 
 
@@ -110,19 +119,20 @@ def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Ar
     return zero if zero.any() else None
 
 
-def _fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
-    for k, number in enumerate(layout.numbers(JETS, kinematics.numbers, at)):
-        if isinstance(number, Jet):
-            columns[0, k], columns[1, k] = number.coefficients[:2]
-            np.multiply(number.coefficients[2], 2.0, out=columns[2, k])  # Taylor coefficients are over k!
-        else:
-            columns[0, k] = number
-            columns[1:, k] = 0.0
+def _fill(column: Array, number: Number) -> None:
+    """A number with its derivatives (3, lanes, n)."""
+    if isinstance(number, Jet):
+        column[0], column[1] = number.coefficients[:2]
+        np.multiply(number.coefficients[2], 2.0, out=column[2])  # Taylor coefficients are over k!
+    else:
+        column[0] = number
+        column[1:] = 0.0
 
 
 def sample(continuation: Continuation, parameter: Array, samples: Samples) -> None:
     """Fill in columns and statuses."""
-    judged = evaluate_columns(continuation, samples.layout, parameter, samples.columns)
+    judged = evaluate_columns(continuation, samples, parameter)
+    judged.opened |= continuation.kinematics.path.impossible(parameter)
     reach = continuation.branches.reaches()
     margin = 4.0 * np.spacing(np.abs(parameter))
     beyond = (parameter < reach[:, :1] - margin) | (parameter > reach[:, 1:] + margin)
@@ -136,6 +146,8 @@ def settle(samples: Samples) -> None:
     """Absence is NaN: nothing stands in open samples, and no derivatives in singular ones."""
     if not samples.status.any():
         return  # incomplete samples have a status
-    samples.columns[:, :, (samples.status == Status.OPEN) | (samples.status == Status.UNCONVERGED)] = np.nan
-    samples.columns[1:, :, samples.status == Status.SINGULAR] = np.nan
+    absent = (samples.status == Status.OPEN) | (samples.status == Status.UNCONVERGED)
+    for numbers in (samples.columns, samples.angles):
+        numbers[:, :, absent] = np.nan
+        numbers[1:, :, samples.status == Status.SINGULAR] = np.nan
     samples.columns[~np.isfinite(samples.columns)] = np.nan

@@ -49,7 +49,9 @@ def stated_side(kinematics: Kinematics, group: Group) -> float | None:
 
 def side_names(group: Group) -> tuple[str, ...]:
     """Names under which [assembly] sides may speak of a group: its unknown points, or the guide of an RPR group."""
-    return (group.guide, group.target) if isinstance(group, Aim) else points_of(group)
+    if isinstance(group, Aim):
+        return (group.contact.rolling if group.contact else group.guide, group.target)
+    return points_of(group)
 
 
 def side_words(space: Space, group: Group) -> tuple[str, str]:

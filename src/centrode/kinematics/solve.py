@@ -11,11 +11,13 @@ import numpy.typing as npt
 
 from centrode.errors import InputError, Status
 from centrode.kinematics.branches import Branches, Event, branches_at_start
+from centrode.kinematics.contacts import contacts_at
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan, mesh_of
-from centrode.kinematics.layout import Layout, layout_of
+from centrode.kinematics.layout import Layout, layout_of, positions_from
 from centrode.kinematics.paths import in_time
+from centrode.kinematics.phases import with_phases
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
 from centrode.kinematics.sampling import ORDERS, Samples, sample, settle
@@ -47,7 +49,8 @@ class Solved:
     Arrays hold value, first and second derivative by the path's parameter first: `points` (3, lanes, n,
     points, axes), `angles` (3, lanes, n, angles) [rad], `slides` (3, lanes, n, guides); `status` and `residual`
     (lanes, n). `all_points` has the frame's points before the moving ones. `spins` (2, lanes, n, links, 3) are
-    rotation vectors [rad] by the parameter and their derivatives; none where angles say it all.
+    rotation vectors [rad] by the parameter and their derivatives; none where angles say it all. `contacts`
+    (lanes, n, rolling wheels, axes) are the places where wheels touch their tracks.
     """
 
     ready: Ready
@@ -62,6 +65,7 @@ class Solved:
     status: npt.NDArray[np.int8]
     residual: Array
     worst_constraint: Kept
+    contacts: Array
 
     def events(self, lane: int = 0) -> list[Event]:
         """Events between the ends of the span and the initial position, in the order of the path."""
@@ -90,7 +94,7 @@ def solve(
 ) -> Solved:
     """Motion at the samples of a span."""
     ready = _in_time(ready, span)
-    kinematics = ready.kinematics if numbers is None else replace(ready.kinematics, numbers=_upright(numbers))
+    kinematics = ready.kinematics if numbers is None else _varied(ready.kinematics, numbers)
     samples = len(span.parameter)
     layout = layout_of(kinematics)
     axes, fixed = layout.axes, layout.axes * len(kinematics.numbers.frame)
@@ -99,12 +103,12 @@ def solve(
     # one room for everything that depends on the samples: what is big is written once
     room = np.empty((ORDERS, fixed + layout.width, lanes, samples))
     angles = np.empty((ORDERS, len(layout.angles), lanes, samples))
-    whole = Samples(layout, room[:, fixed:], np.zeros((lanes, samples), dtype=np.int8))
+    whole = Samples(layout, room[:, fixed:], angles, np.zeros((lanes, samples), dtype=np.int8))
     parts = []
     for first in range(0, lanes, size):
         rows = slice(first, min(first + size, lanes))
         part = kinematics if lanes == 1 else _lanes(kinematics, rows)
-        parts.append(_solve_part(ready, part, span, whole.of(rows), angles[:, :, rows]))
+        parts.append(_solve_part(ready, part, span, whole.of(rows)))
         if progress is not None:
             progress(rows.stop, lanes)
     _fill_frame(room[:, :fixed], kinematics.numbers, whole)
@@ -122,6 +126,7 @@ def solve(
         whole.status,
         np.concatenate([part.residual for part in parts]),
         max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0))).worst_constraint,
+        np.concatenate([part.contacts for part in parts]),
     )
 
 
@@ -147,8 +152,9 @@ def _in_time(ready: Ready, span: Span) -> Ready:
 
 def _start(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:
     smooth = ready.mechanism.assembly.continuation == "smooth"
-    branches = branches_at_start(kinematics.path, ready.assembled.signs, smooth, lanes)
-    return Continuation(kinematics, branches, ready.assembled.positions, ready.kinematics.numbers)
+    start = ready.assembled
+    branches = branches_at_start(kinematics.path, start.signs, start.angles, smooth, lanes)
+    return Continuation(kinematics, branches, start.positions, ready.kinematics.numbers)
 
 
 def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> tuple[float, float]:
@@ -158,7 +164,15 @@ def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> t
     ends = np.array([path.initial - SEARCH * path.unit, path.initial + SEARCH * path.unit])
     continuation = _start(ready, ready.kinematics)
     Scan(continuation, mesh_of(path, ends)).run()
-    return continuation.branches.reach(0)
+    low, high = continuation.branches.reach(0)
+    # a cylinder does not get shorter than zero
+    return (max(low, 0.0), high) if path.driven[0].drive.kind == "distance" else (low, high)
+
+
+def _varied(kinematics: Kinematics, numbers: Dimensions) -> Kinematics:
+    """The plan with the numbers of a batch; wheels mesh as they do in the description."""
+    phases = kinematics.numbers.gearing.phase
+    return with_phases(replace(kinematics, numbers=_upright(numbers)), phases)
 
 
 def _upright(numbers: Dimensions) -> Dimensions:
@@ -180,21 +194,23 @@ class _Part:
     branches: Branches
     residual: Array
     worst_constraint: Kept
+    contacts: Array
 
 
-def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples, angles: Array) -> _Part:
+def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples) -> _Part:
     """Fill in the samples and angles of some mechanisms of a batch."""
     continuation = _start(ready, kinematics, samples.status.shape[0])
     mesh = mesh_of(kinematics.path, span.parameter)
     on_mesh = Scan(continuation, mesh).run()
     sample(continuation, span.parameter, samples)
     settle(samples)
-    residual, worst = residuals(kinematics, samples, span.parameter)
-    open_what_does_not_close(samples, residual)
     course = Course(ready, kinematics.numbers, on_mesh, mesh)
-    fill_angles(course, samples, span.parameter, angles)
+    fill_angles(course, samples, span.parameter)
+    at = positions_from(kinematics, samples.layout, samples.columns[0], samples.angles[0], span.parameter)
+    residual, worst = residuals(kinematics, samples, at)
+    open_what_does_not_close(samples, residual)
     fill_slides(course, samples, span.parameter)
-    return _Part(continuation.branches, residual, worst)
+    return _Part(continuation.branches, residual, worst, contacts_at(kinematics, at, samples))
 
 
 def _fill_frame(columns: Array, numbers: Dimensions, samples: Samples) -> None:

@@ -40,13 +40,15 @@ class Course:
         return np.asarray(np.clip(nodes, 0, len(self.mesh) - 1))
 
 
-def fill_angles(course: Course, samples: Samples, parameter: Array, angles: Array) -> None:
-    """Fill in the angles (3, angles, lanes, n) that are measured."""
+def fill_angles(course: Course, samples: Samples, parameter: Array) -> None:
+    """Fill in the angles that are measured and that the plan itself does not give with their turns."""
     nearest = course.nearest(parameter)
     for k, link in enumerate(samples.layout.angles):
+        if link in samples.followed:
+            continue
         rotor = rotor_of_angle(ARRAYS, course.numbers, course.on_mesh, link)
         nodes = course.turns(rotor, course.ready.assembled.angles[link])
-        angle_and_rates(samples.columns[:, samples.layout.rotor(link)], nodes, nearest, angles[:, k])
+        angle_and_rates(samples.columns[:, samples.layout.rotor(link)], nodes, nearest, samples.angles[:, k])
 
 
 def fill_slides(course: Course, samples: Samples, parameter: Array) -> None:

@@ -20,11 +20,14 @@ from centrode.structure.groups import (
     RigidPoint,
     Slot,
     Stop,
+    Stroke,
     TurnedLink,
+    Turning,
     links_of,
 )
 from centrode.structure.mobility import is_bare, slider_of
 from centrode.structure.plan import Structure
+from centrode.structure.wheel_groups import AngleGiven, Meshed, Train
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,10 @@ def structural_formula(structure: Structure) -> str:
 def _term(mechanism: Mechanism, group: Group, members: tuple[str, ...]) -> AssurGroup:
     if is_input(group):
         return AssurGroup("I", 1, group.kind, members)
+    if isinstance(group, TurnedLink) and not isinstance(group.turning, Turning):
+        return AssurGroup("II", 2, _("gear") if isinstance(group.turning, Meshed) else _("rolling"), members)
+    if isinstance(group, Train):
+        return AssurGroup("II", len(group.links), _("gear train"), members)
     if isinstance(group, (Meet, Aim)):
         return AssurGroup("II", 2, group.kind, members)
     if isinstance(group, Newton):
@@ -95,17 +102,21 @@ def _roman(number: int) -> str:
 def is_input(group: Group) -> bool:
     """Whether a drive acts inside the group."""
     if isinstance(group, TurnedLink):
-        return group.turning.drive is not None
+        return isinstance(group.turning, Turning) and group.turning.drive is not None
+    if isinstance(group, Train):
+        return any(isinstance(e, AngleGiven) and e.drive is not None for e in group.equations)
     if isinstance(group, Meet):
-        driven = group.turning is not None and group.turning.drive is not None
-        return driven or any(isinstance(locus, Stop) for locus in group.loci)
+        driven = isinstance(group.turning, Turning) and group.turning.drive is not None
+        return driven or any(isinstance(locus, (Stop, Stroke)) for locus in group.loci)
     return False
 
 
 def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
     """Links of a group, with the sliders of its guides: a slider's own link belongs to the dyad it slides in."""
     names = list(links_of(group))
-    if isinstance(group, Aim) and group.block is None:
+    if isinstance(group, Aim) and group.contact is not None:
+        names.append(group.contact.link)
+    elif isinstance(group, Aim) and group.block is None:
         guide = mechanism.guide(group.guide)
         names.append(slider_of(guide))
     if isinstance(group, Meet):
@@ -114,4 +125,6 @@ def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
                 guide = mechanism.guide(locus.guide)
                 if is_bare(guide) or guide.link not in names:
                     names.append(slider_of(guide))
+            if isinstance(locus, Stroke):
+                names.append(_("cylinder {drive}").format(drive=locus.drive))
     return tuple(dict.fromkeys(names))

@@ -14,6 +14,7 @@ from centrode.structure.constraints import (
     PointInLink,
     PointOnGuide,
 )
+from centrode.structure.cylinders import DistanceDrive
 from centrode.structure.groups import (
     Aim,
     Group,
@@ -25,11 +26,15 @@ from centrode.structure.groups import (
     Rod,
     Slot,
     Stop,
+    Stroke,
     TurnedLink,
     Turning,
     TwoPointLink,
 )
 from centrode.structure.positions import Entity
+from centrode.structure.trains import following, train, wheel_locus
+from centrode.structure.wheel_groups import Following
+from centrode.structure.wheels import Contact
 
 
 @dataclass(frozen=True)
@@ -52,9 +57,12 @@ class Unsolved:
     def knows_link(self, link: str) -> bool:
         return link not in self.links
 
-    def turning(self, link: str) -> tuple[Constraint, Turning] | None:
+    def turning(self, link: str) -> tuple[Constraint, Turning | Following] | None:
         """The constraint that gives the angle of a link from known ones, if there is one."""
         for c in self.constraints:
+            follows = following(self, c, link)
+            if follows is not None:
+                return c, follows
             found = _turning_of(c)
             if found is None or link not in (found.link, found.relative_to):
                 continue
@@ -89,7 +97,7 @@ def classify(
         tuple(dict.fromkeys(constraint for constraint, _row in equations)),
         crosses_once,
     )
-    for attempt in (_rigid_point, _single_link, _aim_with_block, _meet):
+    for attempt in (_rigid_point, _single_link, _aim_with_block, _meet, train):
         found = attempt(group)
         if found is not None:
             return found
@@ -118,6 +126,9 @@ def _single_link(group: Unsolved) -> Group | None:
     for c in group.constraints:
         if isinstance(c, PointOnGuide) and c.on == link:
             return Aim(link, ends[0], c.guide, c.point)
+        if isinstance(c, Contact) and c.on == link:
+            touch = wheel_locus(group, c, link)
+            return Aim(link, ends[0], "", c.centre, contact=c) if touch and touch.letter == "P" else None
     return None
 
 
@@ -166,10 +177,13 @@ def _meet(group: Unsolved) -> Group | None:
             loci.append(rod)
             used |= {c for c in group.constraints if isinstance(c, PointInLink) and c.link == link}
     for c in group.constraints:
-        locus = _line(group, c, carriage)
+        locus = _line(group, c, carriage) or wheel_locus(group, c, carriage)
+        if isinstance(c, DistanceDrive):
+            locus = _stroke(group, c)
         if locus is not None:
             loci.append(locus)
             used.add(c)
+    loci.sort(key=lambda locus: locus.letter != "R")  # circles first
     if len(loci) != 2 or used != set(group.constraints):
         return None
     return Meet(group.points, (loci[0], loci[1]), carriage, turning, group.crosses_once)
@@ -187,6 +201,14 @@ def _rod(group: Unsolved, link: str) -> Rod | None:
     if len(ends) != 2 or len(unknown) != 1:
         return None
     return Rod(unknown[0], known[0], link)
+
+
+def _stroke(group: Unsolved, drive: DistanceDrive) -> Stroke | None:
+    unknown = [point for point in (drive.first, drive.second) if not group.knows_point(point)]
+    if len(unknown) != 1:
+        return None
+    known = drive.second if unknown[0] == drive.first else drive.first
+    return Stroke(unknown[0], known, drive.drive)
 
 
 def _line(group: Unsolved, constraint: Constraint, carriage: str | None) -> Locus | None:

@@ -15,12 +15,13 @@ from centrode.geometry.plane import rotor_of
 from centrode.geometry.space import Coordinates, Rows
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.structure.cylinders import DistanceDrive
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Entity, Positions
+from centrode.structure.positions import Entity, Positions, Row
+from centrode.structure.wheels import Contact, GearRatio, NoSlip
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
-Row: TypeAlias = dict[Entity, tuple[Number, ...]]
 
 
 class Constraint(Protocol):
@@ -200,11 +201,13 @@ def _row(bodies: tuple[Entity, ...], slopes: Rows) -> Row:
 
 
 def constraints_of(mechanism: Mechanism) -> tuple[Constraint, ...]:
-    """All constraints of a mechanism: drives first, then links, then guides, each in description order."""
+    """All constraints of a mechanism: drives, links, guides, gears, rolling, each in description order."""
     found: list[Constraint] = []
     for drive in mechanism.drives:
         if drive.kind == "angle":
             found.append(AngleDrive(drive.id, drive.link or "", drive.relative_to))
+        elif drive.distance is not None:
+            found.append(DistanceDrive(drive.id, *drive.distance))
         else:
             guide = mechanism.guide(drive.guide or "")
             found.append(DisplacementDrive(drive.id, guide.point, guide.id, guide.on))
@@ -214,12 +217,15 @@ def constraints_of(mechanism: Mechanism) -> tuple[Constraint, ...]:
         found.append(PointOnGuide(guide.point, guide.id, guide.on))
         if guide.link is not None:
             found.append(NoTurning(guide.link, guide.id, guide.on))
+    found += [GearRatio(gear.id, gear.links[0], gear.links[1], gear.carrier) for gear in mechanism.gears]
+    for wheel in mechanism.rolling:
+        found += [kind(wheel.id, wheel.link, wheel.centre, wheel.on) for kind in (NoSlip, Contact)]
     return tuple(found)
 
 
 def is_drive(constraint: Constraint) -> bool:
     """Whether the constraint is a drive."""
-    return isinstance(constraint, (AngleDrive, DisplacementDrive))
+    return isinstance(constraint, (AngleDrive, DisplacementDrive, DistanceDrive))
 
 
 def unknowns_of(mechanism: Mechanism) -> tuple[Entity, ...]:

@@ -16,6 +16,7 @@ from centrode.geometry.plane import Vector
 from centrode.geometry.space import Curve, Place, Reference, Space
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Guide, Link, Mechanism
+from centrode.structure.gearing import Gearing, Round, gearing_of
 from centrode.structure.references import ends_of, references_of
 
 Number: TypeAlias = Any
@@ -45,6 +46,7 @@ class Dimensions:
         of the reference arc, the link's second point), in the plane nothing but the link's own axes
     references : driven link -> on the sphere the ends of its own arc and of the reference arc, each in the
         axes of its body
+    gearing : numbers of gears and rolling wheels
     """
 
     frame: Mapping[str, Vector]
@@ -56,6 +58,7 @@ class Dimensions:
     space: Space = PLANE
     ends: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     references: Mapping[str, tuple[Vector, ...]] = field(default_factory=dict)
+    gearing: Gearing = field(default_factory=Gearing)
 
     def mapped(self, function: Callable[[Number], Number]) -> Dimensions:
         """The same dimensions with every number replaced by function(number)."""
@@ -74,6 +77,7 @@ class Dimensions:
                 link: tuple((function(x), function(y)) for x, y in arcs)
                 for link, arcs in self.references.items()
             },
+            gearing=self.gearing.mapped(function),
         )
 
     def curve(self, guide: str) -> Curve:
@@ -101,6 +105,10 @@ class Dimensions:
             for at in list(points.values())[:1]:
                 reach = self.space.reach(ARRAYS, self.curve(guide), self._inside(at))
                 longest = _larger(longest, reach)
+        for radius in self.gearing.radius.values():
+            longest = _larger(longest, radius)
+        for track in self.gearing.track.values():
+            longest = _larger(longest, track.radius) if isinstance(track, Round) else longest
         # sliders alone have no length of their own
         return 1.0 if isinstance(longest, float) and longest == 0.0 else longest
 
@@ -138,6 +146,7 @@ def dimensions_of(
         through[guide.id], direction[guide.id] = curve(guide, places, values)
         angle = mechanism.guide_turn(guide)
         turn[guide.id] = (math.cos(angle), math.sin(angle)) if angle else (1.0, 0.0)
+    gearing = gearing_of(mechanism, lambda body: frame if body == FRAME else local[body], values)
     values.refuse_the_rest()
     bodies = {guide.id: guide.on for guide in mechanism.guides}
     ends: dict[str, tuple[str, ...]] = {name: () for name in mechanism.links}
@@ -145,7 +154,7 @@ def dimensions_of(
     if space is SPHERE:
         ends = ends_of(mechanism)
         references = references_of(mechanism, frame, local, ends)
-    return Dimensions(frame, local, through, direction, turn, bodies, space, ends, references)
+    return Dimensions(frame, local, through, direction, turn, bodies, space, ends, references, gearing)
 
 
 def _local(name: str, link: Link, values: _Values) -> dict[str, Vector]:

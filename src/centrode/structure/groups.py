@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from centrode.structure.constraints import Constraint
+from centrode.structure.wheel_groups import Following, Rolled, Rolloff, Touch, Train
+from centrode.structure.wheels import Contact
 
 
 @dataclass(frozen=True)
@@ -49,16 +51,18 @@ class Turning:
 
 @dataclass(frozen=True)
 class TurnedLink:
-    """A link of known angle with a known point: a crank if a drive gives the angle, else a parallel link."""
+    """A link of known angle with a known point: a crank, a parallel link, or a wheel that meshes or rolls."""
 
     link: str
     pivot: str
-    turning: Turning
+    turning: Turning | Following
     signed = False
 
     @property
     def kind(self) -> str:
-        return "crank" if self.turning.drive is not None else "parallel link"
+        if isinstance(self.turning, Turning):
+            return "crank" if self.turning.drive is not None else "parallel link"
+        return "rolling wheel" if isinstance(self.turning, Rolled) else "gear"
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,8 @@ class Aim:
     """RPR: a link on a known pivot whose guide passes a known target, with the guided link if there is one.
 
     If `block` is set, the target is a known point of that link, which does not turn against the aimed link;
-    `sliding` is its point on the guide. If not, the target itself is the guide's point.
+    `sliding` is its point on the guide. If not, the target itself is the guide's point. With a `contact` the
+    link rests on a wheel instead: a parallel of the wheel's track passes the target, the wheel's centre.
     """
 
     link: str
@@ -75,6 +80,7 @@ class Aim:
     target: str
     block: str | None = None
     sliding: str | None = None
+    contact: Contact | None = None
     kind = "RPR"
     signed = True
 
@@ -119,7 +125,17 @@ class Stop:
     letter = "P"
 
 
-Locus: TypeAlias = Rod | Rail | Slot | Stop
+@dataclass(frozen=True)
+class Stroke:
+    """Locus: a circle about a known centre whose radius a cylinder's drive gives."""
+
+    point: str
+    centre: str
+    drive: str
+    letter = "R"
+
+
+Locus: TypeAlias = Rod | Stroke | Rail | Slot | Stop | Touch | Rolloff
 
 
 @dataclass(frozen=True)
@@ -134,7 +150,7 @@ class Meet:
     points: tuple[str, ...]
     loci: tuple[Locus, Locus]
     carriage: str | None = None
-    turning: Turning | None = None
+    turning: Turning | Following | None = None
     crosses_once: bool = True
     """Whether the curves of two guides meet in one place."""
 
@@ -144,17 +160,20 @@ class Meet:
         return tuple(locus for locus in self.loci if isinstance(locus, Rod))
 
     @property
+    def circles(self) -> int:
+        """Number of loci that are circles in the plane."""
+        return sum(locus.letter == "R" for locus in self.loci)
+
+    @property
     def kind(self) -> str:
-        if len(self.rods) == 2:
-            return "RRR"
-        if len(self.rods) == 1:
-            return "RRP"
+        if self.circles:
+            return "RRR" if self.circles == 2 else "RRP"
         return "RPP" if any(isinstance(locus, Slot) for locus in self.loci) else "PRP"
 
     @property
     def signed(self) -> bool:
-        if self.rods or self.crosses_once:
-            return bool(self.rods)
+        if self.circles or self.crosses_once:
+            return bool(self.circles)
         return not any(isinstance(locus, Stop) for locus in self.loci)
 
 
@@ -172,14 +191,14 @@ class Newton:
     signed = False
 
 
-Group: TypeAlias = RigidPoint | TwoPointLink | TurnedLink | Aim | Meet | Newton
+Group: TypeAlias = RigidPoint | TwoPointLink | TurnedLink | Train | Aim | Meet | Newton
 
 
 def links_of(group: Group) -> tuple[str, ...]:
     """Links whose pose the group gives."""
     if isinstance(group, RigidPoint):
         return ()
-    if isinstance(group, Newton):
+    if isinstance(group, (Newton, Train)):
         return group.links
     if isinstance(group, Aim):
         return (group.link,) if group.block is None else (group.link, group.block)
@@ -195,6 +214,8 @@ def points_of(group: Group) -> tuple[str, ...]:
         return (group.point,)
     if isinstance(group, (Newton, Meet)):
         return group.points
+    if isinstance(group, Train):
+        return tuple(point for point, _link in group.brought)
     if isinstance(group, Aim) and group.sliding is not None:
         return (group.sliding,)
     return ()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from centrode.errors import InputError, NotComputedYet
 from centrode.geometry.space import Space
@@ -12,10 +13,12 @@ from centrode.model.mechanism import Mechanism
 from centrode.structure.classify import classify
 from centrode.structure.constraints import Constraint, PointInLink, constraints_of, is_drive, unknowns_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
-from centrode.structure.groups import Group
+from centrode.structure.groups import Group, links_of
 from centrode.structure.matching import in_order, match, strong_components
 from centrode.structure.positions import Entity
 from centrode.structure.rank import Matrix, generic_jacobian, independent_rows
+from centrode.structure.wheel_groups import Train, angles_in
+from centrode.structure.wheels import Contact, GearRatio, NoSlip
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,20 @@ class Structure:
     groups: tuple[Group, ...]
     generic_mobility: int
 
+    @cached_property
+    def counted(self) -> tuple[tuple[str, ...], ...]:
+        """Links of each group whose angles matter with their turns: those of gears and rolling wheels."""
+        wanted: set[str] = set()
+        for constraint in self.constraints:
+            if isinstance(constraint, GearRatio):
+                wanted.update(constraint.links)
+            elif isinstance(constraint, NoSlip):
+                wanted.update((constraint.link, constraint.on))
+        for group in self.groups:
+            if isinstance(group, Train):
+                wanted.update(link for equation in group.equations for link in angles_in(equation))
+        return tuple(tuple(link for link in links_of(group) if link in wanted) for group in self.groups)
+
     @property
     def drives(self) -> int:
         """Number of drives."""
@@ -55,7 +72,6 @@ def structure_of(mechanism: Mechanism) -> Structure:
     NotComputedYet
         The description names what this version does not compute.
     """
-    _refuse_what_is_not_computed(mechanism)
     dimensions = dimensions_of(mechanism)
     _refuse_what_the_space_lacks(mechanism, dimensions.space)
     constraints = constraints_of(mechanism)
@@ -74,16 +90,19 @@ def structure_of(mechanism: Mechanism) -> Structure:
 
 
 def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constraint]) -> list[bool]:
-    """Which rows are kept: drives first, links with few points last.
+    """Which rows are kept: drives first, links with few points last, and contacts of wheels behind them.
 
     Which of several constraints that repeat each other is left out is a choice. A link of two points that is
-    left out still lies through both; a plate would have to be solved together with its neighbours.
+    left out still lies through both; a plate would have to be solved together with its neighbours. An arm or
+    a guide that keeps a wheel at its track does so better than the contact, which says nothing of the wheel.
     """
 
     def rank(row: int) -> int:
         owner = owners[row]
         if is_drive(owner):
             return -len(mechanism.points) - 1
+        if isinstance(owner, Contact):
+            return 1
         return -len(mechanism.links[owner.link].coordinates) if isinstance(owner, PointInLink) else 0
 
     order = sorted(range(len(owners)), key=rank)
@@ -91,21 +110,6 @@ def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constrai
     for row, keep in zip(order, independent_rows(matrix[order]), strict=True):
         kept[row] = bool(keep)
     return kept
-
-
-def _refuse_what_is_not_computed(mechanism: Mechanism) -> None:
-    refused = [
-        ("[[gears]]", bool(mechanism.gears), _("gears are not computed yet")),
-        ("[[rolling]]", bool(mechanism.rolling), _("rolling contacts are not computed yet")),
-        (
-            "[[drives]] distance",
-            any(drive.kind == "distance" for drive in mechanism.drives),
-            _("cylinders (distance drives) are not computed yet"),
-        ),
-    ]
-    for where, found, what in refused:
-        if found:
-            raise NotComputedYet(where, what, _("leave it out, or wait for the version that computes it"))
 
 
 def _refuse_what_the_space_lacks(mechanism: Mechanism, space: Space) -> None:

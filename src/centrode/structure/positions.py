@@ -28,6 +28,10 @@ class Entity(NamedTuple):
         return 2 if self.kind == "point" else 3
 
 
+Row: TypeAlias = dict[Entity, tuple[Number, ...]]
+"""Derivatives of one equation by the coordinates of what it ties together."""
+
+
 @dataclass
 class Positions:
     """Places of all points and links, in any algebra, with the values of the drives.

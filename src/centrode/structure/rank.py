@@ -19,6 +19,7 @@ from centrode.geometry.space import Row
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Constraint
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.generic import random_gearing
 from centrode.structure.positions import FRAME, Entity, Positions
 
 INDEPENDENT = 1e-8
@@ -112,6 +113,7 @@ def random_realisation(mechanism: Mechanism, numbers: Dimensions) -> tuple[Dimen
         direction,
         turn,
         numbers.bodies,
+        gearing=random_gearing(mechanism, numbers, at, direction, random),
     )
     return fitted, at
 

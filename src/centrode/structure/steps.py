@@ -13,11 +13,13 @@ from centrode.structure.groups import (
     RigidPoint,
     Rod,
     Slot,
+    Stroke,
     TurnedLink,
     TwoPointLink,
     links_of,
     points_of,
 )
+from centrode.structure.wheel_groups import Meshed, Rolled, Rolloff, Touch, Train
 
 
 def step_of(group: Group) -> str:
@@ -28,13 +30,27 @@ def step_of(group: Group) -> str:
         return _("link {link} through {first} and {second}").format(
             link=group.link, first=group.first, second=group.second
         )
+    if isinstance(group, Train):
+        return _("gear train: links {links} turned together").format(links=", ".join(group.links))
     if isinstance(group, TurnedLink):
+        if isinstance(group.turning, Meshed):
+            return _("link {link} about {point}, turned by gear {gear}").format(
+                link=group.link, point=group.pivot, gear=group.turning.gear.gear
+            )
+        if isinstance(group.turning, Rolled):
+            return _("wheel {link} about {point}, turned by rolling on {on}").format(
+                link=group.link, point=group.pivot, on=group.turning.rolling.on
+            )
         if group.turning.drive is not None:
             return _("link {link} about {point}, turned by its drive").format(
                 link=group.link, point=group.pivot
             )
         return _("link {link} at {point}, kept from turning by guide {guide}").format(
             link=group.link, point=group.pivot, guide=group.turning.guide
+        )
+    if isinstance(group, Aim) and group.contact is not None:
+        return _("RPR: link {link} about {point}, resting on wheel {wheel} about {target}").format(
+            link=group.link, point=group.pivot, wheel=group.contact.rolling, target=group.target
         )
     if isinstance(group, Aim):
         return _("RPR: link {link} about {point}, its guide {guide} through {target}").format(
@@ -59,10 +75,20 @@ def _meeting(group: Meet) -> str:
 def _locus(locus: Locus) -> str:
     if isinstance(locus, Rod):
         return _("the circle of {link} about {point}").format(link=locus.link, point=locus.centre)
+    if isinstance(locus, Stroke):
+        return _("the circle about {point} as large as the cylinder is long").format(point=locus.centre)
     if isinstance(locus, Rail):
         return _("the line of guide {guide}").format(guide=locus.guide)
     if isinstance(locus, Slot):
         return _("guide {guide} through {point}").format(guide=locus.guide, point=locus.point)
+    if isinstance(locus, Touch):
+        return (
+            _("the line beside the track of wheel {wheel}").format(wheel=locus.contact.rolling)
+            if locus.letter == "P"
+            else _("the circle about the track of wheel {wheel}").format(wheel=locus.contact.rolling)
+        )
+    if isinstance(locus, Rolloff):
+        return _("the place to which wheel {wheel} rolls").format(wheel=locus.rolling.rolling)
     return _("the stop that the drive of guide {guide} sets").format(guide=locus.guide)
 
 

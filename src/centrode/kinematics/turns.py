@@ -1,0 +1,79 @@
+"""Angles that groups depend on with their turns: counted on the mesh of the path, outwards from its start.
+
+A value anywhere takes its turns from the nearest node, so it does not depend on the samples asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.jets import Jet
+from centrode.algebra.rounding import Rounded
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Number: TypeAlias = Any
+TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Turns:
+    """An angle at evenly spaced nodes, and the whole turns to add to it there.
+
+    `angle` and `turns` have shape (lanes, nodes), or (1, nodes) where the lanes agree.
+    """
+
+    first: float
+    step: float
+    angle: Array
+    turns: Array
+
+    def continued(self, angle: Number, parameter: Array, lanes: Lanes | None) -> Number:
+        """An angle in (-pi, pi], over any algebra, with its turns at parameters as `Hooks` has them."""
+        node = np.round((parameter - self.first) / self.step).astype(np.intp)
+        node = np.clip(node, 0, self.angle.shape[1] - 1)
+        if lanes is None:
+            where: Any = (slice(None), node.reshape(-1))
+        else:
+            where = (lanes if len(self.angle) > 1 else 0, node)
+        whole = self.turns[where] + np.round((self.angle[where] - _value(angle)) / TURN)
+        return angle + TURN * whole if whole.any() else angle
+
+
+def counted(angle: Number, mesh: Array, initial: float, start: float) -> Turns:
+    """Turns of an angle on a mesh (nodes,); `initial` is its value at the parameter `start`."""
+    values = np.atleast_2d(np.asarray(_value(angle), dtype=np.float64))
+    values = np.broadcast_to(values, (values.shape[0], len(mesh)))
+    node = int(np.argmin(np.abs(mesh - start)))
+    values = _bridged(values, node)
+    steps = np.round((values[:, :-1] - values[:, 1:]) / TURN)
+    turns = np.zeros(values.shape)
+    np.cumsum(steps, axis=1, out=turns[:, 1:])
+    turns += (np.round((initial - values[:, node]) / TURN) - turns[:, node])[:, None]
+    return Turns(float(mesh[0]), float(mesh[1] - mesh[0]), values, turns)
+
+
+def _bridged(values: Array, start: int) -> Array:
+    """Gaps filled by the last known value on the way from the start, in both directions; zero if there is none."""
+    known = np.isfinite(values)
+    if known.all():
+        return values
+    nodes, last = np.arange(values.shape[1]), values.shape[1]
+    ahead = np.maximum.accumulate(np.where(known & (nodes >= start), nodes, -1), axis=1)
+    behind = np.where(known & (nodes <= start), nodes, last)
+    behind = np.minimum.accumulate(behind[:, ::-1], axis=1)[:, ::-1]
+    source = np.where(nodes >= start, ahead, behind)
+    missing = (source < 0) | (source >= last)
+    source = np.where(missing, np.argmax(known, axis=1)[:, None], source)
+    filled = np.take_along_axis(values, source, axis=1)
+    return np.where(np.isfinite(filled), filled, 0.0)
+
+
+def _value(angle: Number) -> Any:
+    if isinstance(angle, Jet | Rounded):
+        return angle.value
+    return angle
