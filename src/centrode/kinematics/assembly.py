@@ -147,7 +147,7 @@ class _Bounding(_Starting):
         self.bound = 0.0
 
     def root(self, group: int, radicand: Number) -> Number:
-        self.bound = float(Rounded.of(radicand).bound)
+        self.bound = float(np.max(Rounded.of(radicand).bound))  # one place, as an array or not
         return ROUNDED.sqrt(radicand) * self.sign
 
     def divisor(self, group: int, divisor: Number) -> Number:
