@@ -105,6 +105,7 @@ _ALL = (
     Quantity("slide", "s", "m", mark("displacement along the guide")),
     Quantity("slide_velocity", "v_s", "m/s", mark("velocity along the guide")),
     Quantity("slide_acceleration", "a_s", "m/s^2", mark("acceleration along the guide")),
+    Quantity("contact", "P", "m", mark("contact point of a rolling wheel")),
     Quantity("velocity_coefficient", "r′", "m/rad", mark("velocity coefficient"), by_drive=1),
     Quantity("acceleration_coefficient", "r″", "m/rad^2", mark("acceleration coefficient"), by_drive=2),
     Quantity("angular_velocity_coefficient", "φ′", "1", mark("angular velocity coefficient"), by_drive=1),

@@ -15,6 +15,14 @@ FORMULAS = {
     "andrews-squeezer": "I(OF) -> II(EF, BE) -> II(GE, AG) -> II(HE, AH)",
     "antiparallelogram": "I(OA) -> II(AB, DB)",
     "chebyshev-straight-line": "I(AB, OA, DB)",
+    "cardan-gear": "I(OA) -> II(planet)",
+    "excavator-arm": (
+        "I(boom, cylinder K-A) -> I(stick, cylinder C-E) -> I(GN, cylinder S-N) -> II(NL, bucket)"
+    ),
+    "geared-five-bar": "I(OA) -> II(EC) -> II(AB, CB)",
+    "planetary-gear-train": "I(sun) -> II(OA, planet)",
+    "rack-and-pinion": "I(pinion) -> II(rack)",
+    "rolling-wheel-rod": "I(slider C) -> II(wheel) -> II(PB, slider B)",
     "elliptic-trammel": "I(slider A) -> II(AB, slider B)",
     "inverted-slider-crank": "I(OA) -> II(lever, slider A)",
     "jansen-leg": "I(OA) -> II(AB, ZB) -> II(BC, ZC) -> II(AE, ZE) -> II(CF, EF) -> II(FG, EG)",
@@ -32,7 +40,8 @@ FORMULAS = {
     "two-link-arm": "I(OA) -> I(AB)",
     "watt-six-bar": "I(OA) -> II(coupler, rocker) -> II(PR, QR)",
 }
-BY_CHEBYSHEV = {"three-crank-parallelogram": 0, "two-link-arm": 2}
+MOBILITY = {"two-link-arm": 2, "five-bar-two-drives": 2, "excavator-arm": 3}
+BY_CHEBYSHEV = MOBILITY | {"three-crank-parallelogram": 0}
 
 
 @pytest.mark.parametrize("name", FORMULAS)
@@ -43,10 +52,11 @@ def test_structural_formulas_of_the_examples(name: str) -> None:
 @pytest.mark.parametrize("name", ct.example_names())
 def test_mobility_by_rank_and_by_chebyshev(name: str) -> None:
     checked = ct.check(ct.example(name))
-    assert checked.mobility == (2 if name == "two-link-arm" else 1)
+    assert checked.mobility == MOBILITY.get(name, 1)
     assert checked.count.mobility == BY_CHEBYSHEV.get(name, 1)
     # n links and p pairs: each loop closes with three equations, 3 p - 2 p equations of pairs, so p - n loops
-    assert checked.count.loops == checked.count.lower_pairs - checked.count.moving_links
+    pairs = checked.count.lower_pairs + checked.count.higher_pairs
+    assert checked.count.loops == pairs - checked.count.moving_links
 
 
 def test_redundant_constraints_are_named() -> None:

@@ -38,7 +38,7 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     variables = _in_time(solved, front)
     if not solved.ready.kinematics.path.by_time:
         variables |= _coefficients(solved, front)
-    variables |= _judgements(solved, front)
+    variables |= _judgements(solved, front) | _contacts(solved, front)
     if not batch:
         variables |= _events(solved)
     data = xr.Dataset(variables, coords=_coordinates(solved), attrs=_attributes(solved))
@@ -133,6 +133,14 @@ def _units(solved: Solved) -> list[str]:
     return ["rad" if one.drive.kind == "angle" else _length_unit(solved) for one in driven]
 
 
+def _contacts(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
+    """Where rolling wheels touch their tracks."""
+    if not solved.ready.mechanism.rolling:
+        return {}
+    dimensions = (*front, "sample", "rolling", "axis")
+    return {"contact": _named("contact", dimensions, _lanes(solved.contacts, front))}
+
+
 def _judgements(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     dimensions, status, attributes = _named("status", (*front, "sample"), _lanes(solved.status, front))
     attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
@@ -174,6 +182,7 @@ def _coordinates(solved: Solved) -> dict[str, Any]:
         drive_value[2]["units"] = " ".join(units)
     frame = tuple(solved.ready.structure.dimensions.frame)
     joints = {} if solved.spins is None else {"joint": _labels(solved.layout.angles)}
+    wheels = tuple(wheel.id for wheel in solved.ready.mechanism.rolling)
     return {
         "time": _named("time", ("sample",), solved.span.time),
         "drive_value": drive_value,
@@ -181,6 +190,7 @@ def _coordinates(solved: Solved) -> dict[str, Any]:
         "link": _labels(solved.layout.links),
         **joints,
         "guide": _labels(solved.layout.guides),
+        **({"rolling": _labels(wheels)} if wheels else {}),
         "drive": _labels(tuple(values)),
         "axis": _labels(solved.layout.space.axes),
     }

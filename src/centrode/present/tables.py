@@ -29,6 +29,7 @@ VARIABLES = (
     "slide",
     "slide_velocity",
     "slide_acceleration",
+    "contact",
     "angular_velocity_coefficient",
     "angular_acceleration_coefficient",
     "joint_velocity_coefficient",

@@ -48,7 +48,7 @@ def check_of(prepared: Ready) -> Check:
         mechanism.title,
         prepared.mobility,
         tuple(drive.id for drive in mechanism.drives),
-        count(mechanism),
+        count(mechanism, structure.redundant),
         tuple(constraint.label for constraint in structure.redundant),
         assur_groups(structure),
         structural_formula(structure),
