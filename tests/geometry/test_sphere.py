@@ -155,7 +155,7 @@ def test_a_turned_link_has_its_angle(
     assert SPHERE.turn(ARRAYS, pose, base, rotor, reference) == pytest.approx(0.0, abs=allowed)
     assert max(abs(x) for x in SPHERE.stretch(SPHERE.attitude(pose))) <= allowed
     ends = [at, SPHERE.place(ARRAYS, base, end), SPHERE.place(ARRAYS, pose, second)]
-    cosine, sine = SPHERE.rotor(ARRAYS, pose, ends)
+    cosine, sine = SPHERE.rotor(ARRAYS, pose, [pivot, second], [ends[1]])
     assert math.remainder(math.atan2(sine, cosine) - angle, math.tau) == pytest.approx(0.0, abs=allowed)
     # counter-clockwise seen from outside: the sine is the volume that the three places span
     assert sine * triple(*ends) >= -allowed
