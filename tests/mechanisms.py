@@ -174,14 +174,14 @@ def conditioning(solved: Solved, tries: int = 8) -> Array:
 
 
 def closed_forms(solved: Solved, kinematics: Kinematics, parameter: Array) -> Array:
-    """Places in the greatest length and rotors, by the closed forms with the signs of a motion: (3, columns, n)."""
+    """Places in the greatest length and attitudes, by the closed forms with the signs of a motion: (3, columns, n)."""
 
     signs = {group: solved.branches.sign(group, parameter[None, :])[0] for group in solved.branches.signs}
     with np.errstate(all="ignore"):
         at = kinematics.positions(JETS, Jet.variable(parameter, 2), FixedSigns(JETS, signs))
     scale = float(kinematics.numbers.scale)
     columns = [x / scale for name in solved.layout.points for x in at.points[name]]
-    columns += [x for name in solved.layout.links for x in at.poses[name].rotor]
+    columns += [x for name in solved.layout.links for x in solved.layout.space.attitude(at.poses[name])]
     jets = [x if isinstance(x, Jet) else Jet((x, 0.0, 0.0)) for x in columns]
     shape = parameter.shape
     return np.array([[np.broadcast_to(x.derivative(k), shape) for x in jets] for k in range(3)])
@@ -198,6 +198,8 @@ def nudged(numbers: Dimensions, random: np.random.Generator) -> Dimensions:
             found[name] = (c - s * small, s + c * small)
         return found
 
+    if numbers.space.unit == "rad":
+        return length  # its numbers are angles already
     return replace(length, direction=turned(numbers.direction), turn=turned(numbers.turn))
 
 

@@ -54,7 +54,7 @@ class Plane:
         cosine, sine = attitude
         return [cosine * cosine + sine * sine - 1.0]
 
-    def rotor(self, m: Namespace, pose: Pose, ends: Sequence[Vector]) -> Vector:
+    def rotor(self, m: Namespace, pose: Pose, points: Sequence[Vector], towards: Sequence[Vector]) -> Vector:
         return pose.rotor
 
     def pose_by_two_points(

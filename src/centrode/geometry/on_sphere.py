@@ -65,9 +65,12 @@ class Sphere:
             *(dot(one, other) for one, other in ((x, y), (y, z), (z, x))),
         ]
 
-    def rotor(self, m: Namespace, pose: Attitude, ends: Sequence[Vector]) -> tuple[Number, Number]:
-        pivot, reference, second = ends
-        cosine, sine = slopes.components(tangent(pivot, second), tangent(pivot, reference), pivot)
+    def rotor(
+        self, m: Namespace, pose: Attitude, points: Sequence[Coordinates], towards: Sequence[Vector]
+    ) -> tuple[Number, Number]:
+        first, second = points[:2]
+        pivot, arm = self.place(m, pose, first), carried(pose, tangent_inside(m, first, second))
+        cosine, sine = slopes.components(arm, tangent(pivot, towards[0]), pivot)
         size = m.sqrt(cosine * cosine + sine * sine)
         return cosine / size, sine / size
 

@@ -74,8 +74,14 @@ class Space(Protocol):
     def stretch(self, attitude: Sequence[Number]) -> list[Number]:
         """What is zero as long as a link keeps its own distances."""
 
-    def rotor(self, m: Namespace, pose: Pose, ends: Sequence[Place]) -> Rotor:
-        """Cosine and sine of a link's angle; `ends`: its pivot, the end of the reference arc, its second point."""
+    def rotor(
+        self, m: Namespace, pose: Pose, points: Sequence[Coordinates], towards: Sequence[Place]
+    ) -> Rotor:
+        """Cosine and sine of a link's angle, from the places it is measured towards.
+
+        On the sphere: of the arc between its first two points, about the first, from the arc towards a place.
+        In the plane it is the angle of the link's own axes.
+        """
 
     # closed forms
 

@@ -106,7 +106,8 @@ def layout_of(kinematics: Kinematics) -> Layout:
 
 def rotor_of_angle(m: Namespace, numbers: Dimensions, at: Positions, link: str) -> tuple[Number, Number]:
     """Cosine and sine of a link's angle."""
-    return numbers.space.rotor(m, at.poses[link], [at.points[end] for end in numbers.ends[link]])
+    towards = [at.points[end] for end in numbers.ends[link]]
+    return numbers.space.rotor(m, at.poses[link], [*numbers.local[link].values()], towards)
 
 
 def slide_of(m: Namespace, numbers: Dimensions, at: Positions, guide: str, point: str) -> Number:

@@ -42,8 +42,8 @@ class Dimensions:
     turn : guide -> rotor of the constant angle from that body to the guided link
     bodies : guide -> the body that carries it
     space : the geometry, chosen here and nowhere else
-    ends : link whose angle is measured -> what it is measured between: on the sphere three points (pivot, end
-        of the reference arc, the link's second point), in the plane nothing but the link's own axes
+    ends : link whose angle is measured -> what it is measured from: on the sphere the end of the reference arc,
+        which starts at the link's first point; in the plane no point
     references : driven link -> on the sphere the ends of its own arc and of the reference arc, each in the
         axes of its body
     gearing : numbers of gears and rolling wheels

@@ -13,12 +13,8 @@ Local: TypeAlias = Mapping[str, tuple[Any, Any]]
 
 
 def ends_of(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
-    """Pivot, end of the reference arc, and second point of every link that has a reference."""
-    return {
-        name: (*link.reference, list(link.coordinates)[1])
-        for name, link in mechanism.links.items()
-        if link.reference is not None
-    }
+    """End of the reference arc of every link that has one; it starts at the link's first point."""
+    return {name: link.reference[1:] for name, link in mechanism.links.items() if link.reference is not None}
 
 
 def references_of(
@@ -32,7 +28,8 @@ def references_of(
     for drive in mechanism.drives:
         if drive.link is None:
             continue
-        pivot, towards, second = ends[drive.link]
+        pivot, second = list(local[drive.link])[:2]
+        (towards,) = ends[drive.link]
         base = frame if drive.relative_to == FRAME else local[drive.relative_to]
         missing = [point for point in (pivot, towards) if point not in base]
         if missing:
