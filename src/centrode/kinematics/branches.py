@@ -118,4 +118,4 @@ class Branches:
 def branches_at_start(path: Path, signs: Mapping[int, float], smooth: bool, lanes: int = 1) -> Branches:
     """Signs in the initial position, before any event is known."""
     first = {group: np.full(lanes, sign) for group, sign in signs.items()}
-    return Branches(path.initial, path.forward, path.unit, lanes, first, smooth)
+    return Branches(path.initial, path.forward, path.unit_at(path.initial), lanes, first, smooth)

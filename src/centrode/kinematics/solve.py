@@ -15,7 +15,6 @@ from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan, mesh_of
 from centrode.kinematics.layout import Layout, layout_of
-from centrode.kinematics.paths import in_time
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
 from centrode.kinematics.sampling import ORDERS, Samples, sample, settle
@@ -137,11 +136,10 @@ def _check_size(layout: Layout, lanes: int, samples: int) -> None:
 
 
 def _in_time(ready: Ready, span: Span) -> Ready:
-    """With several drives: the path's unit of time as the rates of this span want it."""
+    """With several drives: the path's unit of time, by which groups of higher class are followed, fit for the span."""
     kinematics = ready.kinematics
-    if not kinematics.path.by_time:
-        return ready
-    path = in_time(kinematics.path, float(np.min(span.parameter)), float(np.max(span.parameter)))
+    ends = np.append(span.parameter, kinematics.path.initial)
+    path = kinematics.path.within(float(np.min(ends)), float(np.max(ends)))
     return replace(ready, kinematics=replace(kinematics, path=path))
 
 
