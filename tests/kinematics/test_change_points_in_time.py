@@ -1,4 +1,4 @@
-"""Change points that several drives pass at times known in closed form; a mesh in time that belongs to the mechanism."""
+"""Change points that several drives pass at times known in closed form; a mesh in time of the mechanism's own."""
 
 from __future__ import annotations
 

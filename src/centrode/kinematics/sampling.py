@@ -61,7 +61,7 @@ def evaluate_columns(continuation: Continuation, layout: Layout, parameter: Arra
     judging = Judging(continuation, along, columns.shape[2:])
     with np.errstate(all="ignore"):
         at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)
-        _fill_columns(continuation.kinematics, layout, at, columns)
+        fill_columns(continuation.kinematics, layout, at, columns)
     return judging
 
 
@@ -110,7 +110,8 @@ def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Ar
     return zero if zero.any() else None
 
 
-def _fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
+def fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
+    """Values and derivatives of every column, from jets."""
     for k, number in enumerate(layout.numbers(JETS, kinematics.numbers, at)):
         if isinstance(number, Jet):
             columns[0, k], columns[1, k] = number.coefficients[:2]

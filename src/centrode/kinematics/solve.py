@@ -88,7 +88,7 @@ def solve(
     progress: Progress | None = None,
 ) -> Solved:
     """Motion at the samples of a span."""
-    ready = _in_time(ready, span)
+    ready = fit_for(ready, span)
     kinematics = ready.kinematics if numbers is None else replace(ready.kinematics, numbers=_upright(numbers))
     samples = len(span.parameter)
     layout = layout_of(kinematics)
@@ -135,7 +135,7 @@ def _check_size(layout: Layout, lanes: int, samples: int) -> None:
         )
 
 
-def _in_time(ready: Ready, span: Span) -> Ready:
+def fit_for(ready: Ready, span: Span) -> Ready:
     """With several drives: the path's unit of time, by which groups of higher class are followed, fit for the span."""
     kinematics = ready.kinematics
     ends = np.append(span.parameter, kinematics.path.initial)
@@ -143,7 +143,8 @@ def _in_time(ready: Ready, span: Span) -> Ready:
     return replace(ready, kinematics=replace(kinematics, path=path))
 
 
-def _start(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:
+def start_of(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:
+    """A plan with the signs of the initial position, before any event is known."""
     smooth = ready.mechanism.assembly.continuation == "smooth"
     branches = branches_at_start(kinematics.path, ready.assembled.signs, smooth, lanes)
     return Continuation(kinematics, branches, ready.assembled.positions, ready.kinematics.numbers)
@@ -154,7 +155,7 @@ def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> t
     if path.by_time or path.driven[0].drive.kind == "angle" or (start is not None and stop is not None):
         return -np.inf, np.inf
     ends = np.array([path.initial - SEARCH * path.unit, path.initial + SEARCH * path.unit])
-    continuation = _start(ready, ready.kinematics)
+    continuation = start_of(ready, ready.kinematics)
     Scan(continuation, mesh_of(path, ends)).run()
     return continuation.branches.reach(0)
 
@@ -182,7 +183,7 @@ class _Part:
 
 def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples, angles: Array) -> _Part:
     """Fill in the samples and angles of some mechanisms of a batch."""
-    continuation = _start(ready, kinematics, samples.status.shape[0])
+    continuation = start_of(ready, kinematics, samples.status.shape[0])
     mesh = mesh_of(kinematics.path, span.parameter)
     on_mesh = Scan(continuation, mesh).run()
     sample(continuation, span.parameter, samples)
