@@ -28,6 +28,7 @@ from .model.classics import slider_crank as slider_crank
 # Structure and motion
 from .study.checking import check as check
 from .kinematics.motion import motion as motion
+from .kinematics.coefficients import kinematic_coefficients as kinematic_coefficients
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.summary import check_rows as check_rows

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from centrode.errors import InputError, Status
@@ -73,6 +73,14 @@ class Quantity:
         powers = _powers(self.unit)
         powers["rad"] = powers.get("rad", 0) + self.by_drive
         powers[drive_unit] = powers.get(drive_unit, 0) - self.by_drive
+        return replace(self, unit=_unit_text(powers))
+
+    def by_drives(self, drive_units: Sequence[str]) -> Quantity:
+        """The same quantity, a kinematic coefficient, by one or two drives with values in these units."""
+        powers = _powers(self.unit)
+        powers["rad"] = powers.get("rad", 0) + self.by_drive
+        for unit in drive_units:
+            powers[unit] = powers.get(unit, 0) - 1
         return replace(self, unit=_unit_text(powers))
 
     def on_sphere(self) -> Quantity:

@@ -120,7 +120,7 @@ class Anchors:
         for lane in np.unique(lanes):
             here = np.nonzero(lanes == lane)[0]
             self._of_lane(int(lane), parameter[here], here, found, step)
-        known = np.isfinite(found.state).all(axis=1)
+        known: Mask = np.asarray(np.isfinite(found.state).all(axis=1))
         moved = system.moved(np.where(known[:, None], found.state, 0.0), step)
         found.state[known & ~found.limit] = moved[known & ~found.limit]
         return found
@@ -151,8 +151,8 @@ class Anchors:
         found: Predicted,
         step: Array,
     ) -> None:
-        outward: Array = sense * (parameter - trail.reach)
-        past = outward > 0.0
+        outward = np.asarray(sense * (parameter - trail.reach), dtype=np.float64)
+        past = np.asarray(outward > 0.0)
         if trail.end == "unconverged":
             far = outward > self.least
             found.state[here[far]] = np.nan
@@ -165,7 +165,7 @@ class Anchors:
         beyond = past & ~limit
         found.beyond[here[beyond]] = True
         found.state[here[beyond]] = np.nan
-        near = ~past & (sense * (parameter - trail.anchors[-1].parameter) > 0.0)
+        near = ~past & (sense * (parameter - trail.anchors[-1].parameter) > 0.0) & (len(fold.parameters) > 0)
         found.state[here[near]] = fold.foretell(parameter[near])
         found.state[here[limit]] = fold.state
         found.sense[here[near | limit]] = fold.sense

@@ -68,9 +68,9 @@ def assemble(kinematics: Kinematics) -> Assembled:
     """
     initial = kinematics.path.initial
     drives = kinematics.path.drive_values(ARRAYS, initial)
-    at = Positions.of_frame(kinematics.numbers, drives)
+    at = Positions.of_frame(kinematics.numbers, drives, ARRAYS)
     bounded = Positions.of_frame(
-        kinematics.numbers, {k: Rounded.of(np.float64(v)) for k, v in drives.items()}
+        kinematics.numbers, {k: Rounded.of(np.float64(v)) for k, v in drives.items()}, ARRAYS
     )
     signs: dict[int, float] = {}
     check_sides(kinematics)

@@ -125,4 +125,5 @@ def branches_at_start(
 ) -> Branches:
     """Signs and angles in the initial position, before any event is known."""
     first = {group: np.full(lanes, sign) for group, sign in signs.items()}
-    return Branches(path.initial, path.forward, path.unit, lanes, first, smooth, angles)
+    unit = path.unit_at(path.initial)
+    return Branches(path.initial, path.forward, unit, lanes, first, smooth, angles)

@@ -115,7 +115,7 @@ class Continuation:
 
     def _half_width(self, group: int, lane: int, at: float) -> float:
         """Limits of the groups before it and all events of its own bound the stretch on which a group is smooth."""
-        unit = self.branches.unit
+        unit = self.kinematics.path.unit_at(at)
         others = [
             abs(event.at - at)
             for event in self.branches.events

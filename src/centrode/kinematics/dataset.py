@@ -38,18 +38,19 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     variables = _in_time(solved, front)
     if not solved.ready.kinematics.path.by_time:
         variables |= _coefficients(solved, front)
-    variables |= _judgements(solved, front) | _contacts(solved, front)
+    variables |= judgements_of(solved, front) | _contacts(solved, front)
     if not batch:
         variables |= _events(solved)
-    data = xr.Dataset(variables, coords=_coordinates(solved), attrs=_attributes(solved))
+    data = xr.Dataset(variables, coords=coordinates_of(solved), attrs=attributes_of(solved))
     for path, values in (vary or {}).items():
         data = data.assign_coords({path: (BATCH, np.asarray(values, dtype=np.float64))})
     return data
 
 
-def _named(
+def named(
     name: str, dimensions: tuple[str, ...], values: Any, drive_unit: str = "rad", length_unit: str = "m"
 ) -> Variable:
+    """A variable of the vocabulary with its dimensions, values and attributes."""
     return dimensions, values, dict(_words(name, drive_unit, length_unit))
 
 
@@ -69,7 +70,7 @@ def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Values and derivatives by time, by the chain rule from those by the path's parameter."""
     span, unit = solved.span, _length_unit(solved)
     found: dict[str, Variable] = {}
-    for kind in _kinds(solved):
+    for kind in kinds_of(solved):
         along = (slice(None), *[None] * len(kind.dimensions))  # samples, then what stands behind them
         for order, factor in ((0, None), (1, span.rate), (2, span.rate**2)):
             by_parameter = kind.orders[order]
@@ -79,12 +80,12 @@ def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
             if order == 2 and span.second_rate.any():
                 values += kind.orders[1] * span.second_rate[along]
             name, dimensions = kind.names[order], (*front, "sample", *kind.dimensions)
-            found[name] = _named(name, dimensions, _lanes(values, front), length_unit=unit)
+            found[name] = named(name, dimensions, _lanes(values, front), length_unit=unit)
     return found
 
 
 @dataclass(frozen=True)
-class _Kind:
+class Kind:
     """What has a value and two derivatives by the path's parameter: names by time, prefix per unit of the drive."""
 
     names: tuple[str, str, str]
@@ -93,33 +94,35 @@ class _Kind:
     orders: tuple[Array | None, Array, Array]
 
 
-def _kinds(solved: Solved) -> list[_Kind]:
+def kinds_of(solved: Solved) -> list[Kind]:
+    """Everything of a motion that has derivatives."""
+
     def orders(values: Array) -> tuple[Array | None, Array, Array]:
         return values[0], values[1], values[2]
 
     points = ("position", "velocity", "acceleration")
     slides = ("slide", "slide_velocity", "slide_acceleration")
     turning = ("angle", "angular_velocity", "angular_acceleration")
-    found = [_Kind(points, "", ("point", "axis"), orders(solved.all_points))]
+    found = [Kind(points, "", ("point", "axis"), orders(solved.all_points))]
     if solved.spins is None:
-        found.append(_Kind(turning, "angular_", ("link",), orders(solved.angles)))
+        found.append(Kind(turning, "angular_", ("link",), orders(solved.angles)))
     else:
         spins = (None, solved.spins[0], solved.spins[1])
-        found.append(_Kind(turning, "angular_", ("link", "axis"), spins))
+        found.append(Kind(turning, "angular_", ("link", "axis"), spins))
         joints = ("joint_angle", "joint_velocity", "joint_acceleration")
-        found.append(_Kind(joints, "joint_", ("joint",), orders(solved.angles)))
-    return [*found, _Kind(slides, "slide_", ("guide",), orders(solved.slides))]
+        found.append(Kind(joints, "joint_", ("joint",), orders(solved.angles)))
+    return [*found, Kind(slides, "slide_", ("guide",), orders(solved.slides))]
 
 
 def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Kinematic coefficients: derivatives by the drive's value."""
-    unit = _units(solved)[0]
+    unit = units_of_drives(solved)[0]
     found = {}
     for order, word in ((1, "velocity"), (2, "acceleration")):
-        for kind in _kinds(solved):
+        for kind in kinds_of(solved):
             name, dimensions = f"{kind.prefix}{word}_coefficient", (*front, "sample", *kind.dimensions)
             values = _lanes(kind.orders[order], front)
-            found[name] = _named(name, dimensions, values, unit, _length_unit(solved))
+            found[name] = named(name, dimensions, values, unit, _length_unit(solved))
     return found
 
 
@@ -127,7 +130,7 @@ def _length_unit(solved: Solved) -> str:
     return solved.layout.space.unit
 
 
-def _units(solved: Solved) -> list[str]:
+def units_of_drives(solved: Solved) -> list[str]:
     """SI unit of each drive's value."""
     driven = solved.ready.kinematics.path.driven
     return ["rad" if one.drive.kind == "angle" else _length_unit(solved) for one in driven]
@@ -138,70 +141,74 @@ def _contacts(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     if not solved.ready.mechanism.rolling:
         return {}
     dimensions = (*front, "sample", "rolling", "axis")
-    return {"contact": _named("contact", dimensions, _lanes(solved.contacts, front))}
+    return {"contact": named("contact", dimensions, _lanes(solved.contacts, front))}
 
 
-def _judgements(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
-    dimensions, status, attributes = _named("status", (*front, "sample"), _lanes(solved.status, front))
+def judgements_of(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
+    """Status and residual of every sample."""
+    dimensions, status, attributes = named("status", (*front, "sample"), _lanes(solved.status, front))
     attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
     attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
     return {
         "status": (dimensions, status, attributes),
-        "residual": _named("residual", (*front, "sample"), _lanes(solved.residual, front)),
+        "residual": named("residual", (*front, "sample"), _lanes(solved.residual, front)),
     }
 
 
 def _events(solved: Solved) -> dict[str, Variable]:
     events = solved.events()
     by_time = solved.ready.kinematics.path.by_time
-    kind = "rad" if by_time else _units(solved)[0]
+    kind = "rad" if by_time else units_of_drives(solved)[0]
     with speaking("en"):
         groups = [name_of(solved.ready.structure.groups[event.group]) for event in events]
     kinds = np.array([EVENT_KINDS.index(event.kind) for event in events], dtype=np.int8)
-    dimensions, values, attributes = _named("event_kind", ("event",), kinds)
+    dimensions, values, attributes = named("event_kind", ("event",), kinds)
     attributes["flag_values"] = np.arange(len(EVENT_KINDS), dtype=np.int8)
     attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in EVENT_KINDS)
-    places = _named("event_value", ("event",), np.array([event.at for event in events]), kind)
+    places = named("event_value", ("event",), np.array([event.at for event in events]), kind)
     if by_time:
         places[2]["units"] = "s"
     return {
         "event_value": places,
         "event_kind": (dimensions, values, attributes),
-        "event_group": _named("event_group", ("event",), np.array(groups, dtype=str)),
+        "event_group": named("event_group", ("event",), np.array(groups, dtype=str)),
     }
 
 
-def _coordinates(solved: Solved) -> dict[str, Any]:
+def coordinates_of(solved: Solved) -> dict[str, Any]:
+    """Times, values of the drives, and names."""
     path = solved.ready.kinematics.path
     values = path.drive_values(ARRAYS, solved.span.parameter)
     count = len(solved.span.time)
     drives = np.stack([np.broadcast_to(value, (count,)) for value in values.values()], axis=-1)
-    units = _units(solved)
-    drive_value = _named("drive_value", ("sample", "drive"), drives, units[0])
+    units = units_of_drives(solved)
+    drive_value = named("drive_value", ("sample", "drive"), drives, units[0])
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)
     frame = tuple(solved.ready.structure.dimensions.frame)
-    joints = {} if solved.spins is None else {"joint": _labels(solved.layout.angles)}
+    joints = {} if solved.spins is None else {"joint": labels_of(solved.layout.angles)}
     wheels = tuple(wheel.id for wheel in solved.ready.mechanism.rolling)
     return {
-        "time": _named("time", ("sample",), solved.span.time),
+        "time": named("time", ("sample",), solved.span.time),
         "drive_value": drive_value,
-        "point": _labels(frame + solved.layout.points),
-        "link": _labels(solved.layout.links),
+        "point": labels_of(frame + solved.layout.points),
+        "link": labels_of(solved.layout.links),
         **joints,
-        "guide": _labels(solved.layout.guides),
-        **({"rolling": _labels(wheels)} if wheels else {}),
-        "drive": _labels(tuple(values)),
-        "axis": _labels(solved.layout.space.axes),
+        "guide": labels_of(solved.layout.guides),
+        **({"rolling": labels_of(wheels)} if wheels else {}),
+        "drive": labels_of(tuple(values)),
+        "axis": labels_of(solved.layout.space.axes),
     }
 
 
-def _labels(names: tuple[str, ...]) -> Any:
+def labels_of(names: tuple[str, ...]) -> Any:
+    """Names as a coordinate."""
     # an index as it is: from an array xarray makes one by way of every array library it finds, pint included
     return pd.Index(names, dtype=object)
 
 
-def _attributes(solved: Solved) -> dict[str, Any]:
+def attributes_of(solved: Solved) -> dict[str, Any]:
+    """What a result says of itself."""
     mechanism = solved.ready.mechanism
     with speaking("en"):
         worst = solved.worst_constraint.label

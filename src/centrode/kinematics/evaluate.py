@@ -135,7 +135,7 @@ class Kinematics:
         def take(x: Number) -> Number:
             return x if isinstance(x, float) else x.reshape(-1)[lanes]
 
-        return Kinematics(self.structure, self.numbers.mapped(take), self.path)
+        return Kinematics(self.structure, self.numbers.mapped(take), self.path.taken(take))
 
 
 class _UpTo(Hooks):

@@ -21,6 +21,7 @@ from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.continuation import REACH, Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics, Reached
+from centrode.kinematics.pace import OFF_GRID
 from centrode.kinematics.paths import JETS, Path
 from centrode.kinematics.roots import bracketed_roots
 from centrode.kinematics.turns import counted
@@ -36,14 +37,12 @@ LOW = 0.25
 """A minimum is looked into if the tangents on both sides meet below this fraction of the values there."""
 
 
-OFF_GRID = 0.37
-"""Mesh nodes stand this share of a step away from the initial position: events like to lie at round values."""
-
-
 def mesh_of(path: Path, parameter: Array) -> Array:
     """Nodes on which events are looked for: they belong to the mechanism, only their extent to the samples."""
     low = min(path.initial, float(np.min(parameter)))
     high = max(path.initial, float(np.max(parameter)))
+    if path.pace is not None:
+        return path.pace.nodes(*path.pace.beyond(low, high, REACH))
     beyond = int(np.ceil(REACH * path.unit / path.step)) + 2
     first = int(np.floor((low - path.initial) / path.step)) - beyond
     last = int(np.ceil((high - path.initial) / path.step)) + beyond

@@ -120,7 +120,7 @@ def positions_from(
 ) -> Positions:
     """Positions as plain arrays from the values of columns and angles (columns first), to evaluate constraints on."""
     numbers, size = kinematics.numbers, layout.attitude
-    at = Positions.of_frame(numbers, kinematics.path.drive_values(ARRAYS, parameter))
+    at = Positions.of_frame(numbers, kinematics.path.drive_values(ARRAYS, parameter), ARRAYS)
     for k, point in enumerate(layout.points):
         at.points[point] = tuple(values[layout.axes * k : layout.axes * (k + 1)])
     for k, link in enumerate(layout.links):

@@ -6,29 +6,27 @@ is time.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from math import dist, isfinite, tau
 from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
+from centrode.kinematics.pace import NODES_PER_TURN, Pace
 from centrode.laws import Law
 from centrode.locale import _
 from centrode.model.chain import chain_of
 from centrode.model.mechanism import Drive, Mechanism
 
+Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
-
-NODES_PER_TURN = 720
-"""Mesh on which events are looked for: two events closer than half a degree may be missed."""
-
-RATES = 1000
-"""Times at which the rates of several drives are compared."""
 
 JETS = JetFunctions(ARRAYS)
 
@@ -65,6 +63,9 @@ class Path:
         Change of the parameter that counts as large (1 rad, the mechanism's scale, or a time).
     scale : float [m]
         The mechanism's greatest length.
+    pace : Pace
+        Of several drives: what time counts as large, stretch by stretch.
+    held : drive -> its value, constant along the path; of a batch of paths arrays (lanes, 1)
     """
 
     driven: tuple[DrivenBy, ...]
@@ -72,21 +73,37 @@ class Path:
     forward: float
     unit: float
     scale: float = 1.0
+    pace: Pace | None = None
+    held: Mapping[str, Number] = field(default_factory=dict)
 
     @property
     def by_time(self) -> bool:
         """Whether the parameter is time."""
-        return len(self.driven) > 1
+        return self.pace is not None
 
     @property
     def step(self) -> float:
         """Distance of mesh nodes."""
         return self.unit * tau / NODES_PER_TURN
 
+    def unit_at(self, parameter: float) -> float:
+        """What counts as large near a parameter."""
+        return self.unit if self.pace is None else self.pace.unit_at(parameter)
+
+    def within(self, low: float, high: float) -> Path:
+        """The same path with the unit that is fit for all of a range."""
+        return self if self.pace is None else replace(self, unit=self.pace.finest(low, high))
+
+    def taken(self, take: Callable[[Number], Number]) -> Path:
+        """The paths of chosen mechanisms of a batch."""
+        if not self.held:
+            return self
+        return replace(self, held={drive: take(value) for drive, value in self.held.items()})
+
     def drive_values(self, m: Namespace, parameter: Number) -> dict[str, Number]:
         """Values of all drives at a parameter, over any algebra."""
         if not self.by_time:
-            return {self.driven[0].drive.id: parameter}
+            return {self.driven[0].drive.id: parameter, **self.held}
         return {one.drive.id: one.value(m, parameter) for one in self.driven}
 
     def impossible(self, parameter: Any) -> Any:
@@ -104,9 +121,15 @@ def path_of(mechanism: Mechanism, scale: float) -> Path:
     """The path that a description's drives take; `scale` is the mechanism's greatest length [m]."""
     driven = tuple(_driven_by(mechanism, drive) for drive in mechanism.drives)
     if len(driven) > 1:
-        return in_time(Path(driven, 0.0, 1.0, 1.0, scale), 0.0, 1.0)
-    unit = 1.0 if driven[0].drive.kind == "angle" else scale
-    return Path(driven, driven[0].initial, _sense_at_start(driven[0]), unit)
+        pace = Pace.of(lambda times: _fastest(driven, scale, times))
+        return Path(driven, 0.0, 1.0, pace.unit_at(0.0), scale, pace)
+    unit = unit_of(driven[0].drive, scale)
+    return Path(driven, driven[0].initial, _sense_at_start(driven[0]), unit, scale)
+
+
+def unit_of(drive: Drive, scale: float) -> float:
+    """Change of a drive's value that counts as large: 1 rad, or the mechanism's greatest length."""
+    return 1.0 if drive.kind == "angle" else scale
 
 
 def _sense_at_start(driven: DrivenBy) -> float:
@@ -121,20 +144,15 @@ def _sense_at_start(driven: DrivenBy) -> float:
     return 1.0
 
 
-def in_time(path: Path, first: float, last: float) -> Path:
-    """The path of several drives with its unit fit for a stretch of time: the fastest drive moves 1 rad, or its scale.
-
-    Where the drives are laws, the mesh on which events are looked for so depends on the time asked for.
-    """
-    times = np.linspace(min(first, 0.0), max(last, 0.0), RATES)
-    fastest = 0.0
+def _fastest(driven: tuple[DrivenBy, ...], scale: float, times: Array) -> Array:
+    """The greatest rate of several drives at times, in their units per second."""
+    fastest = np.zeros(len(times))
     with np.errstate(all="ignore"):
-        for one in path.driven:
+        for one in driven:
             value = one.value(JETS, Jet.variable(times, 1))
-            rates = np.abs(value.derivative(1)) if isinstance(value, Jet) else np.zeros(1)
-            unit = 1.0 if one.drive.kind == "angle" else path.scale
-            fastest = max(fastest, float(np.nanmax(rates)) / unit)
-    return replace(path, unit=1.0 / fastest) if fastest > 0.0 and isfinite(fastest) else path
+            if isinstance(value, Jet):
+                fastest = np.fmax(fastest, np.abs(value.derivative(1)) / unit_of(one.drive, scale))
+    return fastest
 
 
 def _driven_by(mechanism: Mechanism, drive: Drive) -> DrivenBy:

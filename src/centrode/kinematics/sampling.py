@@ -16,6 +16,7 @@ from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import SAFETY
 from centrode.errors import Status
 from centrode.kinematics.continuation import Continuation, Smooth
+from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import guard_with_bound
 from centrode.kinematics.higher import Judged
 from centrode.kinematics.layout import Layout
@@ -65,8 +66,7 @@ def evaluate_columns(continuation: Continuation, samples: Samples, parameter: Ar
     judging = Judging(continuation, along, samples.status.shape)
     with np.errstate(all="ignore"):
         at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)
-        for k, number in enumerate(layout.numbers(JETS, continuation.kinematics.numbers, at)):
-            _fill(samples.columns[:, k], number)
+        fill_columns(continuation.kinematics, layout, at, samples.columns)
     for k, link in enumerate(layout.angles):
         if layout.runs_on and link in at.angles:
             _fill(samples.angles[:, k], at.angles[link])
@@ -117,6 +117,12 @@ def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Ar
     zero = np.zeros(value.shape, dtype=bool)
     zero[suspects] = np.abs(value[suspects]) <= SAFETY * bound
     return zero if zero.any() else None
+
+
+def fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
+    """Values and derivatives of every column, from jets."""
+    for k, number in enumerate(layout.numbers(JETS, kinematics.numbers, at)):
+        _fill(columns[:, k], number)
 
 
 def _fill(column: Array, number: Number) -> None:

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError, Status
 from centrode.kinematics.branches import Branches, Event, branches_at_start
 from centrode.kinematics.contacts import contacts_at
@@ -16,7 +17,6 @@ from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan, mesh_of
 from centrode.kinematics.layout import Layout, layout_of, positions_from
-from centrode.kinematics.paths import in_time
 from centrode.kinematics.phases import with_phases
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
@@ -93,7 +93,7 @@ def solve(
     progress: Progress | None = None,
 ) -> Solved:
     """Motion at the samples of a span."""
-    ready = _in_time(ready, span)
+    ready = fit_for(ready, span)
     kinematics = ready.kinematics if numbers is None else _varied(ready.kinematics, numbers)
     samples = len(span.parameter)
     layout = layout_of(kinematics)
@@ -141,16 +141,16 @@ def _check_size(layout: Layout, lanes: int, samples: int) -> None:
         )
 
 
-def _in_time(ready: Ready, span: Span) -> Ready:
-    """With several drives: the path's unit of time as the rates of this span want it."""
+def fit_for(ready: Ready, span: Span) -> Ready:
+    """With several drives: the path's unit of time, by which groups of higher class are followed, fit for the span."""
     kinematics = ready.kinematics
-    if not kinematics.path.by_time:
-        return ready
-    path = in_time(kinematics.path, float(np.min(span.parameter)), float(np.max(span.parameter)))
+    ends = np.append(span.parameter, kinematics.path.initial)
+    path = kinematics.path.within(float(np.min(ends)), float(np.max(ends)))
     return replace(ready, kinematics=replace(kinematics, path=path))
 
 
-def _start(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:
+def start_of(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:
+    """A plan with the signs of the initial position, before any event is known."""
     smooth = ready.mechanism.assembly.continuation == "smooth"
     start = ready.assembled
     branches = branches_at_start(kinematics.path, start.signs, start.angles, smooth, lanes)
@@ -162,7 +162,7 @@ def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> t
     if path.by_time or path.driven[0].drive.kind == "angle" or (start is not None and stop is not None):
         return -np.inf, np.inf
     ends = np.array([path.initial - SEARCH * path.unit, path.initial + SEARCH * path.unit])
-    continuation = _start(ready, ready.kinematics)
+    continuation = start_of(ready, ready.kinematics)
     Scan(continuation, mesh_of(path, ends)).run()
     low, high = continuation.branches.reach(0)
     # a cylinder does not get shorter than zero
@@ -199,7 +199,7 @@ class _Part:
 
 def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples) -> _Part:
     """Fill in the samples and angles of some mechanisms of a batch."""
-    continuation = _start(ready, kinematics, samples.status.shape[0])
+    continuation = start_of(ready, kinematics, samples.status.shape[0])
     mesh = mesh_of(kinematics.path, span.parameter)
     on_mesh = Scan(continuation, mesh).run()
     sample(continuation, span.parameter, samples)
@@ -216,7 +216,7 @@ def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Sampl
 def _fill_frame(columns: Array, numbers: Dimensions, samples: Samples) -> None:
     """Points of the frame: their places are constant, absent where the motion is."""
     columns[1:] = 0.0
-    fixed = Positions.of_frame(numbers, {}).points
+    fixed = Positions.of_frame(numbers, {}, ARRAYS).points
     for k, place in enumerate(x for at in fixed.values() for x in at):
         columns[0, k] = place
     opened = samples.status == Status.OPEN

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
-from centrode.kinematics.paths import JETS, DrivenBy, Path, in_time
+from centrode.kinematics.paths import JETS, DrivenBy, Path
 from centrode.locale import _
 from centrode.model import limits
 
@@ -78,9 +78,11 @@ def _check_extent(path: Path, span: Span) -> None:
                 _("its law has no finite value with two derivatives everywhere in the range"),
                 _("correct the law, or ask for another range"),
             )
-    if path.by_time:
-        path = in_time(path, float(np.min(span.time)), float(np.max(span.time)))
-    turns = float(np.max(np.abs(span.parameter - path.initial))) / (2.0 * np.pi * path.unit)
+    if path.pace is not None:
+        ends = min(path.initial, float(np.min(span.time))), max(path.initial, float(np.max(span.time)))
+        turns = path.pace.turns(*ends)
+    else:
+        turns = float(np.max(np.abs(span.parameter - path.initial))) / (2.0 * np.pi * path.unit)
     if turns > MAX_TURNS:
         raise InputError(
             _("range"),

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.angles import NodeTurns, angle_and_rates, node_turns
 from centrode.kinematics.layout import rotor_of_angle, slide_of
+from centrode.kinematics.pace import nearest_node
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.sampling import Samples
 from centrode.structure.dimensions import Dimensions
@@ -36,8 +37,7 @@ class Course:
 
     def nearest(self, parameter: Array) -> npt.NDArray[np.intp]:
         """The node nearest to each parameter."""
-        nodes = np.round((parameter - self.mesh[0]) / self.ready.kinematics.path.step).astype(np.intp)
-        return np.asarray(np.clip(nodes, 0, len(self.mesh) - 1))
+        return nearest_node(self.mesh, parameter)
 
 
 def fill_angles(course: Course, samples: Samples, parameter: Array) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
-from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.plain import PLAIN
 from centrode.geometry.plane import rotor_of
 from centrode.geometry.space import Coordinates, Rows
 from centrode.locale import _
@@ -73,7 +73,7 @@ class PointInLink:
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         point, pose = at.points[self.point], at.poses[self.link]
-        slopes = numbers.space.in_link_rows(ARRAYS, point, pose, self._local(numbers))
+        slopes = numbers.space.in_link_rows(PLAIN, point, pose, self._local(numbers))
         return [_row(self.bodies, slope) for slope in slopes]
 
     def _local(self, numbers: Dimensions) -> Coordinates:
@@ -104,7 +104,7 @@ class PointOnGuide:
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         point, pose = at.points[self.point], at.poses[self.on]
-        slope = numbers.space.on_guide_row(ARRAYS, point, pose, numbers.curve(self.guide))
+        slope = numbers.space.on_guide_row(PLAIN, point, pose, numbers.curve(self.guide))
         return [_row(self.bodies, slope)]
 
 
@@ -134,7 +134,7 @@ class NoTurning:
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         pose, base = at.poses[self.link], at.poses[self.on]
-        return [_row(self.bodies, numbers.space.turn_row(ARRAYS, pose, base, None))]
+        return [_row(self.bodies, numbers.space.turn_row(PLAIN, pose, base, None))]
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ class AngleDrive:
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         pose, base = at.poses[self.link], at.poses[self.relative_to]
-        slope = numbers.space.turn_row(ARRAYS, pose, base, numbers.reference(self.link))
+        slope = numbers.space.turn_row(PLAIN, pose, base, numbers.reference(self.link))
         return [_row(self.bodies, slope)]
 
 
@@ -191,7 +191,7 @@ class DisplacementDrive:
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         point, pose = at.points[self.point], at.poses[self.on]
-        slope = numbers.space.slid_row(ARRAYS, point, pose, numbers.curve(self.guide))
+        slope = numbers.space.slid_row(PLAIN, point, pose, numbers.curve(self.guide))
         return [_row(self.bodies, slope)]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
-from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.plain import PLAIN
 from centrode.errors import InputError
 from centrode.geometry.in_plane import PLANE
 from centrode.geometry.on_sphere import SPHERE
@@ -99,11 +99,11 @@ class Dimensions:
         for points in (self.frame, *self.local.values()):
             places = [self._inside(at) for at in points.values()]
             for at in places:
-                longest = _larger(longest, self.space.distance(ARRAYS, at, places[0]))
+                longest = _larger(longest, self.space.distance(PLAIN, at, places[0]))
         for guide, on in self.bodies.items():
             points = self.frame if on == FRAME else self.local[on]
             for at in list(points.values())[:1]:
-                reach = self.space.reach(ARRAYS, self.curve(guide), self._inside(at))
+                reach = self.space.reach(PLAIN, self.curve(guide), self._inside(at))
                 longest = _larger(longest, reach)
         for radius in self.gearing.radius.values():
             longest = _larger(longest, radius)
@@ -114,7 +114,7 @@ class Dimensions:
 
     def _inside(self, local: Vector) -> Place:
         """Place of a point as its own body sees it."""
-        return self.space.place(ARRAYS, self.space.at_rest, local)
+        return self.space.place(PLAIN, self.space.at_rest, local)
 
 
 def _larger(a: Number, b: Number) -> Number:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple, TypeAlias
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.geometry.plane import Vector, place, reversed_rotor, turned
 from centrode.geometry.space import Place, Pose
 from centrode.structure.dimensions import Dimensions
@@ -46,9 +45,7 @@ class Positions:
     angles: dict[str, Number] = field(default_factory=lambda: {FRAME: 0.0})
 
     @classmethod
-    def of_frame(
-        cls, dimensions: Dimensions, drives: Mapping[str, Number], m: Namespace = ARRAYS
-    ) -> Positions:
+    def of_frame(cls, dimensions: Dimensions, drives: Mapping[str, Number], m: Namespace) -> Positions:
         """What is known before any group is solved: the frame and the drives."""
         space = dimensions.space
         fixed = {name: space.place(m, space.at_rest, at) for name, at in dimensions.frame.items()}
