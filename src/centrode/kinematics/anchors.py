@@ -19,7 +19,7 @@ Lanes: TypeAlias = npt.NDArray[np.intp]
 Mask: TypeAlias = npt.NDArray[np.bool_]
 End: TypeAlias = Literal["open", "limit", "unconverged"]
 
-AT_THE_LIMIT = 64.0
+AT_THE_LIMIT = 4096.0
 """A place this many units of rounding away from a limit is the limit itself."""
 HALVINGS = 40
 
@@ -165,8 +165,11 @@ class Anchors:
         beyond = past & ~limit
         found.beyond[here[beyond]] = True
         found.state[here[beyond]] = np.nan
-        near = ~past & (sense * (parameter - trail.anchors[-1].parameter) > 0.0) & (len(fold.parameters) > 0)
-        found.state[here[near]] = fold.foretell(parameter[near])
+        near = ~past & (sense * (parameter - trail.anchors[-1].parameter) > 0.0)
+        if not len(fold.parameters):
+            near[:] = False  # the curve could not be followed backwards from there
+        elif near.any():
+            found.state[here[near]] = fold.foretell(parameter[near])
         found.state[here[limit]] = fold.state
         found.sense[here[near | limit]] = fold.sense
         step[here[near | limit]] = 0.0
