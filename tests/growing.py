@@ -15,7 +15,9 @@ from hypothesis import strategies as st
 
 from centrode import Mechanism
 
-KINDS = ("RRR", "RRP", "RRP carriage", "RPR", "RPR block", "PRP", "RPP", "rigid point", "parallel link")
+DYADS = ("RRR", "RRP", "RRP carriage", "RPR", "RPR block", "PRP", "RPP", "rigid point", "parallel link")
+WHEELS = ("gear", "wheel on a line", "wheel on a circle")
+KINDS = DYADS + WHEELS
 
 
 @dataclass
@@ -28,6 +30,8 @@ class Growing:
     frame: dict[str, list[float]] = field(default_factory=dict)
     links: dict[str, dict[str, Any]] = field(default_factory=dict)
     guides: list[dict[str, Any]] = field(default_factory=list)
+    gears: list[dict[str, Any]] = field(default_factory=list)
+    rolling: list[dict[str, Any]] = field(default_factory=list)
     start: float = 0.0
 
     def place(self) -> complex:
@@ -151,11 +155,47 @@ class Growing:
         self.guide(p, at, body, heading, shoe)
         self.guide(p, at, other, heading + self.random.uniform(0.5, 2.5))
 
+    def _gear(self) -> None:
+        """A wheel on a known point, turned by any body against any other."""
+        pivot = self.known_point()
+        turning = self.body()
+        carrier = self.body(turning)
+        wheel = self.link({pivot: self.places[pivot]})
+        ratio = float(self.random.choice([-1.0, 1.0]) * self.random.uniform(0.3, 2.0))
+        self.gears.append({"links": [turning, wheel], "carrier": carrier, "ratio": ratio})
+
+    def _wheel_on_a_line(self) -> None:
+        """A wheel on a line of any body, its centre held by a rod."""
+        p, at, known, body = self.new(), self.place(), self.known_point(), self.body()
+        radius, heading = float(self.random.uniform(0.2, 0.8)), self.angle()
+        self.link({known: self.places[known], p: at})
+        along = cmath.exp(1j * heading)
+        foot = at - 1j * radius * along + self.random.uniform(-1.0, 1.0) * along
+        self._roll(
+            p, radius, body, {"through": self.local(body, foot), "direction": heading - self.poses[body][1]}
+        )
+
+    def _wheel_on_a_circle(self) -> None:
+        """A wheel outside or inside a circle of any body, its centre held by a rod."""
+        p, at, known, body = self.new(), self.place(), self.known_point(), self.body()
+        radius, circle = float(self.random.uniform(0.2, 0.8)), float(self.random.uniform(1.0, 2.0))
+        inside = bool(self.random.random() < 0.5)
+        self.link({known: self.places[known], p: at})
+        reach = circle - radius if inside else circle + radius
+        centre = at - reach * cmath.exp(1j * self.angle())
+        self._roll(p, radius, body, {"centre": self.local(body, centre), "radius": circle, "inside": inside})
+
+    def _roll(self, centre: str, radius: float, on: str, along: dict[str, Any]) -> None:
+        wheel = self.link({centre: self.places[centre]})
+        self.rolling.append({"link": wheel, "centre": centre, "radius": radius, "on": on, "along": along})
+
     def parts(self) -> dict[str, Any]:
         return {
             "frame": {"points": self.frame},
             "links": self.links,
             "guides": self.guides,
+            "gears": self.gears,
+            "rolling": self.rolling,
             "drives": [{"link": "link0", "start": self.start, "speed": 1.0}],
         }
 

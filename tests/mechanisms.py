@@ -82,6 +82,8 @@ def moved(
         guide["direction"] = sense * _angle(guide["direction"]) + (turn if on_frame else 0.0)
         if "angle" in guide:
             guide["angle"] = sense * guide["angle"] + (turn if on_frame else 0.0)
+    for wheel in new.get("rolling", []):
+        _move_wheel(wheel, fixed if wheel.get("on", "frame") == "frame" else local, scale, mirrored, turn)
     for drive in new["drives"]:
         angular = "link" in drive
         factor = sense if angular else scale
@@ -96,6 +98,21 @@ def moved(
             sides[name] = WORDS_MIRRORED[word]
     new.pop("study", None)
     return new
+
+
+def _move_wheel(wheel: Parts, place: Any, scale: float, mirrored: bool, turn: float) -> None:
+    """What is on the left of a line is on the right of its image, so its direction is turned round."""
+    track = wheel["along"]
+    wheel["radius"] *= scale
+    for key in ("through", "centre"):
+        if isinstance(track.get(key), list):
+            track[key] = place(track[key])
+    if "radius" in track:
+        track["radius"] *= scale
+    if "direction" in track:
+        angle = _angle(track["direction"])
+        on_frame = wheel.get("on", "frame") == "frame"
+        track["direction"] = (math.pi - angle if mirrored else angle) + (turn if on_frame else 0.0)
 
 
 def _move_link(link: Parts, local: Any, sense: float, scale: float, turn: float) -> None:
@@ -176,15 +193,25 @@ def conditioning(solved: Solved, tries: int = 8) -> Array:
 def closed_forms(solved: Solved, kinematics: Kinematics, parameter: Array) -> Array:
     """Places in the greatest length and attitudes, by the closed forms with the signs of a motion: (3, columns, n)."""
 
-    signs = {group: solved.branches.sign(group, parameter[None, :])[0] for group in solved.branches.signs}
     with np.errstate(all="ignore"):
-        at = kinematics.positions(JETS, Jet.variable(parameter, 2), FixedSigns(JETS, signs))
+        at = kinematics.positions(JETS, Jet.variable(parameter, 2), on_branch(solved, parameter))
     scale = float(kinematics.numbers.scale)
     columns = [x / scale for name in solved.layout.points for x in at.points[name]]
     columns += [x for name in solved.layout.links for x in solved.layout.space.attitude(at.poses[name])]
     jets = [x if isinstance(x, Jet) else Jet((x, 0.0, 0.0)) for x in columns]
     shape = parameter.shape
     return np.array([[np.broadcast_to(x.derivative(k), shape) for x in jets] for k in range(3)])
+
+
+def on_branch(solved: Solved, parameter: Array) -> FixedSigns:
+    """Signs and turns of a motion at parameters, for its closed forms over jets."""
+    signs = {group: solved.branches.sign(group, parameter[None, :])[0] for group in solved.branches.signs}
+    first_lane = np.zeros(parameter.shape, dtype=np.intp)
+
+    def continued(key: str, angle: Any) -> Any:
+        return solved.branches.turns[key].continued(angle, parameter, first_lane)
+
+    return FixedSigns(JETS, signs, continued)
 
 
 def nudged(numbers: Dimensions, random: np.random.Generator) -> Dimensions:
@@ -200,7 +227,17 @@ def nudged(numbers: Dimensions, random: np.random.Generator) -> Dimensions:
 
     if numbers.space.unit == "rad":
         return length  # its numbers are angles already
-    return replace(length, direction=turned(numbers.direction), turn=turned(numbers.turn))
+
+    def small() -> float:
+        return STEP * float(random.uniform(-1.0, 1.0))
+
+    own = numbers.gearing
+    gearing = replace(
+        own.resized(lambda x: x + small() * numbers.scale),
+        ratio={name: x * (1.0 + small()) for name, x in own.ratio.items()},
+        phase={name: x + small() for name, x in own.phase.items()},
+    )
+    return replace(length, direction=turned(numbers.direction), turn=turned(numbers.turn), gearing=gearing)
 
 
 def rounding(solved: Solved) -> Array:

@@ -97,6 +97,12 @@ def renamed(parts: Parts, random: np.random.Generator) -> tuple[Parts, dict[str,
     new["guides"] = [
         rewritten(parts["guides"][k], names, bodies) for k in random.permutation(len(parts["guides"]))
     ]
+    for gear in new["gears"]:
+        gear["links"] = [bodies.get(name, "frame") for name in gear["links"]]
+        gear["carrier"] = bodies.get(gear["carrier"], "frame")
+    for wheel in new["rolling"]:
+        wheel |= {"link": bodies[wheel["link"]], "centre": names[wheel["centre"]]}
+        wheel["on"] = bodies.get(wheel["on"], "frame")
     new["drives"][0]["link"] = bodies[parts["drives"][0]["link"]]
     return new, names
 

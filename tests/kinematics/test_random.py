@@ -10,7 +10,6 @@ from hypothesis import assume, given, settings
 import centrode as ct
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose, subtract, turned
-from centrode.kinematics.evaluate import FixedSigns
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Solved
@@ -18,7 +17,7 @@ from centrode.structure.constraints import is_drive
 from centrode.structure.positions import Entity, Positions
 from centrode.structure.rank import jacobian
 from growing import descriptions, mechanism_of
-from mechanisms import EPS, conditioning, solve_evenly
+from mechanisms import EPS, conditioning, on_branch, solve_evenly
 
 WIDTH = 0.3
 SAMPLES = 7
@@ -49,6 +48,7 @@ def jet_positions(solved: Solved, sample: int) -> Positions:
         angle = Jet((a[0], a[1], a[2] / 2))
         rotor = (JETS.cos(angle), JETS.sin(angle))
         point, local = next(iter(kinematics.numbers.local[name].items()))
+        at.angles[name] = angle
         at.poses[name] = Pose(subtract(at.points[point], turned(local, rotor)), rotor)
     return at
 
@@ -57,7 +57,7 @@ def jet_positions(solved: Solved, sample: int) -> Positions:
 @given(descriptions())
 def test_constraints_hold_with_two_derivatives(parts: dict[str, Any]) -> None:
     solved, good, allowed = motion_about_the_start(parts)
-    numbers = solved.ready.structure.dimensions
+    numbers = solved.ready.kinematics.numbers
     scale = float(numbers.scale)
     for k in good:
         at = jet_positions(solved, k)
@@ -91,7 +91,7 @@ def test_velocities_solve_the_linear_equations(parts: dict[str, Any]) -> None:
             {"link0": solved.span.parameter[k]},
         )
         rates = np.concatenate([rate_of(entity, jets, solved, k) for entity in structure.unknowns])
-        rows = jacobian(structure.constraints, structure.unknowns, structure.dimensions, at)
+        rows = jacobian(structure.constraints, structure.unknowns, solved.ready.kinematics.numbers, at)
         known = [1.0 if is_drive(c) else 0.0 for c in structure.constraints for _ in range(c.size)]
         limit = 4 * (allowed[1, k] + np.max(np.abs(rates)) * allowed[0, k]) * max(scale, 1.0)
         assert np.max(np.abs(rows @ rates - known)) <= limit
@@ -121,8 +121,7 @@ def test_higher_jets_foretell_the_motion(parts: dict[str, Any]) -> None:
     at_start = np.array([kinematics.path.initial])
     step = 1e-3
 
-    signs = {group: solved.branches.sign(group, at_start[None, :])[0] for group in solved.branches.signs}
-    here = kinematics.positions(JETS, Jet.variable(at_start, 12), FixedSigns(JETS, signs))
+    here = kinematics.positions(JETS, Jet.variable(at_start, 12), on_branch(solved, at_start))
     there = solve_evenly(solved.ready, 1, float(at_start[0] + step), float(at_start[0] + step))
     assume(there.status[0, 0] == ct.Status.OK and SAMPLES // 2 in good)
     error = np.max(allowed[0, SAMPLES // 2]) + 16 * EPS * conditioning(there, tries=4)[0, 0]
