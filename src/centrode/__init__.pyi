@@ -29,6 +29,9 @@ from .model.classics import slider_crank as slider_crank
 from .study.checking import check as check
 from .kinematics.motion import motion as motion
 from .kinematics.coefficients import kinematic_coefficients as kinematic_coefficients
+from .kinematics.reach import limits as limits
+from .kinematics.reach import Limits as Limits
+from .kinematics.region import reachable_region as reachable_region
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.summary import check_rows as check_rows
@@ -37,7 +40,10 @@ from .study.summary import motion_rows as motion_rows
 # Presentations
 from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
+from .present import write_coefficients_csv as write_coefficients_csv
+from .present import write_region_csv as write_region_csv
 from .present import motion_figures as motion_figures
+from .present import region_figure as region_figure
 from .present import save_figures as save_figures
 
 # Words, failures, language

@@ -13,8 +13,11 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.coefficient_tables import write_coefficients_csv
     from centrode.present.drawing import draw_mechanism
     from centrode.present.figures import motion_figures
+    from centrode.present.region_tables import write_region_csv
+    from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
     from centrode.present.scene import scene_of
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
@@ -23,17 +26,23 @@ __all__ = [
     "draw_mechanism",
     "motion_figures",
     "motion_table",
+    "region_figure",
     "save_figures",
     "scene_of",
+    "write_coefficients_csv",
     "write_motion_csv",
     "write_motion_netcdf",
+    "write_region_csv",
 ]
 
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
         "drawing": ["draw_mechanism"],
+        "coefficient_tables": ["write_coefficients_csv"],
         "figures": ["motion_figures"],
+        "region_tables": ["write_region_csv"],
+        "regions": ["region_figure"],
         "saving": ["save_figures"],
         "scene": ["scene_of"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],

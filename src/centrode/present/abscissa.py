@@ -19,7 +19,7 @@ from centrode.quantities import QUANTITIES
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.mechanism import Mechanism
+    from centrode.model.mechanism import Drive, Mechanism
 
 Array = NDArray[np.float64]
 LIMIT, CHANGE_POINT = 0, 1
@@ -75,14 +75,8 @@ def main_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
 
 def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
     """The value of the only drive, in the unit of the display."""
-    drive = mechanism.drives[0]
     factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
-    text, symbol = {
-        "angle": (_("angle {symbol} of link {name}"), "φ"),
-        "displacement": (_("displacement {symbol} along guide {name}"), "s"),
-        "distance": (_("distance {symbol} of {name}"), "l"),
-    }[drive.kind]
-    text = text.format(symbol=formula(symbol), name=plain(drive.id))
+    text = text_of_drive(mechanism.drives[0])
     values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
     marks = within(values, events(dataset))
     return Abscissa(
@@ -94,6 +88,16 @@ def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
         labelled(text, unit),
         unit,
     )
+
+
+def text_of_drive(drive: Drive) -> str:
+    """What a drive gives, with its symbol."""
+    text, symbol = {
+        "angle": (_("angle {symbol} of link {name}"), "φ"),
+        "displacement": (_("displacement {symbol} along guide {name}"), "s"),
+        "distance": (_("distance {symbol} of {name}"), "l"),
+    }[drive.kind]
+    return text.format(symbol=formula(symbol), name=plain(drive.id))
 
 
 def over_time(dataset: xarray.Dataset) -> Abscissa:

@@ -1,0 +1,140 @@
+"""One drive that moves while the others are held: its path, and the position in which it starts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.errors import InputError
+from centrode.kinematics.branches import branches_at_start
+from centrode.kinematics.continuation import Continuation
+from centrode.kinematics.events import Scan, mesh_of
+from centrode.kinematics.layout import layout_of
+from centrode.kinematics.pace import Pace
+from centrode.kinematics.paths import DrivenBy, Path, unit_of
+from centrode.kinematics.ready import Ready
+from centrode.kinematics.sampling import ORDERS, evaluate_columns
+from centrode.laws import Uniform
+from centrode.locale import _
+from centrode.model.mechanism import Drive, Mechanism
+from centrode.model.problems import nearest
+from centrode.model.units import to_si
+from centrode.structure.dimensions import SPACES
+from centrode.structure.groups import Newton
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Value: TypeAlias = float | str
+
+
+def unit_of_value(mechanism: Mechanism, drive: Drive) -> str:
+    """SI unit of a drive's value."""
+    return "rad" if drive.kind == "angle" else SPACES[mechanism.space].unit
+
+
+def named_drive(mechanism: Mechanism, name: str, where: str) -> Drive:
+    """The drive of a name; raises InputError for another."""
+    names = [drive.id for drive in mechanism.drives]
+    if name not in names:
+        raise InputError(where, _("there is no drive {name}").format(name=name), nearest(name, names))
+    return next(drive for drive in mechanism.drives if drive.id == name)
+
+
+def value_of(mechanism: Mechanism, drive: Drive, value: Value, where: str) -> float:
+    """Value of a drive [rad or m] of a number in SI, or of a text with a unit ("30 deg")."""
+    kind = "angle" if unit_of_value(mechanism, drive) == "rad" else "length"
+    try:
+        return to_si(value, kind)
+    except InputError as error:
+        raise InputError(where, error.what, error.repair) from None
+
+
+def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value] | None) -> dict[str, float]:
+    """Values of all drives but the moving ones; those not named keep their initial ones."""
+    mechanism = ready.mechanism
+    found = {name: value for name, value in initial_values(ready).items() if name not in moving}
+    for name, value in (held or {}).items():
+        drive = named_drive(mechanism, name, "hold")
+        if name in moving:
+            raise InputError(
+                "hold",
+                _("drive {name} is the one that moves").format(name=name),
+                _("hold the others"),
+            )
+        found[name] = value_of(mechanism, drive, value, f"hold {name}")
+    return found
+
+
+def initial_values(ready: Ready) -> dict[str, float]:
+    """Values of all drives in the initial position."""
+    return {name: float(value) for name, value in ready.assembled.positions.drives.items()}
+
+
+def held_path(ready: Ready, drive: str, initial: float, held: Mapping[str, float | Array]) -> Path:
+    """The path of one drive's value; the values held may be arrays (lanes, 1)."""
+    path = ready.kinematics.path
+    one = next(one for one in path.driven if one.drive.id == drive)
+    return Path((one,), initial, 1.0, unit_of(one.drive, path.scale), path.scale, None, dict(held))
+
+
+def starting_at(ready: Ready, path: Path) -> Continuation:
+    """The plan along the path of one drive, from the position in which that begins.
+
+    That is the position with the signs of the initial one. A group of higher class has no signs: its position is
+    reached from the initial one by moving all drives there together, each at a constant speed.
+    """
+    target = {path.driven[0].drive.id: path.initial, **path.held}
+    kinematics = replace(ready.kinematics, path=path)
+    signs, positions = ready.assembled.signs, ready.assembled.positions
+    followed = any(isinstance(group, Newton) for group in ready.structure.groups)
+    if followed and target != initial_values(ready):
+        signs, start = _brought(ready, target)
+        positions = start.kinematics.positions(ARRAYS, np.ones(1), start.hooks(ARRAYS, np.ones((1, 1)), None))
+        positions = positions.mapped(lambda x: float(np.asarray(x, dtype=np.float64).reshape(-1)[0]))
+    branches = branches_at_start(path, signs, ready.mechanism.assembly.continuation == "smooth")
+    return Continuation(kinematics, branches, positions, kinematics.numbers)
+
+
+def _brought(ready: Ready, target: Mapping[str, float]) -> tuple[dict[int, float], Continuation]:
+    """Signs after moving all drives from their initial values to others, and the plan along that way (0 to 1)."""
+    old = ready.kinematics.path
+    start = initial_values(ready)
+    ways = {name: target[name] - value for name, value in start.items()}
+    driven = tuple(
+        DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id]) for one in old.driven
+    )
+    fastest = max(abs(ways[one.drive.id]) / unit_of(one.drive, old.scale) for one in driven)
+    pace = Pace.of(lambda times: np.full(len(times), fastest))
+    path = Path(driven, 0.0, 1.0, pace.unit_at(0.0), old.scale, pace)
+    kinematics = replace(ready.kinematics, path=path)
+    smooth = ready.mechanism.assembly.continuation == "smooth"
+    branches = branches_at_start(path, ready.assembled.signs, smooth)
+    continuation = Continuation(kinematics, branches, ready.assembled.positions, kinematics.numbers)
+    Scan(continuation, mesh_of(path, np.ones(1))).run()
+    if branches.reach(0)[1] < 1.0:
+        raise InputError(
+            "hold",
+            _("on the straight way there from the initial position the mechanism locks"),
+            _("hold values nearer to the initial ones, or let the description begin elsewhere"),
+        )
+    return {group: float(branches.sign(group, np.ones(1))[0, 0]) for group in branches.signs}, continuation
+
+
+def check_closed(continuation: Continuation) -> None:
+    """Refuse a path whose first position is open; its events are known."""
+    path, layout = continuation.kinematics.path, layout_of(continuation.kinematics)
+    judged = evaluate_columns(
+        continuation, layout, np.array([path.initial]), np.empty((ORDERS, layout.width, 1, 1))
+    )
+    if bool(judged.opened.any() or judged.lost.any()):
+        values = {path.driven[0].drive.id: path.initial, **path.held}
+        where = ", ".join(f"{name} = {value:.6g}" for name, value in values.items())
+        raise InputError(
+            _("values of the drives"),
+            _("the mechanism does not close there ({where})").format(where=where),
+            _("choose values at which it closes"),
+        )
