@@ -162,6 +162,15 @@ class Plane:
     def shifts(self, m: Namespace, at: Vector, scale: Number) -> Sequence[Row]:
         return (scale, 0.0, 0.0), (0.0, scale, 0.0), (0.0, 0.0, 1.0)
 
+    def spin(self, pose: Pose, at: Vector) -> Row:
+        x, y = subtract(pose.origin, at)
+        return -y, x, 1.0
+
+    def righted(self, m: Namespace, pose: Pose) -> Pose:
+        cosine, sine = pose.rotor
+        length = m.sqrt(cosine * cosine + sine * sine)
+        return Pose(pose.origin, (cosine / length, sine / length))
+
 
 def _line(pose: Pose, curve: Curve) -> Curve:
     """Point and direction of a guide's line as it lies now."""

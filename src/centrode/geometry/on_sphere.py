@@ -200,5 +200,14 @@ class Sphere:
         first, second = basis(m, at)
         return times(scale, first), times(scale, second), at
 
+    def spin(self, pose: Attitude, at: Vector) -> Row:
+        return at
+
+    def righted(self, m: Namespace, pose: Attitude) -> Attitude:
+        x = times(1.0 / m.sqrt(dot(pose.x, pose.x)), pose.x)
+        across = subtract(pose.y, times(dot(x, pose.y), x))
+        y = times(1.0 / m.sqrt(dot(across, across)), across)
+        return Attitude(x, y, sphere.cross(x, y))
+
 
 SPHERE: Space = Sphere()

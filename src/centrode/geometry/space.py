@@ -182,3 +182,9 @@ class Space(Protocol):
 
         Shifts by `scale` in two directions, and a turn of 1 rad: about the point, in the plane about the origin.
         """
+
+    def spin(self, pose: Pose, at: Place) -> Row:
+        """Coordinates of a link's turn by 1 rad about a place."""
+
+    def righted(self, m: Namespace, pose: Pose) -> Pose:
+        """A pose that keeps the link's own distances, from one that nearly does."""

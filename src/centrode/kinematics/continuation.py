@@ -17,13 +17,13 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
-from centrode.kinematics.anchors import Anchors
 from centrode.kinematics.branches import Branches
 from centrode.kinematics.evaluate import Hooks, Kinematics
 from centrode.kinematics.higher import Judged, close, starts
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.surroundings import Surroundings
 from centrode.kinematics.tracing import trace
+from centrode.kinematics.tracks import Tracks
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import links_of, points_of
 from centrode.structure.positions import Positions, mapped_pose
@@ -63,7 +63,7 @@ class Continuation:
     branches: Branches
     start: Positions
     nominal: Dimensions
-    _anchors: dict[int, Anchors] = field(default_factory=dict)
+    _tracks: dict[int, Tracks] = field(default_factory=dict)
     _windows: dict[int, list[Window]] = field(default_factory=dict)
     _known: dict[tuple[int, bool], list[Number]] = field(default_factory=dict)
 
@@ -76,12 +76,12 @@ class Continuation:
         around, branches = self._around(group), self.branches
         first = starts(around, self.nominal, self.start, branches.initial, branches.lanes)
         with np.errstate(all="ignore"):
-            self._anchors[group], events = trace(around, first, branches.initial, extent, branches.smooth)
+            self._tracks[group], events = trace(around, first, branches.initial, extent, branches.smooth)
         branches.add(group, events)
 
     def close(self, group: int, m: Namespace, at: Positions, parameter: Array, lanes: Lanes | None) -> Judged:
         """Add what a group of higher class gives at parameters."""
-        return close(self._around(group), self._anchors[group], m, at, parameter, lanes)
+        return close(self._around(group), self._tracks[group], m, at, parameter, lanes)
 
     def _around(self, group: int) -> Surroundings:
         return Surroundings(self.kinematics, group, self.hooks)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.rounding import ROUNDED
+from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
 from centrode.geometry.plane import Pose, add, place, subtract, turned
 from centrode.kinematics.newton import System, newton
@@ -21,6 +21,7 @@ from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
 
 STEPS = 30
 """Newton steps from the initial angles to the initial position."""
@@ -41,32 +42,43 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
         if not found.found[0]:
             raise _does_not_close(system, found.sizes[0, 0], guess)
         closed = system.at(ARRAYS, at, found.state)
-        values = np.linalg.svd(system.matrix(closed)[0], compute_uv=False)
+        values = np.linalg.svd(system.linear(closed).matrix[0], compute_uv=False)
     if values[-1] <= SINGULAR * values[0]:
         raise InputError(
             name_of(group),
             _("it stands at a limit or a change point in the initial position"),
             _("start the drive elsewhere"),
         )
+    closed = closed.mapped(_floating)
     for name in group.points:
-        at.points[name] = _floats(closed.points[name])
+        at.points[name] = closed.points[name]
     for name in group.links:
-        at.poses[name] = Pose(_floats(closed.poses[name].origin), _floats(closed.poses[name].rotor))
-        at.angles[name] = float(closed.angles[name][0])
+        at.poses[name] = closed.poses[name]
+        if name in closed.angles:
+            at.angles[name] = closed.angles[name]
     return system
 
 
 def bound_higher(system: System, at: Positions, bounded: Positions) -> None:
     """Add a group's initial position to what is known before it with bounds of rounding errors."""
     state = system.state_of(at)
-    found = system.at(ROUNDED, bounded, state, system.bounds(bounded, state))
+    linear = system.linear(system.at(ARRAYS, system.known, state))
+    known = bounded.mapped(lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x)
+    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).mapped(_single)
     bounded.points.update(found.points)
     bounded.poses.update(found.poses)
     bounded.angles.update(found.angles)
 
 
-def _floats(pair: tuple[Array, Array]) -> tuple[float, float]:
-    return float(pair[0][0]), float(pair[1][0])
+def _floating(x: Number) -> float:
+    return float(x if np.ndim(x) == 0 else x[0])
+
+
+def _single(x: Number) -> Number:
+    """One number from an array of one."""
+    if isinstance(x, Rounded):
+        return Rounded(_single(x.value), _single(x.bound))
+    return x if np.ndim(x) == 0 else x[0]
 
 
 def guessed(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> Positions:
@@ -117,7 +129,7 @@ def _does_not_close(system: System, first: float, guess: Positions) -> InputErro
     return InputError(
         name_of(system.group),
         _("no position that closes lies near the initial angles: they leave a gap of {gap:.3g} m").format(
-            gap=float(np.max(np.abs(system.errors(system.state_of(guess)))) * system.numbers.scale)
+            gap=float(system.gap(system.state_of(guess))[0] * system.numbers.scale)
         ),
         _("correct the initial angles, a length, or the start of the drive"),
     )

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, TypeAlias, cast
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import RoundedFunctions
-from centrode.kinematics.anchors import Anchors
 from centrode.kinematics.newton import System, newton
-from centrode.kinematics.surroundings import Surroundings, flattened, plain, shaped
+from centrode.kinematics.reduction import Linear
+from centrode.kinematics.surroundings import Surroundings, flattened, needed, plain, shaped
+from centrode.kinematics.tracks import Tracks
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Newton
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -41,45 +42,43 @@ class Judged:
 
 
 def close(
-    around: Surroundings, anchors: Anchors, m: Namespace, at: Positions, parameter: Array, lanes: Lanes | None
+    around: Surroundings, tracks: Tracks, m: Namespace, at: Positions, parameter: Array, lanes: Lanes | None
 ) -> Judged:
     """Add the group's points and links to positions at parameters: (n,) for all lanes, or one lane for each."""
-    count = len(anchors.ahead)
-    shape = (count, parameter.shape[-1]) if lanes is None else parameter.shape
+    shape = (tracks.lanes, parameter.shape[-1]) if lanes is None else parameter.shape
     flat = np.broadcast_to(parameter, shape).reshape(-1)
-    which = np.repeat(np.arange(count), shape[-1]) if lanes is None else lanes
+    which = np.repeat(np.arange(tracks.lanes), shape[-1]) if lanes is None else lanes
     numbers = around.kinematics.taken(which).numbers
-    known = flattened(at, shape)
-    group = cast(Newton, around.kinematics.structure.groups[around.group])
+    group = around.equations
+    known = flattened(needed(group, at), shape)
     system = System(group, numbers, known.mapped(plain), len(flat))
-    foretold = anchors.predict(system, flat, which)
+    foretold = tracks.foretell(flat, which)
     with np.errstate(all="ignore"):
-        found = newton(system, foretold.state)
-        right = found.found & (found.sense == foretold.sense)
+        found = newton(system, system.righted(foretold.state))
+        linear = system.linear(system.at(ARRAYS, system.known, found.state))
+        right = found.found & (np.sign(np.linalg.det(linear.matrix)) == foretold.sense)
         state = np.where(right[:, None], found.state, np.nan)
         state[foretold.limit] = foretold.state[foretold.limit]
-        shaped(_lifted(system, m, known, state), group, shape, at)
+        shaped(_lifted(system, m, known, state, linear), group, shape, at)
     lost = ~(right | foretold.limit | foretold.beyond)
     return Judged(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))
 
 
-def _lifted(system: System, m: Namespace, known: Positions, state: Array) -> Positions:
+def _lifted(system: System, m: Namespace, known: Positions, state: Array, linear: Linear) -> Positions:
     """Converged states over the algebra of the known positions."""
     if isinstance(m, JetFunctions):
         order = max((jet.order for jet in _jets(known)), default=0)
-        return (
-            system.at(m, known, state, system.jets(known, state, order))
-            if order
-            else system.at(m, known, state)
-        )
+        motion = system.jets(known, state, linear, order) if order else None
+        return system.at(m, known, state, motion)
     if isinstance(m, RoundedFunctions):
-        return system.at(m, known, state, system.bounds(known, state))
+        return system.at(m, known, state, system.bounds(known, state, linear))
     return system.at(m, known, state)
 
 
 def _jets(known: Positions) -> Iterator[Jet]:
     yield from (x for x in known.drives.values() if isinstance(x, Jet))
     yield from (x for v in known.points.values() for x in v if isinstance(x, Jet))
+    yield from (x for pose in known.poses.values() for v in pose for x in v if isinstance(x, Jet))
 
 
 def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial: float, lanes: int) -> Array:
@@ -87,27 +86,34 @@ def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial:
 
     NaN where the way fails, or crosses a position in which the group is singular.
     """
-    group = cast(Newton, around.kinematics.structure.groups[around.group])
+    group = around.equations
     own = System(group, nominal, start, 1)
     state = np.repeat(own.state_of(start), lanes, axis=0)
-    sense = newton(own, state[:1]).sense[0]
     if all(isinstance(x, float) for x in numbers_of(around.kinematics.numbers)):
         return state
+    sense = sense_of(own, state[:1])
     done, part = np.zeros(lanes), np.ones(lanes)
     while (going := np.nonzero((done < 1.0) & (part >= LEAST_PART))[0]).size:
         aim = np.minimum(done[going] + part[going], 1.0)
         numbers = around.kinematics.taken(going).numbers
         between = around.with_numbers(blended(nominal, numbers, aim))
         everyone = np.arange(len(going))
-        known = between.known(np.full(len(going), initial), everyone, 0)
+        known = between.known_at(np.full(len(going), initial), everyone)
+        system = between.system(known, everyone)
         with np.errstate(all="ignore"):
-            found = newton(between.system(known, everyone), state[going])
-        good = found.found & (found.sense == sense) & (found.sizes[0] < NEAR)
+            found = newton(system, state[going])
+            good = found.found & (sense_of(system, found.state) == sense) & (found.sizes[0] < NEAR)
         state[going[good]] = found.state[good]
         done[going[good]] = aim[good]
         part[going] *= np.where(good, 2.0, 0.5)
     state[done < 1.0] = np.nan
     return state
+
+
+def sense_of(system: System, state: Array) -> Array:
+    """Sign of the determinant of the equations at states."""
+    matrix = system.linear(system.at(ARRAYS, system.known, state)).matrix
+    return np.asarray(np.sign(np.linalg.det(matrix)), dtype=np.float64)
 
 
 def numbers_of(numbers: Dimensions) -> list[Number]:

@@ -8,7 +8,7 @@ and Stability of Numerical Algorithms, 2nd ed., 2002, section 25).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -18,9 +18,10 @@ import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, Rounded
-from centrode.geometry.plane import Pose, moved_point, moved_pose
+from centrode.algebra.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
+from centrode.geometry.plane import rotor_of
 from centrode.kinematics.paths import JETS
+from centrode.kinematics.reduction import Linear, Pattern, Shift, pattern_of, solved
 from centrode.structure.constraints import Constraint
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
@@ -38,11 +39,19 @@ SMALL = 1e-9
 
 
 @dataclass(frozen=True)
+class Motion:
+    """A small motion of a group: how every unknown moves, and how its free coordinates change."""
+
+    shifts: Mapping[Entity, Shift]
+    free: Sequence[Number]
+
+
+@dataclass(frozen=True)
 class System:
     """The equations of a group at k places: dimensions and known positions are floats or (k,) arrays.
 
-    A state (k, width) holds the coordinates of the group's points, then origin, rotor and angle of its links;
-    a step (k, size) has two coordinates a point and three a link, lengths in the greatest length.
+    A state (k, width) holds the numbers of the group's points, then those of its links' poses, then the angles of
+    its links with their turns, where turns are counted.
     """
 
     group: Newton
@@ -51,135 +60,155 @@ class System:
     places: int
 
     @cached_property
-    def first(self) -> dict[Entity, int]:
-        """First coordinate of each unknown in a step."""
-        entities = [Entity("point", name) for name in self.group.points]
-        entities += [Entity("link", name) for name in self.group.links]
-        found, total = {}, 0
-        for entity in entities:
-            found[entity] = total
-            total += entity.unknowns
-        return found
+    def pattern(self) -> Pattern:
+        """What follows from what."""
+        return pattern_of(self.group)
 
     @property
-    def size(self) -> int:
-        """Number of unknown coordinates, and of equations."""
-        return len(self.group.equations)
+    def free(self) -> int:
+        """Number of free coordinates."""
+        return self.pattern.free
 
     @cached_property
-    def units(self) -> Array:
-        """What one unit of each coordinate of a step is (k, size): the greatest length, or 1 rad."""
-        units = np.ones((self.places, self.size))
-        for entity, column in self.first.items():
-            units[:, column : column + 2] = self._scale[:, None]
-            if entity.kind == "link":
-                units[:, column + 2] = 1.0
-        return units
+    def _turns(self) -> dict[str, int]:
+        """The free coordinate that turns a link, where turns are counted."""
+        if "gears" in self.numbers.space.lacks:
+            return {}  # no turns are counted there
+        return {f.entity.name: f.turn for f in self.pattern.follows if f.entity.kind == "link"}
 
-    @cached_property
-    def _scale(self) -> Array:
-        return np.asarray(np.broadcast_to(self.numbers.scale, (self.places,)), dtype=np.float64)
-
-    def at(
-        self, m: Namespace, known: Positions, state: Array, step: Sequence[Number] | None = None
-    ) -> Positions:
-        """Known positions with those of a state, moved by a step, over any algebra."""
-        at = known.copied()
-        by = [0.0] * self.size if step is None else [self.units[:, j] * x for j, x in enumerate(step)]
-        for k, name in enumerate(self.group.points):
-            place = (state[:, 2 * k], state[:, 2 * k + 1])
-            at.points[name] = place if step is None else moved_point(m, place, by[2 * k : 2 * k + 2])
-        for k, name in enumerate(self.group.links):
-            x, y, cosine, sine, angle = state[:, self._first_link + 5 * k : self._first_link + 5 * k + 5].T
-            turn = by[2 * len(self.group.points) + 3 * k :][:3]
-            pose = Pose((x, y), (cosine, sine))
-            at.poses[name] = pose if step is None else moved_pose(m, pose, turn)
-            at.angles[name] = angle if step is None else turn[2] + angle
+    def at(self, m: Namespace, known: Positions, state: Array, motion: Motion | None = None) -> Positions:
+        """Known positions with those of a state, moved a little, over any algebra."""
+        at, space, column = known.copied(), self.numbers.space, 0
+        for name in self.group.points:
+            size = len(space.axes)
+            place = tuple(state[:, column + k] for k in range(size))
+            column += size
+            at.points[name] = (
+                place if motion is None else space.moved_point(m, place, motion.shifts[Entity("point", name)])
+            )
+        for name in self.group.links:
+            parts = []
+            for part in space.at_rest:
+                parts.append(tuple(state[:, column + k] for k in range(len(part))))
+                column += len(part)
+            pose = type(space.at_rest)(*parts)
+            at.poses[name] = (
+                pose if motion is None else space.moved_pose(m, pose, motion.shifts[Entity("link", name)])
+            )
+        for k, (name, turn) in enumerate(self._turns.items()):
+            angle = state[:, column + k]
+            at.angles[name] = angle if motion is None else motion.free[turn] + angle
         return at
 
-    @property
-    def _first_link(self) -> int:
-        return 2 * len(self.group.points)
+    def numbers_of(self, at: Positions) -> list[Number]:
+        """The numbers of a state, over any algebra."""
+        numbers = [x for name in self.group.points for x in at.points[name]]
+        numbers += [x for name in self.group.links for part in at.poses[name] for x in part]
+        return numbers + [at.angles[name] for name in self._turns]
 
     def state_of(self, at: Positions) -> Array:
         """The state in which positions are: (k, width)."""
-        numbers = [x for name in self.group.points for x in at.points[name]]
-        for name in self.group.links:
-            pose = at.poses[name]
-            numbers += [*pose.origin, *pose.rotor, at.angles[name]]
-        return np.stack([np.broadcast_to(x, (self.places,)) for x in numbers], axis=-1).astype(np.float64)
+        return self.stacked(self.numbers_of(at))
 
-    def moved(self, state: Array, step: Array) -> Array:
-        """A state moved by a step, its rotors of unit length."""
-        at = self.at(ARRAYS, self.known, state, list(step.T))
-        moved = self.state_of(at)
-        for k in range(len(self.group.links)):
-            rotor = moved[:, self._first_link + 5 * k + 2 : self._first_link + 5 * k + 4]
-            rotor /= np.hypot(rotor[:, 0], rotor[:, 1])[:, None]
-        return moved
+    def moved(self, state: Array, motion: Motion) -> Array:
+        """A state moved a little."""
+        return self.righted(self.state_of(self.at(ARRAYS, self.known, state, motion)))
+
+    def righted(self, state: Array) -> Array:
+        """A state whose links keep their own distances, and whose angles are those of its links."""
+        at, space = self.at(ARRAYS, self.known, state), self.numbers.space
+        for name in self.group.points:
+            at.points[name] = space.moved_point(ARRAYS, at.points[name], (0.0, 0.0))
+        for name in self.group.links:
+            at.poses[name] = space.righted(ARRAYS, at.poses[name])
+        for name in self._turns:
+            near = at.angles[name]
+            at.angles[name] = near + space.turn(ARRAYS, at.poses[name], space.at_rest, rotor_of(ARRAYS, near), None)
+        return self.state_of(at)
 
     def residual(self, m: Namespace, at: Positions) -> list[Number]:
-        """Left sides of the equations, lengths in the greatest length."""
+        """Left sides of the equations."""
         found: dict[Constraint, list[Number]] = {}
         values = []
         for constraint, row in self.group.equations:
             if constraint not in found:
                 found[constraint] = constraint.residual(m, self.numbers, at)
-            value = found[constraint][row]
-            values.append(value if constraint.angular else value * (1.0 / self._scale))
+            values.append(found[constraint][row])
         return values
 
-    def matrix(self, at: Positions) -> Array:
-        """Derivatives of the residual by the coordinates of a step: (k, size, size)."""
-        matrix = np.zeros((self.places, self.size, self.size))
-        for i, (constraint, row) in enumerate(self.group.equations):
-            unit = 1.0 if constraint.angular else self._scale
-            for entity, values in constraint.rows(self.numbers, at)[row].items():
-                column = self.first.get(entity)
-                if column is not None:
-                    for j, value in enumerate(values):
-                        matrix[:, i, column + j] += value * self.units[:, column + j] / unit
-        return matrix
+    def linear(self, at: Positions) -> Linear:
+        """The equations made linear at positions."""
+        return Linear(self.group, self.numbers, at, self.places)
 
-    def errors(self, state: Array) -> Array:
-        """Residual at a state as an array (k, size)."""
-        return self._stacked(self.residual(ARRAYS, self.at(ARRAYS, self.known, state)))
+    def gap(self, state: Array) -> Array:
+        """Greatest left side of the equations, in rad or in the greatest length: (k,)."""
+        values = self.residual(ARRAYS, self.at(ARRAYS, self.known, state))
+        units = [1.0 if c.angular else 1.0 / self.numbers.scale for c, _row in self.group.equations]
+        return np.max(np.abs(self.stacked([x * u for x, u in zip(values, units, strict=True)])), axis=1)
 
-    def _stacked(self, values: Sequence[Number]) -> Array:
-        return np.stack(
-            [np.broadcast_to(np.asarray(x, dtype=float), (self.places,)) for x in values], axis=-1
-        )
+    def stacked(self, values: Sequence[Number]) -> Array:
+        """Numbers as an array (k, numbers)."""
+        found = np.empty((self.places, len(values)))
+        for j, value in enumerate(values):
+            found[:, j] = value
+        return found
 
-    def jets(self, known: Positions, state: Array, order: int) -> list[Jet]:
-        """Taylor coefficients of the step from a converged state, by the variable of the known jets."""
-        inverse = inverted(self.matrix(self.at(ARRAYS, self.known, state)))
+    def jets(self, known: Positions, state: Array, linear: Linear, order: int) -> Motion:
+        """Taylor coefficients of the motion from a converged state, by the variable of the known jets."""
         zero = np.zeros(self.places)
-        found = [[zero] for _column in range(self.size)]
+        shifts = {f.entity: [[zero] for _ in range(f.entity.unknowns)] for f in linear.pattern.follows}
+        free = [[zero] for _ in range(self.free)]
+        inverse = solved(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         for k in range(1, order + 1):
-            step = [Jet([*c, *[zero] * (order + 1 - len(c))]) for c in found]
-            values = self.residual(JETS, self.at(JETS, known, state, step))
-            wrong = self._stacked([x.coefficients[k] if isinstance(x, Jet) else 0.0 for x in values])
-            right = times(inverse, -wrong)
-            for column, c in enumerate(found):
-                c.append(right[:, column])
-        return [Jet(c) for c in found]
+            motion = _as_jets(shifts, free, k)
+            values = self.residual(JETS, self.at(JETS, known.mapped(lambda x, k=k: cut(x, k)), state, motion))  # type: ignore[misc]
+            moved, rest = linear.reduced([_minus_coefficient(x, k) for x in values])
+            freely = list(times(inverse, self.stacked(rest)).T)
+            for entity, shift in linear.whole(moved, freely).items():
+                for c, x in zip(shifts[entity], shift, strict=True):
+                    c.append(x)
+            for c, x in zip(free, freely, strict=True):
+                c.append(x)
+        return _as_jets(shifts, free, order)
 
-    def bounds(self, known: Positions, state: Array) -> list[Rounded]:
-        """The step zero with the bound of the state's rounding error."""
-        values = self.residual(ROUNDED, self.at(ROUNDED, known, state))
-        bound = self._stacked([Rounded.of(x).bound + np.abs(Rounded.of(x).value) for x in values])
-        inverse = np.abs(inverted(self.matrix(self.at(ARRAYS, self.known, state))))
-        return [Rounded(np.zeros(self.places), column) for column in times(inverse, bound).T]
+    def bounds(self, known: Positions, state: Array, linear: Linear) -> Motion:
+        """The motion zero with the bound of the state's rounding error."""
+        values = [Rounded.of(x) for x in self.residual(ROUNDED, self.at(ROUNDED, known, state))]
+        zero = np.zeros(self.places)
+        moved, rest = linear.reduced([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
+        inverse = solved(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
+        bound = times(np.abs(inverse), self.stacked([Rounded.of(x).bound for x in rest]))
+        free = [Rounded(zero, column) for column in bound.T]
+        shifts = {
+            entity: tuple(Rounded(zero, Rounded.of(x).bound) for x in shift)
+            for entity, shift in linear.whole(moved, free).items()
+        }
+        return Motion(shifts, free)
+
+
+def _as_jets(shifts: Mapping[Entity, list[list[Number]]], free: list[list[Number]], order: int) -> Motion:
+    def jet(c: list[Number]) -> Jet:
+        return Jet([*c[: order + 1], *[0.0] * (order + 1 - len(c))])
+
+    return Motion({entity: tuple(map(jet, cs)) for entity, cs in shifts.items()}, [jet(c) for c in free])
+
+
+def cut(x: Number, order: int) -> Number:
+    """A jet without what is beyond an order."""
+    return Jet(x.coefficients[: order + 1]) if isinstance(x, Jet) else x
+
+
+def _minus_coefficient(x: Number, k: int) -> Number:
+    return -x.coefficients[k] if isinstance(x, Jet) else 0.0
 
 
 @dataclass(frozen=True)
 class Converged:
-    """What Newton's method came to: states, where it converged, sizes of all steps, signs of the determinants."""
+    """What Newton's method came to: states, where it converged, sizes of all steps (steps, k)."""
 
     state: Array
     found: Mask
     sizes: Array
-    sense: Array
 
 
 def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
@@ -187,49 +216,50 @@ def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
     state = start.copy()
     active = np.isfinite(start).all(axis=1)
     found = np.zeros(len(start), dtype=bool)
-    sense = np.zeros(len(start))
     sizes = np.full((steps, len(start)), np.nan)
     last = np.full(len(start), np.inf)
     for k in range(steps):
-        at = system.at(ARRAYS, system.known, state)
-        matrix = system.matrix(at)
-        step, sign = solved(matrix, -system._stacked(system.residual(ARRAYS, at)))
-        size = np.max(np.abs(step), axis=1)
+        if not active.any():
+            break
+        motion, size = step_at(system, state)
         sizes[k] = np.where(active, size, np.nan)
         good = active & np.isfinite(size)
-        moved = system.moved(state, np.where(good[:, None], step, 0.0))
-        state = np.where(good[:, None], moved, state)
-        sense = np.where(good, sign, sense)
-        # a step after a small one is rounding: where it is not smaller, the matrix cannot give more digits
-        done = good & (last <= SMALL) & (size <= SMALL)
+        state = np.where(good[:, None], system.moved(state, motion), state)
+        done = good & settled(last, size)
         found |= done
         active = good & ~done & (size < 1.0e3)
         last = size
-        if not active.any():
-            break
-    return Converged(state, found, sizes, sense)
+    return Converged(state, found, sizes)
 
 
-def solved(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """Solution of the equations at every place and the sign of the determinant; NaN where the matrix is singular."""
+def step_at(system: System, state: Array) -> tuple[Motion, Array]:
+    """A Newton step from a state, and its size."""
+    at = system.at(ARRAYS, system.known, state)
+    linear = system.linear(at)
+    moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
+    free = solved(linear.matrix, system.stacked(rest)[:, :, None])[:, :, 0]
+    return Motion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
+
+
+def size_of(system: System, moved: Mapping[Entity, Shift], free: Array) -> Array:
+    """Size of a step, in rad or in the greatest length."""
+    size: Array = np.max(np.abs(free), axis=1)
+    scale = 1.0 / system.numbers.scale
+    for shift in moved.values():
+        for x in shift:
+            size = np.maximum(size, np.abs(x) * scale)
+    return size
+
+
+def settled(last: Array, size: Array) -> Mask:
+    """Where a step of some size after one of a last size is followed by nothing but rounding.
+
+    Either the next step, quadratically smaller, is below it, or both are so small already that the matrix
+    cannot give more digits.
+    """
     with np.errstate(all="ignore"):
-        sign, size = np.linalg.slogdet(matrix)
-    regular = np.isfinite(size) & (sign != 0.0) & np.isfinite(right).all(axis=1)
-    step = np.full(right.shape, np.nan)
-    if regular.any():
-        step[regular] = np.linalg.solve(matrix[regular], right[regular][..., None])[..., 0]
-    return step, sign
-
-
-def inverted(matrix: Array) -> Array:
-    """Inverse at every place; NaN where the matrix is singular."""
-    inverse = np.full(matrix.shape, np.nan)
-    with np.errstate(all="ignore"):
-        sign, size = np.linalg.slogdet(matrix)
-    regular = np.isfinite(size) & (sign != 0.0)
-    if regular.any():
-        inverse[regular] = np.linalg.inv(matrix[regular])
-    return inverse
+        next_size = size * (size / last) ** 2
+        return np.asarray((size <= SMALL) & ((last <= SMALL) | (next_size <= UNIT_ROUNDOFF)))
 
 
 def times(matrix: Array, vector: Array) -> Array:

@@ -8,8 +8,9 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import Rounded
+from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.kinematics.evaluate import Hooks, Kinematics
 from centrode.kinematics.newton import System
 from centrode.kinematics.paths import JETS
@@ -36,14 +37,39 @@ class Surroundings:
         """Change of the parameter that counts as large."""
         return self.kinematics.path.unit
 
-    def known(self, parameter: Array, lanes: Lanes, order: int) -> Positions:
-        """What is known before the group, as jets by the path's parameter."""
+    @property
+    def equations(self) -> Newton:
+        """The group itself."""
+        return cast(Newton, self.kinematics.structure.groups[self.group])
+
+    def known(self, parameter: Jet, lanes: Lanes) -> Positions:
+        """What the group's equations need of what is known before it, at a parameter given as a jet."""
         used = self.kinematics.taken(lanes)
-        hooks: Hooks = self.hooks(JETS, parameter, lanes)
+        hooks: Hooks = self.hooks(JETS, parameter.value, lanes)
         with np.errstate(all="ignore"):
-            at = used.frame(JETS, Jet.variable(parameter, order))
+            at = used.frame(JETS, parameter)
             used.advance(at, range(self.group), JETS, hooks)
-        return at
+        return needed(self.equations, at)
+
+    def known_at(self, parameter: Array, lanes: Lanes) -> Positions:
+        """The same at plain parameters."""
+        used = self.kinematics.taken(lanes)
+        with np.errstate(all="ignore"):
+            at = used.frame(ARRAYS, parameter)
+            used.advance(at, range(self.group), ARRAYS, self.hooks(ARRAYS, parameter, lanes))
+        return needed(self.equations, at)
+
+    def bounded(self, parameter: Array, lanes: Lanes) -> Positions:
+        """The same with bounds of rounding errors."""
+        used = self.kinematics.taken(lanes)
+        with np.errstate(all="ignore"):
+            at = used.frame(ROUNDED, Rounded.of(parameter))
+            used.advance(at, range(self.group), ROUNDED, self.hooks(ROUNDED, parameter, lanes))
+        return needed(self.equations, at)
+
+    def blank(self, lanes: Lanes) -> System:
+        """The group's equations beside nothing: for what needs the state alone."""
+        return System(self.equations, self.kinematics.taken(lanes).numbers, Positions({}, {}, {}, {}), len(lanes))
 
     def with_numbers(self, numbers: Dimensions) -> Surroundings:
         """The same part of the plan with other dimensions."""
@@ -51,8 +77,18 @@ class Surroundings:
 
     def system(self, known: Positions, lanes: Lanes) -> System:
         """The group's equations beside known positions, one lane for each place."""
-        group = cast(Newton, self.kinematics.structure.groups[self.group])
-        return System(group, self.kinematics.taken(lanes).numbers, known.mapped(plain), len(lanes))
+        return System(self.equations, self.kinematics.taken(lanes).numbers, known.mapped(plain), len(lanes))
+
+
+def needed(group: Newton, at: Positions) -> Positions:
+    """The points and links of which the equations of a group speak."""
+    bodies = {body.name for constraint, _row in group.equations for body in constraint.bodies}
+    return Positions(
+        {name: place for name, place in at.points.items() if name in bodies},
+        {name: pose for name, pose in at.poses.items() if name in bodies},
+        at.drives,
+        {name: angle for name, angle in at.angles.items() if name in bodies},
+    )
 
 
 def plain(number: Number) -> Number:

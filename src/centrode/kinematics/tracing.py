@@ -1,78 +1,226 @@
 """Following groups of higher class along the path, from the initial position outwards.
 
-Steps choose themselves: the Taylor polynomial of an anchor foretells the next, Newton's method confirms it, and
-the sign of the determinant must stay. Where it does not, or where steps become small, the group is followed by
-the arc of its curve instead (`arcs`), which tells limits from change points.
+Steps choose themselves: the polynomial of the last piece foretells the next place, Newton's method finds it on a
+plane square to the curve. Where the determinant bordered by the curve's direction changes its sign, two curves
+meet or nearly meet (`crossings` tells which): a change point is passed straight on, a near miss in smaller steps.
+Where the parameter turns back is a limit.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.anchors import Anchor, Anchors, Trail
-from centrode.kinematics.arcs import follow
 from centrode.kinematics.branches import Event
-from centrode.kinematics.newton import newton
+from centrode.kinematics.crossings import crossing
+from centrode.kinematics.curves import Places, Reached, quintic, reach
 from centrode.kinematics.surroundings import Surroundings
-from centrode.kinematics.walkers import ORDER, Walkers, foretell, taylor
+from centrode.kinematics.tracks import Piece, Tracks, Trail
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 
-FIRST, GREATEST, LEAST = 0.02, 0.2, 0.004
-"""Steps in the path's units: the first, the greatest, and the one below which the curve's arc is followed."""
-TARGET, TRUST = 1e-4, 1e-2
-"""Corrections that a foretold state should need, and the greatest that it may."""
-CONTRACTION = 0.1
-"""By how much the second Newton step must be smaller than the first."""
+FIRST, GREATEST, CAUTIOUS, LEAST = 0.02, 0.4, 0.005, 1e-9
+"""Steps of the arc, in rad and in the greatest length: the first, the greatest, the one from which on a group may
+come near to being singular, and the one at which it is given up."""
+TARGET, TRUST = 1e-4, 3e-3
+"""By how much a foretold place should be wrong, and the most that it may."""
+STRAIGHT = 0.9
+"""Cosine of the angle by which the curve may turn in a step."""
+SHRINKING = 0.3
+"""Part of a bordered determinant that must be left after a step, but for small ones."""
+MOST = 400
+"""Places a unit of the path, and in all at least, after which a group is given up."""
+
+
+@dataclass
+class Walkers:
+    """All mechanisms of a batch, each in one sense of its path: where they are, and how they go on."""
+
+    lane: Lanes
+    forward: Array
+    end: Array
+    here: Places
+    step: Array
+    sense: Array
+    last: Array
+    """Polynomials of the last pieces."""
+    passed: Array
+    """Their arcs, and the rate of these by the present ones: (k, 2)."""
+    trails: list[Trail]
+    active: Mask
+
+    def stop(self, walker: int, lost: bool = False) -> None:
+        """The walker has arrived, or cannot follow any further."""
+        self.active[walker] = False
+        if lost:
+            self.trails[walker].end = "lost"
 
 
 def trace(
     around: Surroundings, start: Array, initial: float, extent: tuple[float, float], smooth: bool
-) -> tuple[Anchors, list[Event]]:
-    """Anchors of a group from the states (lanes, width) in the initial position, and the events on the way."""
+) -> tuple[Tracks, list[Event]]:
+    """Tracks of a group from the states (lanes, width) in the initial position, and the events on the way."""
+    walkers = _setting_out(around, start, initial, extent)
+    events: list[Event] = []
+    most = MOST * (1.0 + float(np.max(np.abs(walkers.end - initial))) / around.unit)
+    while walkers.active.any() and most > 0:
+        most -= 1
+        events += _stride(around, walkers, np.nonzero(walkers.active)[0], smooth)
+    for walker in np.nonzero(walkers.active)[0]:
+        walkers.stop(walker, lost=True)
+    lanes = len(start)
+    return Tracks.of(walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1]), events
+
+
+def _setting_out(
+    around: Surroundings, start: Array, initial: float, extent: tuple[float, float]
+) -> Walkers:
     lanes = len(start)
     both = np.tile(np.arange(lanes), 2)
-    sense = np.repeat([-1.0, 1.0], lanes)
-    trails = [Trail() for _ in both]
-    ends = np.where(sense < 0.0, *extent)
-    active = np.ones(2 * lanes, dtype=bool)
-    walkers = Walkers(both, sense, ends, np.full(2 * lanes, FIRST), trails, active, smooth)
-    everywhere = np.arange(2 * lanes)
-    walkers.plant(around, everywhere, np.full(2 * lanes, initial), np.tile(start, (2, 1)))
+    forward = np.repeat([-1.0, 1.0], lanes)
+    state, parameter = np.tile(start, (2, 1)), np.full(2 * lanes, initial)
+    free = around.blank(both).free
+    along = np.zeros((2 * lanes, free + 1))
+    along[:, -1] = forward
+    numbers = np.concatenate([state, parameter[:, None]], axis=1)
+    direction = np.zeros(numbers.shape)
+    direction[:, -1] = forward
+    base = Places(numbers, direction, direction, along, forward)
+    found = reach(around, both, base, along, parameter, state)
+    here = found.places
+    width = start.shape[1] + 1
+    walkers = Walkers(
+        both, forward, np.where(forward < 0.0, *extent), here, np.full(2 * lanes, FIRST),
+        np.sign(here.size), np.full((2 * lanes, 6, width), np.nan), np.zeros((2 * lanes, 2)),
+        [Trail() for _ in both], found.found.copy(),
+    )  # fmt: skip
+    for walker in np.nonzero(~found.found)[0]:
+        walkers.stop(walker, lost=True)
+    return walkers
+
+
+def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) -> list[Event]:
+    """One step of some walkers; returns the events on the way."""
+    here = walkers.here.of(who)
+    parameter, state = _foretold(around, walkers, who, here)
+    there = reach(around, walkers.lane[who], here, here.along, parameter, state)
+    step = walkers.step[who]
+    with np.errstate(all="ignore"):
+        cosine = np.sum(there.places.along * here.along, axis=1)
+        left = np.abs(there.places.size / here.size)
+        good = there.found & (there.wrong <= TRUST) & (cosine >= STRAIGHT) & (there.arc > 0.0)
+        good &= (step <= CAUTIOUS) | (left >= SHRINKING)
+        crossed = good & (np.sign(there.places.size) != np.sign(here.size))
+        good &= ~crossed | (step <= CAUTIOUS)
     events: list[Event] = []
-    while len(walkers.walking):
-        stuck = _stride(around, walkers, walkers.walking)
-        if len(stuck):
-            events += follow(around, walkers, stuck)
-    return Anchors(tuple(trails[:lanes]), tuple(trails[lanes:]), 2.0 * LEAST * around.unit), events
+    passed = np.full(len(who), np.nan)
+    for k in np.nonzero(crossed & good)[0]:
+        at = crossing(around, walkers.lane[who[[k]]], here.of([k]), there.of([k]))
+        if at is None:
+            good[k] = False  # the curves only come near each other
+        else:
+            passed[k] = at
+            events.append(Event("change point", around.group, int(walkers.lane[who[k]]), at))
+    _shorten(walkers, who[~good])
+    ends = good & (there.places.along[:, -1] * walkers.forward[who] <= 0.0)
+    on = good & ~ends
+    if ends.any():
+        events += _turn_back(around, walkers, who[ends], here.of(ends), there, ends)
+    if on.any():
+        _go_on(walkers, who[on], here.of(on), there.of(on), passed[on], smooth)
+    return events
 
 
-def _stride(around: Surroundings, walkers: Walkers, who: Lanes) -> Lanes:
-    """One step of every walker; returns those that have to follow the arc of the curve."""
-    last = walkers.last(who)
-    offset = walkers.sense[who] * walkers.step[who] * around.unit
-    parameter = np.array([anchor.parameter for anchor in last]) + offset
-    known = around.known(parameter, walkers.lane[who], ORDER)
-    system = around.system(known, walkers.lane[who])
-    foretold = system.moved(np.array([anchor.state for anchor in last]), foretell(last, offset))
-    found = newton(system, foretold)
-    first, second = found.sizes[0], found.sizes[1]
-    good = found.found & (first <= TRUST) & (second <= CONTRACTION * first + 1e-12)
-    same = found.sense == np.array([anchor.sense for anchor in last])
-    series = taylor(system, known, np.where(found.found[:, None], found.state, np.nan))
-    good &= np.isfinite(series).all(axis=(1, 2))
-    for k in np.nonzero(good & same)[0]:
-        walker = who[k]
-        walkers.set_anchor(
-            walker, Anchor(float(parameter[k]), found.state[k], series[k], float(found.sense[k]))
-        )
-        longer = (TARGET / max(float(first[k]), 1e-300)) ** (1.0 / (ORDER + 1))
-        walkers.step[walker] = min(walkers.step[walker] * np.clip(longer, 0.3, 2.0), GREATEST)
-    crossed = good & ~same
-    rest = who[~(good & same) & ~crossed]
-    walkers.step[rest] *= 0.5
-    return np.concatenate([who[crossed], rest[walkers.step[rest] < LEAST]])
+def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: Places) -> tuple[Array, Array]:
+    """Parameters and states a step ahead, by the last pieces, or by Taylor's polynomial at the start."""
+    step = walkers.step[who][:, None]
+    taylor = step * (here.first + step * here.second)
+    passed, rate = walkers.passed[who].T[:, :, None]
+    with np.errstate(all="ignore"):
+        share = 1.0 + step * rate / passed
+        total = np.zeros(taylor.shape)
+        for k in range(5, -1, -1):
+            total = total * share + walkers.last[who, k]
+        end = walkers.last[who].sum(axis=1)
+    ahead = np.where(np.isfinite(total), total - end, taylor)
+    parameter = here.parameter + ahead[:, -1]
+    return parameter, around.blank(walkers.lane[who]).righted(here.state + ahead[:, :-1])
+
+
+def _shorten(walkers: Walkers, who: Lanes) -> None:
+    walkers.step[who] *= 0.4
+    for walker in who[walkers.step[who] < LEAST]:
+        walkers.stop(walker, lost=True)
+
+
+def _go_on(walkers: Walkers, who: Lanes, here: Places, there: Reached, passed: Array, smooth: bool) -> None:
+    """Leave pieces to the places reached, and stand there."""
+    pieces = quintic(here, there)
+    for k, walker in enumerate(who):
+        trail, parts = walkers.trails[walker], [float(here.parameter[k]), float(there.places.parameter[k])]
+        if np.isfinite(passed[k]):
+            parts.insert(1, float(passed[k]))
+        for number, (first, last) in enumerate(zip(parts, parts[1:], strict=False)):
+            sense = float(walkers.sense[walker] * walkers.forward[walker]) * (-1.0) ** number
+            trail.pieces.append(Piece(pieces[k], float(here.parameter[k]), first, last, sense))
+            if number == 0 and len(parts) == 3 and not smooth:
+                walkers.stop(walker, lost=True)
+                break
+        if np.isfinite(passed[k]):
+            walkers.sense[walker] *= -1.0
+        if walkers.forward[walker] * (parts[-1] - walkers.end[walker]) >= 0.0:
+            walkers.stop(walker)
+    walkers.last[who] = pieces
+    walkers.passed[who, 0] = there.arc
+    walkers.passed[who, 1] = here.distance(there.places.first)
+    walkers.here.put(who, there.places)
+    with np.errstate(all="ignore"):
+        longer = np.clip((TARGET / there.wrong) ** (1.0 / 6.0), 0.3, 2.0)
+    walkers.step[who] = np.minimum(walkers.step[who] * longer, GREATEST)
+
+
+def _turn_back(
+    around: Surroundings, walkers: Walkers, who: Lanes, here: Places, there: Reached, ends: Mask
+) -> list[Event]:
+    """Limits between places and those found beyond them; the walkers stop there."""
+    lanes, found = walkers.lane[who], there.of(ends)
+    whole = quintic(here, found)
+    share = _first_turn(whole[:, :, -1])
+    for _pass in range(4):
+        value = sum(whole[:, k] * share[:, None] ** k for k in range(6))
+        parameter = here.parameter + value[:, -1]
+        state = around.blank(lanes).righted(value[:, :-1])
+        limit = reach(around, lanes, here, here.along, parameter, state)
+        with np.errstate(all="ignore"):
+            change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / found.arc
+        share = share + np.where(np.isfinite(change), np.clip(change, -0.1, 0.1), 0.0)
+    events = []
+    pieces = quintic(here, limit)
+    for k, walker in enumerate(who):
+        trail, at = walkers.trails[walker], float(limit.places.parameter[k])
+        if not limit.found[k]:
+            walkers.stop(walker, lost=True)
+            continue
+        sense = float(walkers.sense[walker] * walkers.forward[walker])
+        trail.pieces.append(Piece(pieces[k], float(here.parameter[k]), float(here.parameter[k]), at, sense))
+        trail.end, trail.limit, trail.state = "limit", at, limit.places.state[k]
+        walkers.stop(walker)
+        backwards = bool(walkers.forward[walker] < 0.0)
+        events.append(Event("limit", around.group, int(lanes[k]), at, backwards))
+    return events
+
+
+def _first_turn(coefficients: Array) -> Array:
+    """The first share in [0, 1] at which polynomials (k, 6) turn back."""
+    found = np.full(len(coefficients), 0.5)
+    for k, c in enumerate(coefficients):
+        roots = np.polynomial.Polynomial(c).deriv().roots()
+        real = np.sort(roots.real[np.abs(roots.imag) < 1e-6])
+        inside = real[(real >= -1e-6) & (real <= 1.0 + 1e-6)]
+        found[k] = inside[0] if len(inside) else 0.5
+    return found

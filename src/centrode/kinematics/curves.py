@@ -1,0 +1,231 @@
+"""The curve that a group of higher class follows over the path, by its own arc.
+
+State and parameter are found together on a plane square to the curve (Keller, Numerical Solution of Bifurcation
+and Nonlinear Eigenvalue Problems, 1977), so limits are ordinary places: there the parameter turns back. The
+curve's coordinates are the free coordinates of the group and, last, the parameter in the path's unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.jets import Jet
+from centrode.kinematics.newton import Motion, System, settled, size_of
+from centrode.kinematics.paths import JETS
+from centrode.kinematics.reduction import Linear, Shift, solved
+from centrode.kinematics.surroundings import Surroundings
+from centrode.structure.positions import Entity
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+Shifts: TypeAlias = Mapping[Entity, Shift]
+
+STEPS = 7
+"""Newton steps onto a plane."""
+CONTRACTION = 0.2
+"""By how much every Newton step must be smaller than the one before, but for rounding."""
+
+
+@dataclass
+class Places:
+    """Places on curves, one lane each; all arrays have one row a place.
+
+    `numbers` (k, width + 1) are state and parameter, `first` their derivatives by the curve's arc; `along` is the
+    curve's unit vector (k, free + 1), `size` the determinant of the equations bordered by it. `second` are second
+    Taylor coefficients by the distance of `numbers` along `first`, which to begin with is the arc.
+    """
+
+    numbers: Array
+    first: Array
+    second: Array
+    along: Array
+    size: Array
+
+    @property
+    def state(self) -> Array:
+        return self.numbers[:, :-1]
+
+    @property
+    def parameter(self) -> Array:
+        return self.numbers[:, -1]
+
+    def of(self, which: Lanes | Mask) -> Places:
+        """Some of the places."""
+        return Places(*(getattr(self, f.name)[which] for f in fields(self)))
+
+    def put(self, which: Lanes | Mask, others: Places) -> None:
+        """Put others in some of the places."""
+        for f in fields(self):
+            getattr(self, f.name)[which] = getattr(others, f.name)
+
+    def distance(self, numbers: Array) -> Array:
+        """Distance of numbers (k, width + 1) along the curve's direction here."""
+        return np.asarray(np.sum(self.first * numbers, axis=1) / np.sum(self.first**2, axis=1))
+
+
+@dataclass(frozen=True)
+class Reached:
+    """Places found on planes square to curves at their bases.
+
+    `arc` is their distance along the bases' directions, `first` and `second` are Taylor coefficients of numbers
+    by it; `wrong` is by how much the foretold place was off.
+    """
+
+    places: Places
+    arc: Array
+    first: Array
+    second: Array
+    wrong: Array
+    found: Mask
+
+    def of(self, which: Lanes | Mask) -> Reached:
+        """Some of the places."""
+        return Reached(
+            self.places.of(which), self.arc[which], self.first[which], self.second[which], self.wrong[which],
+            self.found[which],
+        )  # fmt: skip
+
+
+def reach(
+    around: Surroundings, lanes: Lanes, base: Places, along: Array, parameter: Array, state: Array
+) -> Reached:
+    """Where curves pass planes square to `along` through foretold places."""
+    count, free = len(parameter), along.shape[1] - 1
+    found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
+    last, wrong = np.full(count, np.inf), np.full(count, np.nan)
+    for k in range(STEPS):
+        system, linear, moved, rest, follow, matrix = bordered(around, lanes, parameter, state, along)
+        right = np.concatenate([rest, np.zeros((count, 1))], axis=1)
+        step = solved(matrix, right[:, :, None])[:, :, 0]
+        motion = motion_along(linear, moved, follow, step)
+        size = size_of(system, moved, step)
+        if k == 0:
+            wrong = size
+        good = active & np.isfinite(size) & (size < 1.0)
+        state = np.where(good[:, None], system.moved(state, motion), state)
+        parameter = np.where(good, parameter + around.unit * step[:, -1], parameter)
+        done = good & settled(last, size)
+        found |= done
+        active = good & ~done & (size <= np.maximum(CONTRACTION * last, 1e-9))
+        last = size
+        if not active.any():
+            break
+    # the last step was so small that the equations made linear before it still hold
+    ahead = np.zeros((count, free + 1, 1))
+    ahead[:, -1] = 1.0
+    slope = solved(matrix, ahead)[:, :, 0]
+    first, second = _coefficients(around, lanes, parameter, state, slope, linear, follow, matrix)
+    numbers = np.concatenate([state, parameter[:, None]], axis=1)
+    with np.errstate(all="ignore"):
+        length = np.sqrt(np.sum(slope * slope, axis=1))
+        # the determinant bordered by the curve's own direction is that by the plane's, times their cosine
+        size = np.linalg.det(matrix) * length
+        places = Places(numbers, first / length[:, None], second, slope / length[:, None], size)
+        _rate, places.second = _by_distance(places, first, second)
+        inward = _by_distance(base, first, second)
+    found &= np.isfinite(inward[1]).all(axis=1)
+    return Reached(places, base.distance(numbers - base.numbers), *inward, wrong, found)
+
+
+def _by_distance(base: Places, first: Array, second: Array) -> tuple[Array, Array]:
+    """Taylor coefficients by the distance along a base's direction, from those by any other variable."""
+    rate, bend = base.distance(first)[:, None], base.distance(second)[:, None]
+    return first / rate, second / rate**2 - first * bend / rate**3
+
+
+def bordered(
+    around: Surroundings, lanes: Lanes, parameter: Array, state: Array, along: Array | None
+) -> tuple[System, Linear, Shifts, Array, Shifts, Array]:
+    """Equations at places: made linear, their residual, how they follow the parameter, and their matrix.
+
+    It has a column for the parameter and, at the bottom, the normal of a plane if there is one.
+    """
+    known = around.known(Jet.variable(parameter, 1), lanes)
+    system = around.system(known, lanes)
+    linear = system.linear(system.at(JETS, system.known, state))
+    values = system.residual(JETS, system.at(JETS, known, state))
+    jets = [x if isinstance(x, Jet) else Jet((x, 0.0)) for x in values]
+    moved, rest = linear.reduced([-x.coefficients[0] for x in jets])
+    # how unknowns and right sides move with one unit of the parameter
+    follow, pushed = linear.reduced([_times(x.coefficients[1], -around.unit) for x in jets])
+    count, free = len(parameter), linear.pattern.free
+    rows = free if along is None else free + 1
+    matrix = np.empty((count, rows, free + 1))
+    matrix[:, :free, :-1] = linear.matrix
+    matrix[:, :free, -1] = -system.stacked(pushed)
+    if along is not None:
+        matrix[:, -1] = along
+    return system, linear, moved, system.stacked(rest), follow, matrix
+
+
+def _times(x: object, factor: float) -> object:
+    return x if type(x) is float and x == 0.0 else x * factor  # type: ignore[operator]
+
+
+def motion_along(linear: Linear, moved: Shifts, follow: Shifts, step: Array) -> Motion:
+    """The motion of a step (k, free + 1), the parameter's part included."""
+    free, ahead = list(step[:, :-1].T), step[:, -1]
+    together = {
+        entity: tuple(x + y * ahead for x, y in zip(shift, follow[entity], strict=True))
+        for entity, shift in moved.items()
+    }
+    return Motion(linear.whole(together, free), free)
+
+
+def _coefficients(
+    around: Surroundings,
+    lanes: Lanes,
+    parameter: Array,
+    state: Array,
+    slope: Array,
+    linear: Linear,
+    follow: Shifts,
+    matrix: Array,
+) -> tuple[Array, Array]:
+    """First and second Taylor coefficients of numbers by the distance from the plane."""
+    ahead = Jet((parameter, around.unit * slope[:, -1], np.zeros(len(parameter))))
+    known = around.known(ahead, lanes)
+    system = around.system(known, lanes)
+    still = {entity: (0.0,) * entity.unknowns for entity in follow}
+    one = motion_along(linear, still, follow, slope)
+    zero = np.zeros(len(parameter))
+    straight = Motion(
+        {e: tuple(Jet((zero, x, zero)) for x in shift) for e, shift in one.shifts.items()},
+        [Jet((zero, x, zero)) for x in one.free],
+    )
+    values = system.residual(JETS, system.at(JETS, known, state, straight))
+    moved, rest = linear.reduced([-x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
+    right = np.concatenate([system.stacked(rest), zero[:, None]], axis=1)
+    bend = solved(matrix, right[:, :, None])[:, :, 0]
+    two = motion_along(linear, moved, follow, bend)
+    curved = Motion(
+        {e: tuple(Jet((zero, x, y)) for x, y in zip(one.shifts[e], two.shifts[e], strict=True)) for e in one.shifts},
+        [Jet((zero, x, y)) for x, y in zip(one.free, two.free, strict=True)],
+    )
+    at = system.at(JETS, known, state, curved)
+    jets = system.numbers_of(at)
+    first = [x.coefficients[1] for x in jets] + [around.unit * slope[:, -1]]
+    second = [x.coefficients[2] for x in jets] + [around.unit * bend[:, -1]]
+    return system.stacked(first), system.stacked(second)
+
+
+def quintic(base: Places, reached: Reached) -> Array:
+    """Polynomials (k, 6, width + 1) through two places each, in the share of the arc between them.
+
+    Values, first and second derivatives agree at both ends; the parameter is that beyond the base.
+    """
+    arc = reached.arc[:, None]
+    c1, c2 = base.first * arc, base.second * arc**2
+    d, e = reached.first * arc, 2.0 * reached.second * arc**2
+    a = reached.places.numbers - base.numbers - c1 - c2
+    b, c = d - c1 - 2.0 * c2, e - 2.0 * c2
+    c3, c4, c5 = 10.0 * a - 4.0 * b + 0.5 * c, -15.0 * a + 7.0 * b - c, 6.0 * a - 3.0 * b + 0.5 * c
+    start = base.numbers.copy()
+    start[:, -1] = 0.0
+    return np.stack([start, c1, c2, c3, c4, c5], axis=1)

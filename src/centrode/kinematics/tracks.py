@@ -1,0 +1,175 @@
+"""The track of a group of higher class: its curve over the path in pieces, and where Newton's method starts.
+
+Pieces belong to the mechanism and its path, not to the samples: a place starts from the piece on which it lies.
+So what is found does not depend on what else is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+End: TypeAlias = Literal["on", "limit", "lost"]
+
+AT_THE_LIMIT = 64.0
+"""A place this many units of rounding away from a limit is the limit itself."""
+HALVINGS = 30
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch of the curve by its share u, 0 to 1: coefficients (6, width + 1), that of u^0 first.
+
+    The last column is the path's parameter beyond `origin`. `first` and `last` are the parameters at the ends,
+    `sense` is the sign of the group's determinant.
+    """
+
+    coefficients: Array
+    origin: float
+    first: float
+    last: float
+    sense: float
+
+
+@dataclass
+class Trail:
+    """The pieces in one sense of the path, outward from the initial position, and how they end."""
+
+    pieces: list[Piece] = field(default_factory=list)
+    end: End = "on"
+    limit: float = np.nan
+    state: Array | None = None
+
+
+@dataclass(frozen=True)
+class Foretold:
+    """Where Newton's method starts at every place, and what is known of the place beforehand."""
+
+    state: Array
+    slope: Array
+    sense: Array
+    beyond: Mask
+    limit: Mask
+
+
+@dataclass(frozen=True)
+class Tracks:
+    """The tracks of all mechanisms of a batch: one trail behind and one ahead of each initial position."""
+
+    lanes: int
+    coefficients: Array
+    origin: Array
+    sense: Array
+    edges: list[Array]
+    first: Lanes
+    limits: Array
+    at_limit: Array
+    followed: Array
+
+    @classmethod
+    def of(cls, behind: Sequence[Trail], ahead: Sequence[Trail], width: int) -> Tracks:
+        """Tracks from trails; a mechanism without pieces has no track."""
+        pieces: list[Piece] = []
+        edges, first = [], []
+        limits, at_limit = np.full((len(ahead), 2), np.nan), np.full((len(ahead), 2, width), np.nan)
+        followed = np.full((len(ahead), 2), np.nan)
+        for lane, trails in enumerate(zip(behind, ahead, strict=True)):
+            own = [*reversed(trails[0].pieces), *trails[1].pieces]
+            first.append(len(pieces))
+            pieces += own
+            edges.append(np.sort([edge for piece in own for edge in (piece.first, piece.last)])[1:-1:2])
+            for side, trail in enumerate(trails):
+                if trail.pieces:
+                    followed[lane, side] = trail.pieces[-1].last
+                if trail.end == "limit" and trail.state is not None:
+                    limits[lane, side], at_limit[lane, side] = trail.limit, trail.state
+        empty = np.zeros((0, 6, width + 1))
+        return cls(
+            len(ahead),
+            np.array([piece.coefficients for piece in pieces]) if pieces else empty,
+            np.array([piece.origin for piece in pieces]),
+            np.array([piece.sense for piece in pieces]),
+            edges,
+            np.array(first, dtype=np.intp),
+            limits,
+            at_limit,
+            followed,
+        )
+
+    def foretell(self, parameter: Array, lanes: Lanes) -> Foretold:
+        """Starting states at parameters, one lane for each."""
+        which, known = self._pieces(parameter, lanes)
+        share = np.zeros(len(parameter))
+        state = np.full((len(parameter), self.at_limit.shape[2]), np.nan)
+        slope = np.full(state.shape, np.nan)
+        sense = np.zeros(len(parameter))
+        if known.any():
+            chosen = which[known]
+            on_curve = self.coefficients[chosen]
+            share = _share(on_curve[:, :, -1], parameter[known] - self.origin[chosen])
+            value, rate = _horner(on_curve, share)
+            state[known] = value[:, :-1]
+            with np.errstate(all="ignore"):
+                slope[known] = rate[:, :-1] / rate[:, -1:]
+            sense[known] = self.sense[chosen]
+        limit = self._at_limits(parameter, lanes, state)
+        past = (parameter < self.limits[lanes, 0]) | (parameter > self.limits[lanes, 1])
+        return Foretold(state, slope, sense, past & ~limit, limit)
+
+    def _pieces(self, parameter: Array, lanes: Lanes) -> tuple[Lanes, Mask]:
+        """The piece of each place, and whether the curve was followed as far as that."""
+        which = np.zeros(len(parameter), dtype=np.intp)
+        order = np.argsort(lanes, kind="stable")
+        bounds = np.searchsorted(lanes[order], np.arange(self.lanes + 1))
+        for lane in np.nonzero(np.diff(bounds))[0]:
+            here = order[bounds[lane] : bounds[lane + 1]]
+            which[here] = self.first[lane] + np.searchsorted(self.edges[lane], parameter[here])
+        reach = self.followed[lanes]
+        low, high = np.fmin(reach[:, 0], reach[:, 1]), np.fmax(reach[:, 0], reach[:, 1])
+        return which, (parameter >= low) & (parameter <= high)
+
+    def _at_limits(self, parameter: Array, lanes: Lanes, state: Array) -> Mask:
+        """Where places are limits themselves; puts the state of the limit there."""
+        limit = np.zeros(len(parameter), dtype=bool)
+        for side in (0, 1):
+            place = self.limits[lanes, side]
+            with np.errstate(invalid="ignore"):
+                here = np.abs(parameter - place) <= AT_THE_LIMIT * np.spacing(np.maximum(np.abs(place), 1e-3))
+            state[here] = self.at_limit[lanes[here], side]
+            limit |= here
+        return limit
+
+
+def _share(coefficients: Array, wanted: Array) -> Array:
+    """Where polynomials (n, 6) that run one way from 0 to 1 take values (n,): halving, then Newton's method."""
+    low, high = np.zeros(len(wanted)), np.ones(len(wanted))
+    rising = coefficients[:, 1:].sum(axis=1) > 0.0
+    share = np.full(len(wanted), 0.5)
+    for _step in range(HALVINGS):
+        value, slope = _horner(coefficients[:, :, None], share)
+        short = (value[:, 0] < wanted) == rising
+        low, high = np.where(short, share, low), np.where(short, high, share)
+        with np.errstate(all="ignore"):
+            better = share - (value[:, 0] - wanted) / slope[:, 0]
+        moved = np.where((better > low) & (better < high), better, 0.5 * (low + high))
+        if np.array_equal(moved, share):
+            break
+        share = moved
+    return share
+
+
+def _horner(coefficients: Array, share: Array) -> tuple[Array, Array]:
+    """Values and derivatives of polynomials (n, 6, columns) at shares (n,)."""
+    value = coefficients[:, -1].copy()
+    slope = np.zeros(value.shape)
+    for k in range(coefficients.shape[1] - 2, -1, -1):
+        slope = slope * share[:, None] + value
+        value = value * share[:, None] + coefficients[:, k]
+    return value, slope
