@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import permutations
 from typing import Any
 
@@ -117,6 +118,7 @@ def test_jacobian_rows_are_the_slopes_of_the_residuals(parts: Parts, seed: int) 
             (x, y), (c, s) = at.poses[entity.name]
             rotor = (Jet((c, -s * own[2])), Jet((s, c * own[2])))
             moving.poses[entity.name] = Pose((Jet((x, own[0])), Jet((y, own[1]))), rotor)
+            moving.angles[entity.name] = Jet((math.atan2(s, c), own[2]))
     slopes = [
         r.derivative(1) if isinstance(r, Jet) else 0.0
         for c in constraints
