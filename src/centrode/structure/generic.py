@@ -43,7 +43,8 @@ def random_gearing(
             named = point_at(numbers, wheel.on, own.centre)
             centre = place if named is None else local_of(at, wheel.on, named)
             track[wheel.id] = Round(centre, float(random.uniform(0.7, 1.5)), own.inside)
-    return Gearing(ratio, radius, track)
+    phase = dict.fromkeys((*ratio, *radius), 0.0)
+    return Gearing(ratio, radius, track, phase)
 
 
 def point_at(numbers: Dimensions, body: str, local: Vector) -> str | None:
