@@ -13,7 +13,8 @@ from centrode.present.abscissa import Abscissa, main_abscissa, over_drive
 from centrode.present.curves import sheet
 from centrode.present.panels import Motion, Rows, of_coefficients, of_guides, of_links, of_points
 from centrode.present.pictures import mechanism_figure, paths_figure
-from centrode.present.scene import Scene, scene_of
+from centrode.present.reading import scene_of
+from centrode.present.scene import Scene
 from centrode.present.style import house_style, pens
 
 if TYPE_CHECKING:
