@@ -24,7 +24,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
         for prefix in ("", "angular_", "slide_")
         for order in ("velocity", "acceleration")
     ]
-    others = ("time", "drive_value", "position", "velocity", "acceleration", "status", "residual")
+    others = ("time", "drive_value", "position", "velocity", "acceleration", "contact", "status", "residual")
     events = ("event_value", "event_kind", "event_group")
     assert set(QUANTITIES) == {*bases, *coefficients, *others, *events}
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
