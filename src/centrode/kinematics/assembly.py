@@ -101,7 +101,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
     kinematics = with_phases(kinematics, phases_after(kinematics, at))
     check_touch(kinematics, at)
     residual = check_fit(kinematics, at)
-    return Assembled(signs, at, _angles(kinematics, at) | starting.found, residual, kinematics.numbers)
+    return Assembled(signs, at, _angles(kinematics, at), residual, kinematics.numbers)
 
 
 def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded: Positions) -> Kinematics:
@@ -122,18 +122,14 @@ def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
 
 
 class _Starting(Hooks):
-    """Angles in the turn that the description names; keeps those of what is no link."""
+    """Angles in the turn that the description names; of what is no link in (-pi, pi]."""
 
     def __init__(self, kinematics: Kinematics) -> None:
         self.links = kinematics.structure.mechanism.links
-        self.found: dict[str, float] = {}
 
     def continued(self, group: int, key: str, angle: Number) -> Number:
+        near = self.links[key].angle if key in self.links else None
         value = float(angle.value if isinstance(angle, Rounded) else angle)
-        if key not in self.links:
-            self.found[key] = value
-            return angle
-        near = self.links[key].angle
         return angle if near is None else angle + tau * np.round((near - value) / tau)
 
 
@@ -281,7 +277,7 @@ def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:
     for drive in mechanism.drives:
         if drive.kind == "angle" and drive.relative_to == "frame" and drive.link is not None:
             named[drive.link] = float(at.drives[drive.id])
-    angles = {}
+    angles = {key: float(angle) for key, angle in at.angles.items()}
     for link in kinematics.numbers.ends:
         near = at.angles.get(link, named[link]) or 0.0
         angles[link] = near + angle_off(kinematics.numbers, near, at, link)

@@ -65,7 +65,8 @@ def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first
     """Some of the lines together."""
     path = held_path(ready, drive, float(ready.assembled.positions.drives[drive]), held)
     lanes = max(len(value) for value in held.values() if isinstance(value, np.ndarray))
-    branches = branches_at_start(path, ready.assembled.signs, smooth=False, lanes=lanes)
+    start = ready.assembled
+    branches = branches_at_start(path, start.signs, start.angles, smooth=False, lanes=lanes)
     kinematics = replace(ready.kinematics, path=path)
     continuation = Continuation(kinematics, branches, ready.assembled.positions, kinematics.numbers)
     Scan(continuation, mesh_of(path, nodes)).run()
@@ -111,5 +112,5 @@ def _judged(continuation: Continuation, layout: Layout, nodes: Array, lanes: int
     with np.errstate(all="ignore"):
         at = kinematics.positions(JETS, Jet.variable(nodes[None, :], ORDERS - 1), judging)
         fill_columns(kinematics, layout, at, columns)
-    judging.opened |= ~np.isfinite(columns[0]).all(axis=0)
+    judging.opened |= ~np.isfinite(columns[0]).all(axis=0) | kinematics.path.impossible(nodes)
     return judging

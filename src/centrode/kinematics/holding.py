@@ -18,7 +18,7 @@ from centrode.kinematics.layout import layout_of
 from centrode.kinematics.pace import Pace
 from centrode.kinematics.paths import DrivenBy, Path, unit_of
 from centrode.kinematics.ready import Ready
-from centrode.kinematics.sampling import ORDERS, evaluate_columns
+from centrode.kinematics.sampling import Samples, evaluate_columns
 from centrode.laws import Uniform
 from centrode.locale import _
 from centrode.model.mechanism import Drive, Mechanism
@@ -84,18 +84,21 @@ def held_path(ready: Ready, drive: str, initial: float, held: Mapping[str, float
 def starting_at(ready: Ready, path: Path) -> Continuation:
     """The plan along the path of one drive, from the position in which that begins.
 
-    That is the position with the signs of the initial one. A group of higher class has no signs: its position is
-    reached from the initial one by moving all drives there together, each at a constant speed.
+    That is the position with the signs of the initial one. A group of higher class has no signs, and gears count
+    turns: then the position is reached from the initial one by moving all drives there together, each at a constant
+    speed.
     """
     target = {path.driven[0].drive.id: path.initial, **path.held}
     kinematics = replace(ready.kinematics, path=path)
     signs, positions = ready.assembled.signs, ready.assembled.positions
     followed = any(isinstance(group, Newton) for group in ready.structure.groups)
+    followed |= any(ready.structure.counted)
     if followed and target != initial_values(ready):
         signs, start = _brought(ready, target)
         positions = start.kinematics.positions(ARRAYS, np.ones(1), start.hooks(ARRAYS, np.ones((1, 1)), None))
         positions = positions.mapped(lambda x: float(np.asarray(x, dtype=np.float64).reshape(-1)[0]))
-    branches = branches_at_start(path, signs, ready.mechanism.assembly.continuation == "smooth")
+    angles = ready.assembled.angles | {key: float(angle) for key, angle in positions.angles.items()}
+    branches = branches_at_start(path, signs, angles, ready.mechanism.assembly.continuation == "smooth")
     return Continuation(kinematics, branches, positions, kinematics.numbers)
 
 
@@ -112,7 +115,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> tuple[dict[int, float
     path = Path(driven, 0.0, 1.0, pace.unit_at(0.0), old.scale, pace)
     kinematics = replace(ready.kinematics, path=path)
     smooth = ready.mechanism.assembly.continuation == "smooth"
-    branches = branches_at_start(path, ready.assembled.signs, smooth)
+    branches = branches_at_start(path, ready.assembled.signs, ready.assembled.angles, smooth)
     continuation = Continuation(kinematics, branches, ready.assembled.positions, kinematics.numbers)
     Scan(continuation, mesh_of(path, np.ones(1))).run()
     if branches.reach(0)[1] < 1.0:
@@ -127,9 +130,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> tuple[dict[int, float
 def check_closed(continuation: Continuation) -> None:
     """Refuse a path whose first position is open; its events are known."""
     path, layout = continuation.kinematics.path, layout_of(continuation.kinematics)
-    judged = evaluate_columns(
-        continuation, layout, np.array([path.initial]), np.empty((ORDERS, layout.width, 1, 1))
-    )
+    judged = evaluate_columns(continuation, Samples.of_layout(layout, 1, 1), np.array([path.initial]))
     if bool(judged.opened.any() or judged.lost.any()):
         values = {path.driven[0].drive.id: path.initial, **path.held}
         where = ", ".join(f"{name} = {value:.6g}" for name, value in values.items())
