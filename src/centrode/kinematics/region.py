@@ -54,7 +54,8 @@ def reachable_region(
         May be left out where there are two.
     ranges : drive -> (first, last) [rad or m, or texts with units]
         They hold the initial values. Left out: one turn about the initial value of an angle; the limits of a
-        displacement with the other drives at their initial values, and a little beyond.
+        displacement with the other drives at their initial values, and a little beyond. A range of one turn goes
+        on at its other end, where the mechanism stands alike.
     samples : int
         Grid lines of each drive; those of the initial values are added.
     held : drive -> value
@@ -90,7 +91,8 @@ def reachable_region(
             _("choose values at which it closes"),
         )
     passages = _passages(along_first, nodes[0]).T, _passages(along_second, nodes[1])
-    reached = _reached(along_second.closed, *passages, seed)
+    rounds = [_comes_round(mechanism, name, n) for name, n in zip((first, second), nodes, strict=True)]
+    reached = _reached(along_second.closed, *passages, seed, rounds)
     status = np.where(reached, Status.OK, np.where(along_second.closed, Status.CUT_OFF, Status.OPEN))
     variables: dict[str, Any] = {
         "status": _named(("first", "second"), status.astype(np.int8), "status of the node", "1"),
@@ -193,13 +195,25 @@ def _passages(lines: Lines, nodes: Array) -> Mask:
     return free
 
 
-def _reached(closed: Mask, first: Mask, second: Mask, seed: tuple[int, int]) -> Mask:
-    """Nodes connected with the seed by free passages along the first and the second drive."""
+def _comes_round(mechanism: Mechanism, name: str, nodes: Array) -> bool:
+    """Whether the last value is the first one after a turn, so that the mechanism stands alike at both."""
+    angular = named_drive(mechanism, name, "drives").kind == "angle"
+    return angular and abs(nodes[-1] - nodes[0] - 2.0 * np.pi) <= 4.0 * np.spacing(np.max(np.abs(nodes)))
+
+
+def _reached(closed: Mask, first: Mask, second: Mask, seed: tuple[int, int], rounds: Sequence[bool]) -> Mask:
+    """Nodes connected with the seed by free passages along the first and the second drive.
+
+    Where a drive comes round within its range, its last line goes on at its first.
+    """
     reached = np.zeros(closed.shape, dtype=bool)
     reached[seed] = closed[seed]
     while True:
         before = int(reached.sum())
-        for free, here in ((first, reached), (second.T, reached.T)):
+        for free, here, comes_round in ((first, reached, rounds[0]), (second.T, reached.T, rounds[1])):
+            if comes_round:
+                here[0] |= here[-1]
+                here[-1] |= here[0]
             for k in range(len(free)):
                 here[k + 1] |= here[k] & free[k]
             for k in range(len(free) - 1, -1, -1):
