@@ -65,7 +65,9 @@ def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first
     """Some of the lines together."""
     path = held_path(ready, drive, float(ready.assembled.positions.drives[drive]), held)
     lanes = max(len(value) for value in held.values() if isinstance(value, np.ndarray))
-    branches = branches_at_start(path, ready.assembled.signs, smooth=False, lanes=lanes)
+    branches = branches_at_start(
+        path, ready.assembled.signs, ready.assembled.angles, smooth=False, lanes=lanes
+    )
     kinematics = replace(ready.kinematics, path=path)
     continuation = Continuation(kinematics, branches, ready.assembled.positions, kinematics.numbers)
     Scan(continuation, mesh_of(path, nodes)).run()

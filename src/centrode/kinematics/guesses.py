@@ -63,7 +63,9 @@ def bound_higher(system: System, at: Positions, bounded: Positions) -> None:
     """Add a group's initial position to what is known before it with bounds of rounding errors."""
     state = system.state_of(at)
     linear = system.linear(system.at(ARRAYS, system.known, state))
-    known = bounded.mapped(lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x)
+    known = bounded.mapped(
+        lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x
+    )
     found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).mapped(_single)
     bounded.points.update(found.points)
     bounded.poses.update(found.poses)

@@ -35,6 +35,8 @@ Ranges: TypeAlias = Mapping[str, tuple[Value, Value]]
 
 DEFAULT_NODES = 181
 MOST_NODES = 1001
+SAME = 1e-9
+"""Share of a range below which two values are one grid line."""
 BESIDE = 0.1
 """Share of the way between the limits of a displacement that is shown beyond them on both sides."""
 
@@ -159,13 +161,22 @@ def _nodes(
         low, high = start[name] - np.pi, start[name] + np.pi
     else:
         low, high = _between_limits(prepared, name, {**start, **held})
+    if drive.kind == "distance" and low <= 0.0:
+        raise InputError(
+            f"range {name}", _("a cylinder has a length above zero"), _("give the distance of its points")
+        )
     if not low <= start[name] <= high or low == high:
         raise InputError(
             f"range {name}",
             _("it has to hold the initial value, {value:.6g}").format(value=start[name]),
             _("ask for a range about it"),
         )
-    return np.union1d(np.linspace(low, high, samples), [start[name]])
+    nodes = np.linspace(low, high, samples)
+    nearest = _node(nodes, start[name])
+    if abs(nodes[nearest] - start[name]) > SAME * (high - low):
+        return np.union1d(nodes, [start[name]])
+    nodes[nearest] = start[name]
+    return nodes
 
 
 def _between_limits(prepared: Ready, name: str, values: Mapping[str, float]) -> tuple[float, float]:
