@@ -10,6 +10,8 @@ import pytest
 import xarray as xr
 
 import centrode as ct
+from centrode.kinematics.holding import held_path, starting_at
+from centrode.kinematics.ready import ready
 from mechanisms import EPS, four_bar
 
 Array = npt.NDArray[np.float64]
@@ -363,6 +365,88 @@ def test_limits_asked_for_wrongly(name: str) -> None:
         ct.limits(five_bar(), **arguments)
 
 
-def test_groups_of_higher_class_have_limits_but_no_region() -> None:
-    name = "third-class-triad"
-    assert ct.limits(ct.example(name)).interval[0] < ct.limits(ct.example(name)).interval[1]
+def test_nodes_on_a_limit_are_not_cut_off() -> None:
+    """Ranges with the limits on their grid: between them everything is reached, whatever rounding says of them."""
+    excavator = ct.example("excavator-arm")
+    pair = ("C-E", "S-N")
+    ends = {name: ct.limits(excavator, name).interval for name in pair}
+    for beyond in (0.0, 0.1, 0.25):
+        spans = {
+            name: (low - beyond * (high - low), high + beyond * (high - low))
+            for name, (low, high) in ends.items()
+        }
+        region = ct.reachable_region(excavator, pair, spans, samples=61)
+        inside = [
+            (region[name].to_numpy() > ends[drive][0] * (1 + 1e-12))
+            & (region[name].to_numpy() < ends[drive][1] * (1 - 1e-12))
+            for name, drive in zip(("first", "second"), pair, strict=True)
+        ]
+        status = region["status"].to_numpy()
+        assert (status[np.ix_(*inside)] == ct.Status.OK).all()
+        assert not (status == ct.Status.CUT_OFF).any()
+
+
+def test_cylinders_of_an_excavator_by_the_law_of_cosines() -> None:
+    """Boom and stick stop where cylinder and lever are in line; the bucket where its four-bar stretches out."""
+    m = ct.example("excavator-arm")
+    o, k = (np.array(m.frame.points[name]) for name in "OK")
+    boom, stick = (m.links[name].coordinates for name in ("boom", "stick"))
+    low, high = ct.limits(m, "K-A").interval
+    lever, base = np.hypot(*boom["A"]), np.hypot(*(o - k))
+    assert (low, high) == pytest.approx((lever - base, lever + base), rel=8 * EPS)
+    low, high = ct.limits(m, "C-E").interval
+    to_c, to_e = np.hypot(*np.subtract(boom["C"], boom["B"])), np.hypot(*stick["E"])
+    assert (low, high) == pytest.approx((abs(to_c - to_e), to_c + to_e), rel=8 * EPS)
+    # one cylinder does not feel the others
+    other = ct.limits(m, "C-E", {"K-A": "2600 mm", "S-N": 2.0})
+    assert other.interval == pytest.approx((low, high), rel=8 * EPS)
+    low, high = ct.limits(m, "S-N").interval
+    g, s, h = (np.array(stick[name]) for name in "GSH")
+    rocker, rod = m.links["GN"].length, m.links["NL"].length + np.hypot(*m.links["bucket"].coordinates["L"])
+    assert high == pytest.approx(np.hypot(*(g - s)) + rocker, rel=8 * EPS)
+    # rod and bucket in line: N stands where circles about G and H meet, on one of two sides
+    ground = np.hypot(*(h - g))
+    along = (ground**2 + rocker**2 - rod**2) / (2 * ground)
+    across = np.sqrt(rocker**2 - along**2)
+    x, y = (h - g) / ground, np.array([-(h - g)[1], (h - g)[0]]) / ground
+    places = [g + along * x + sense * across * y for sense in (1.0, -1.0)]
+    # the limit is where |NH| is longest: its place loses digits as 1/across, as |SN| does as 1/sin at N
+    off = min(abs(np.hypot(*(n - s)) - low) for n in places)
+    assert off <= 64 * EPS * rod**2 / across
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "geared-five-bar",
+        "planetary-gear-train",
+        "rolling-wheel-rod",
+        "third-class-triad",
+        "fourth-class-group",
+    ],
+)
+def test_a_position_that_signs_do_not_tell_is_reached_on_the_way(name: str) -> None:
+    """Turns are counted, groups of higher class followed: the position is that of a motion that goes there."""
+    mechanism = ct.example(name)
+    prepared = ready(mechanism)
+    drive = mechanism.drives[0].id
+    about = prepared.kinematics.path.initial + (0.3 if "class" in name else 7.0)
+    start = starting_at(prepared, held_path(prepared, drive, about, {}))
+    data = ct.motion(mechanism, at=[about])
+    for point in mechanism.moving_points:
+        there = data["position"].sel(point=point).to_numpy()[0]
+        assert start.start.points[point] == pytest.approx(there, abs=1e3 * EPS)
+    for link in mechanism.links:
+        if link in start.start.angles:
+            turned = float(data["angle"].sel(link=link)[0])
+            assert start.start.angles[link] == pytest.approx(turned, abs=1e3 * EPS)
+            assert start.branches.angles[link] == start.start.angles[link]
+
+
+def test_a_cylinder_has_a_length() -> None:
+    excavator = ct.example("excavator-arm")
+    for length in (0.0, -1.0):
+        with pytest.raises(ct.InputError, match="length above zero"):
+            ct.limits(excavator, "K-A", {"C-E": length})
+    with pytest.raises(ct.InputError, match="length above zero"):
+        ct.reachable_region(excavator, ("K-A", "C-E"), {"K-A": (-1.0, 3.0)})

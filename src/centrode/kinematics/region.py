@@ -37,6 +37,8 @@ DEFAULT_NODES = 181
 MOST_NODES = 1001
 SAME = 1e-9
 """Share of a range below which two values are one grid line."""
+AT_A_NODE = 64.0
+"""A limit this many units of the last place from a node is that node itself: it parts no neighbours."""
 BESIDE = 0.1
 """Share of the way between the limits of a displacement that is shown beyond them on both sides."""
 
@@ -201,7 +203,8 @@ def _passages(lines: Lines, nodes: Array) -> Mask:
     free = lines.closed[:, :-1] & lines.closed[:, 1:]
     line, value, _group = lines.limits
     cell = np.clip(np.searchsorted(nodes, value, side="right") - 1, 0, len(nodes) - 2)
-    inside = (nodes[cell] < value) & (value < nodes[cell + 1])
+    margin = AT_A_NODE * np.spacing(np.max(np.abs(nodes)))
+    inside = (nodes[cell] + margin < value) & (value < nodes[cell + 1] - margin)
     free[line[inside], cell[inside]] = False
     return free
 
