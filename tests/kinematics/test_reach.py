@@ -443,6 +443,37 @@ def test_a_position_that_signs_do_not_tell_is_reached_on_the_way(name: str) -> N
             assert start.branches.angles[link] == start.start.angles[link]
 
 
+def test_a_group_of_higher_class_with_a_drive_between_moving_links() -> None:
+    """Scissors AB, CB on a crank OA and a rocker EC: |AC| by the angle v between the rods, then the triangle A-C-E."""
+    mechanism = ct.Mechanism(
+        frame={"points": {"O": [0.0, 0.0], "E": [1.0, 0.0]}},
+        links={
+            "OA": {"length": 0.4},
+            "AB": {"length": 0.6, "angle": "70 deg"},
+            "CB": {"length": 0.7},
+            "EC": {"length": 0.5, "angle": "91 deg"},
+        },
+        drives=[
+            {"link": "OA", "start": 1.0, "speed": 1.0},
+            {"link": "CB", "relative_to": "AB", "start": 1.3, "speed": 1.0},
+        ],
+    )
+    for v in (1.1, 1.3, 1.5):
+        reach = np.sqrt(0.85 - 0.84 * np.cos(v))
+        half = np.arccos((0.16 + 1.0 - (reach + 0.5) ** 2) / 0.8)
+        low, high = ct.limits(mechanism, "OA", {"CB": v}).interval
+        # the limit is found as the place where a curve turns back: to the root of rounding of its arc, squared
+        assert (low, high) == pytest.approx((-half, half), abs=1e3 * EPS)
+    for a in (0.8, 1.0, 1.2):
+        apart = abs(1.0 - 0.4 * np.exp(1j * a))
+        assert apart + 0.5 > 1.3  # the rods cannot stretch so far: only folding them stops the scissors
+        least = np.arccos((0.85 - (apart - 0.5) ** 2) / 0.84)
+        interval = ct.limits(mechanism, "CB", {"OA": a}).interval
+        assert interval == pytest.approx((least, 2 * np.pi - least), abs=1e3 * EPS)
+    with pytest.raises(ct.NotComputedYet, match="higher class"):
+        ct.reachable_region(mechanism)
+
+
 def test_a_cylinder_has_a_length() -> None:
     excavator = ct.example("excavator-arm")
     for length in (0.0, -1.0):
