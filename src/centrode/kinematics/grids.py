@@ -65,8 +65,9 @@ def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first
     """Some of the lines together."""
     path = held_path(ready, drive, float(ready.assembled.positions.drives[drive]), held)
     lanes = max(len(value) for value in held.values() if isinstance(value, np.ndarray))
-    start = ready.assembled
-    branches = branches_at_start(path, start.signs, start.angles, smooth=False, lanes=lanes)
+    branches = branches_at_start(
+        path, ready.assembled.signs, ready.assembled.angles, smooth=False, lanes=lanes
+    )
     kinematics = replace(ready.kinematics, path=path)
     continuation = Continuation(kinematics, branches, ready.assembled.positions, kinematics.numbers)
     Scan(continuation, mesh_of(path, nodes)).run()
@@ -112,5 +113,5 @@ def _judged(continuation: Continuation, layout: Layout, nodes: Array, lanes: int
     with np.errstate(all="ignore"):
         at = kinematics.positions(JETS, Jet.variable(nodes[None, :], ORDERS - 1), judging)
         fill_columns(kinematics, layout, at, columns)
-    judging.opened |= ~np.isfinite(columns[0]).all(axis=0) | kinematics.path.impossible(nodes)
+    judging.opened |= ~np.isfinite(columns[0]).all(axis=0)
     return judging

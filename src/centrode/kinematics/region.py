@@ -35,6 +35,10 @@ Ranges: TypeAlias = Mapping[str, tuple[Value, Value]]
 
 DEFAULT_NODES = 181
 MOST_NODES = 1001
+SAME = 1e-9
+"""Share of a range below which two values are one grid line."""
+AT_A_NODE = 64.0
+"""A limit this many units of the last place from a node is that node itself: it parts no neighbours."""
 BESIDE = 0.1
 """Share of the way between the limits of a displacement that is shown beyond them on both sides."""
 
@@ -54,7 +58,8 @@ def reachable_region(
         May be left out where there are two.
     ranges : drive -> (first, last) [rad or m, or texts with units]
         They hold the initial values. Left out: one turn about the initial value of an angle; the limits of a
-        displacement with the other drives at their initial values, and a little beyond.
+        displacement with the other drives at their initial values, and a little beyond. A range of one turn goes
+        on at its other end, where the mechanism stands alike.
     samples : int
         Grid lines of each drive; those of the initial values are added.
     held : drive -> value
@@ -90,7 +95,8 @@ def reachable_region(
             _("choose values at which it closes"),
         )
     passages = _passages(along_first, nodes[0]).T, _passages(along_second, nodes[1])
-    reached = _reached(along_second.closed, *passages, seed)
+    rounds = [_comes_round(mechanism, name, n) for name, n in zip((first, second), nodes, strict=True)]
+    reached = _reached(along_second.closed, *passages, seed, rounds)
     status = np.where(reached, Status.OK, np.where(along_second.closed, Status.CUT_OFF, Status.OPEN))
     variables: dict[str, Any] = {
         "status": _named(("first", "second"), status.astype(np.int8), "status of the node", "1"),
@@ -157,13 +163,22 @@ def _nodes(
         low, high = start[name] - np.pi, start[name] + np.pi
     else:
         low, high = _between_limits(prepared, name, {**start, **held})
+    if drive.kind == "distance" and low <= 0.0:
+        raise InputError(
+            f"range {name}", _("a cylinder has a length above zero"), _("give the distance of its points")
+        )
     if not low <= start[name] <= high or low == high:
         raise InputError(
             f"range {name}",
             _("it has to hold the initial value, {value:.6g}").format(value=start[name]),
             _("ask for a range about it"),
         )
-    return np.union1d(np.linspace(low, high, samples), [start[name]])
+    nodes = np.linspace(low, high, samples)
+    nearest = _node(nodes, start[name])
+    if abs(nodes[nearest] - start[name]) > SAME * (high - low):
+        return np.union1d(nodes, [start[name]])
+    nodes[nearest] = start[name]
+    return nodes
 
 
 def _between_limits(prepared: Ready, name: str, values: Mapping[str, float]) -> tuple[float, float]:
@@ -188,18 +203,31 @@ def _passages(lines: Lines, nodes: Array) -> Mask:
     free = lines.closed[:, :-1] & lines.closed[:, 1:]
     line, value, _group = lines.limits
     cell = np.clip(np.searchsorted(nodes, value, side="right") - 1, 0, len(nodes) - 2)
-    inside = (nodes[cell] < value) & (value < nodes[cell + 1])
+    margin = AT_A_NODE * np.spacing(np.max(np.abs(nodes)))
+    inside = (nodes[cell] + margin < value) & (value < nodes[cell + 1] - margin)
     free[line[inside], cell[inside]] = False
     return free
 
 
-def _reached(closed: Mask, first: Mask, second: Mask, seed: tuple[int, int]) -> Mask:
-    """Nodes connected with the seed by free passages along the first and the second drive."""
+def _comes_round(mechanism: Mechanism, name: str, nodes: Array) -> bool:
+    """Whether the last value is the first one after a turn, so that the mechanism stands alike at both."""
+    angular = named_drive(mechanism, name, "drives").kind == "angle"
+    return angular and abs(nodes[-1] - nodes[0] - 2.0 * np.pi) <= 4.0 * np.spacing(np.max(np.abs(nodes)))
+
+
+def _reached(closed: Mask, first: Mask, second: Mask, seed: tuple[int, int], rounds: Sequence[bool]) -> Mask:
+    """Nodes connected with the seed by free passages along the first and the second drive.
+
+    Where a drive comes round within its range, its last line goes on at its first.
+    """
     reached = np.zeros(closed.shape, dtype=bool)
     reached[seed] = closed[seed]
     while True:
         before = int(reached.sum())
-        for free, here in ((first, reached), (second.T, reached.T)):
+        for free, here, comes_round in ((first, reached, rounds[0]), (second.T, reached.T, rounds[1])):
+            if comes_round:
+                here[0] |= here[-1]
+                here[-1] |= here[0]
             for k in range(len(free)):
                 here[k + 1] |= here[k] & free[k]
             for k in range(len(free) - 1, -1, -1):

@@ -77,7 +77,7 @@ def evaluate_columns(continuation: Continuation, samples: Samples, parameter: Ar
     judging.opened |= continuation.kinematics.path.impossible(parameter)
     for k, link in enumerate(layout.angles):
         if layout.runs_on and link in at.angles:
-            _fill(samples.angles[:, k], at.angles[link])
+            fill_number(samples.angles[:, k], at.angles[link])
             samples.followed.add(link)
     return judging
 
@@ -130,10 +130,10 @@ def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Ar
 def fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
     """Values and derivatives of every column, from jets."""
     for k, number in enumerate(layout.numbers(JETS, kinematics.numbers, at)):
-        _fill(columns[:, k], number)
+        fill_number(columns[:, k], number)
 
 
-def _fill(column: Array, number: Number) -> None:
+def fill_number(column: Array, number: Number) -> None:
     """A number with its derivatives (3, lanes, n)."""
     if isinstance(number, Jet):
         column[0], column[1] = number.coefficients[:2]
