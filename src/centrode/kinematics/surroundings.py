@@ -69,7 +69,9 @@ class Surroundings:
 
     def blank(self, lanes: Lanes) -> System:
         """The group's equations beside nothing: for what needs the state alone."""
-        return System(self.equations, self.kinematics.taken(lanes).numbers, Positions({}, {}, {}, {}), len(lanes))
+        return System(
+            self.equations, self.kinematics.taken(lanes).numbers, Positions({}, {}, {}, {}), len(lanes)
+        )
 
     def with_numbers(self, numbers: Dimensions) -> Surroundings:
         """The same part of the plan with other dimensions."""
