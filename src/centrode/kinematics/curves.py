@@ -205,10 +205,7 @@ def _coefficients(
     bend = solved(matrix, right[:, :, None])[:, :, 0]
     two = motion_along(linear, moved, follow, bend)
     curved = Motion(
-        {
-            e: tuple(Jet((zero, x, y)) for x, y in zip(one.shifts[e], two.shifts[e], strict=True))
-            for e in one.shifts
-        },
+        {e: tuple(Jet((zero, x, y)) for x, y in zip(one.shifts[e], two.shifts[e], strict=True)) for e in one.shifts},
         [Jet((zero, x, y)) for x, y in zip(one.free, two.free, strict=True)],
     )
     at = system.at(JETS, known, state, curved)

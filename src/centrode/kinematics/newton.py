@@ -123,9 +123,7 @@ class System:
             at.poses[name] = space.righted(ARRAYS, at.poses[name])
         for name in self._turns:
             near = at.angles[name]
-            at.angles[name] = near + space.turn(
-                ARRAYS, at.poses[name], space.at_rest, rotor_of(ARRAYS, near), None
-            )
+            at.angles[name] = near + space.turn(ARRAYS, at.poses[name], space.at_rest, rotor_of(ARRAYS, near), None)
         return self.state_of(at)
 
     def residual(self, m: Namespace, at: Positions) -> list[Number]:

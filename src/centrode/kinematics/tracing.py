@@ -77,7 +77,9 @@ def trace(
     return Tracks.of(walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1]), events
 
 
-def _setting_out(around: Surroundings, start: Array, initial: float, extent: tuple[float, float]) -> Walkers:
+def _setting_out(
+    around: Surroundings, start: Array, initial: float, extent: tuple[float, float]
+) -> Walkers:
     lanes = len(start)
     both = np.tile(np.arange(lanes), 2)
     forward = np.repeat([-1.0, 1.0], lanes)
