@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import remainder, tau
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,8 +11,9 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
-from centrode.geometry.plane import Pose, add, place, subtract, turned
+from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.newton import System, newton
+from centrode.kinematics.sides import is_measured
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.dimensions import Dimensions
@@ -100,21 +101,27 @@ def guessed(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
 
 def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions) -> bool:
     """Pose a link by its initial angle and a known point, or by two known points."""
-    local = numbers.local[link]
+    local, space = numbers.local[link], numbers.space
     known = [point for point in local if point in guess.points]
-    angle = mechanism.initial_angle(link)
-    if not known or (angle is None and len(known) < 2):
+    angle, pose = mechanism.initial_angle(link), None
+    if angle is not None and is_measured(numbers, guess, link):
+        towards = [guess.points[point] for point in numbers.ends[link]]
+        at = [guess.points.get(point) for point in local]
+        pose = space.pose_at_angle(ARRAYS, angle, list(local.values()), at, towards)
+    elif angle is None and len(known) > 1:
+        first, second = known[:2]
+        ends = local[first], local[second], guess.points[first], guess.points[second]
+        pose = space.righted(ARRAYS, space.pose_by_two_points(ARRAYS, *ends))
+    if pose is None:
         return False
-    if angle is None:
-        inside = subtract(local[known[1]], local[known[0]])
-        outside = subtract(guess.points[known[1]], guess.points[known[0]])
-        angle = float(np.arctan2(outside[1], outside[0]) - np.arctan2(inside[1], inside[0]))
-    rotor = (cos(angle), sin(angle))
-    arm = turned(local[known[0]], rotor)
-    guess.poses[link] = Pose(subtract(guess.points[known[0]], arm), rotor)
-    guess.angles[link] = angle
-    for point, inside in local.items():
-        guess.points.setdefault(point, add(place(guess.poses[link], inside), (0.0, 0.0)))
+    guess.poses[link] = pose
+    if link in numbers.ends and is_measured(numbers, guess, link):
+        cosine, sine = rotor_of_angle(ARRAYS, numbers, guess, link)
+        near = angle or 0.0
+        guess.angles[link] = near + remainder(float(np.arctan2(sine, cosine)) - near, tau)
+    for point, at_rest in local.items():
+        if point not in guess.points:
+            guess.points[point] = space.place(ARRAYS, pose, at_rest)
     return True
 
 
@@ -128,10 +135,11 @@ def _missing(mechanism: Mechanism, group: Newton, left: list[str]) -> InputError
 
 
 def _does_not_close(system: System, first: float, guess: Positions) -> InputError:
+    gap = system.gap(system.state_of(guess))[0] * system.numbers.scale
     return InputError(
         name_of(system.group),
-        _("no position that closes lies near the initial angles: they leave a gap of {gap:.3g} m").format(
-            gap=float(system.gap(system.state_of(guess))[0] * system.numbers.scale)
+        _("no position that closes lies near the initial angles: they leave a gap of {gap}").format(
+            gap=f"{float(gap):.3g} {system.numbers.space.unit}"
         ),
         _("correct the initial angles, a length, or the start of the drive"),
     )

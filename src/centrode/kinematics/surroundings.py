@@ -126,4 +126,5 @@ def shaped(at: Positions, names: Newton, shape: tuple[int, ...], into: Positions
         into.points[name] = folded.points[name]
     for name in names.links:
         into.poses[name] = folded.poses[name]
-        into.angles[name] = folded.angles[name]
+        if name in folded.angles:
+            into.angles[name] = folded.angles[name]
