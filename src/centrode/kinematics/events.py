@@ -19,7 +19,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.continuation import REACH, Continuation, Smooth
+from centrode.kinematics.continuation import REACH, Continuation, Rough
 from centrode.kinematics.evaluate import Kinematics, Reached
 from centrode.kinematics.paths import JETS, Path
 from centrode.kinematics.roots import bracketed_roots
@@ -70,16 +70,23 @@ class Scan:
     def run(self) -> Positions:
         """Find all events, record them in the branches, and return the positions on the mesh as plain arrays."""
         groups = self.kinematics.structure.groups
-        last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim, Newton))), default=0)
+        last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
         along = self.mesh[None, :]
         with np.errstate(all="ignore"):
             at = self.kinematics.frame(JETS, Jet.variable(along, 1))
             with suppress(Reached):  # slopes are needed up to the last radicand, and not beyond
                 self.kinematics.advance(at, range(last + 1), JETS, _Searching(self, last))
+            for i in range(last, len(groups)):
+                if isinstance(groups[i], Newton):
+                    self.trace(i)
             plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
-            smooth = self.continuation.hooks(ARRAYS, along, None)
+            smooth = Rough(self.continuation, ARRAYS, along, None)
             self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, smooth)
         return plain
+
+    def trace(self, group: int) -> None:
+        """Follow a group of higher class over the mesh."""
+        self.continuation.trace(group, (float(self.mesh[0]), float(self.mesh[-1])))
 
     def find(self, group: int, radicand: Jet) -> None:
         """Record where a group's radicand is zero."""
@@ -172,7 +179,7 @@ class Scan:
         return guard_with_bound(self.continuation, group, lanes, at)
 
 
-class _Searching(Smooth):
+class _Searching(Rough):
     """Looks for the events of every group before it asks for its sign; goes no further than the last radicand."""
 
     def __init__(self, scan: Scan, last: int) -> None:
@@ -187,9 +194,9 @@ class _Searching(Smooth):
         return super().root(group, radicand)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
-        self.continuation.trace(group, (float(self.scan.mesh[0]), float(self.scan.mesh[-1])))
         if group == self.last:
-            raise Reached(None)
+            raise Reached(None)  # no radicand at all
+        self.scan.trace(group)
         super().higher(group, m, at)
 
     def divisor(self, group: int, divisor: Number) -> Number:
