@@ -79,9 +79,17 @@ class Continuation:
             self._tracks[group], events = trace(around, first, branches.initial, extent, branches.smooth)
         branches.add(group, events)
 
-    def close(self, group: int, m: Namespace, at: Positions, parameter: Array, lanes: Lanes | None) -> Judged:
+    def close(
+        self,
+        group: int,
+        m: Namespace,
+        at: Positions,
+        parameter: Array,
+        lanes: Lanes | None,
+        rough: bool = False,
+    ) -> Judged:
         """Add what a group of higher class gives at parameters."""
-        return close(self._around(group), self._tracks[group], m, at, parameter, lanes)
+        return close(self._around(group), self._tracks[group], m, at, parameter, lanes, rough)
 
     def _around(self, group: int) -> Surroundings:
         return Surroundings(self.kinematics, group, self.hooks)
@@ -183,6 +191,13 @@ class Smooth(Hooks):
 
     def after(self, group: int, at: Positions) -> None:
         self.continuation.mend(group, at, self.parameter, self.lanes)
+
+
+class Rough(Smooth):
+    """The same for the mesh, on which places are looked at and not kept."""
+
+    def higher(self, group: int, m: Namespace, at: Positions) -> None:
+        self.judge(group, self.continuation.close(group, m, at, self.parameter, self.lanes, rough=True))
 
 
 def _inside(window: Window, along: Array, lanes: Lanes | None) -> Index | None:

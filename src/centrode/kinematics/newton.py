@@ -150,10 +150,10 @@ class System:
 
     def stacked(self, values: Sequence[Number]) -> Array:
         """Numbers as an array (k, numbers)."""
-        found = np.empty((self.places, len(values)))
-        for j, value in enumerate(values):
-            found[:, j] = value
-        return found
+        found = np.empty((len(values), self.places))
+        for row, value in zip(found, values, strict=True):
+            row[:] = value
+        return found.T
 
     def jets(self, known: Positions, state: Array, linear: Linear, order: int) -> Motion:
         """Taylor coefficients of the motion from a converged state, by the variable of the known jets."""
@@ -234,10 +234,10 @@ def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
     return Converged(state, found, sizes)
 
 
-def step_at(system: System, state: Array) -> tuple[Motion, Array]:
+def step_at(system: System, state: Array, linear: Linear | None = None) -> tuple[Motion, Array]:
     """A Newton step from a state, and its size."""
     at = system.at(ARRAYS, system.known, state)
-    linear = system.linear(at)
+    linear = system.linear(at) if linear is None else linear
     moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
     free = solved(linear.matrix, system.stacked(rest)[:, :, None])[:, :, 0]
     return Motion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
