@@ -195,7 +195,7 @@ def _turn_back(
         value = sum(whole[:, k] * share[:, None] ** k for k in range(6))
         parameter = here.parameter + value[:, -1]
         state = around.blank(lanes).righted(value[:, :-1])
-        limit = reach(around, lanes, here, here.along, parameter, state)
+        limit = reach(around, lanes, here, here.along, parameter, state, exact=True)
         with np.errstate(all="ignore"):
             change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / found.arc
         share = share + np.where(np.isfinite(change), np.clip(change, -0.1, 0.1), 0.0)

@@ -152,15 +152,16 @@ def _share(powers: Array, which: Lanes, wanted: Array) -> Array:
     rising = own[1:].sum(axis=0) > 0.0
     with np.errstate(all="ignore"):
         share = np.clip(wanted / own[1:].sum(axis=0), 0.0, 1.0)
+        going = np.ones(len(wanted), dtype=bool)
         for _step in range(HALVINGS):
             beyond = _horner(own, share) - wanted
             short = (beyond < 0.0) == rising
             low, high = np.where(short, share, low), np.where(short, high, share)
             better = share - beyond / _horner(slopes, share)
             better = np.where((better >= low) & (better <= high), better, 0.5 * (low + high))
-            change = np.max(np.abs(better - share), initial=0.0)
-            share = better
-            if change <= CLOSE:
+            change, share = np.abs(better - share), np.where(going, better, share)
+            going &= change > CLOSE  # each place stops by itself
+            if not going.any():
                 break
     return np.asarray(share, dtype=np.float64)
 
