@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.kinematics.newton import Motion, System, settled, size_of
+from centrode.kinematics.newton import Motion, System, settled, size_of, total
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.reduction import Linear, Shift, solved
 from centrode.kinematics.surroundings import Surroundings
@@ -68,7 +68,7 @@ class Places:
 
     def distance(self, numbers: Array) -> Array:
         """Distance of numbers (k, width + 1) along the curve's direction here."""
-        return np.asarray(np.sum(self.first * numbers, axis=1) / np.sum(self.first**2, axis=1))
+        return total(self.first * numbers) / total(self.first**2)
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def reach(
     first, second = _coefficients(around, lanes, parameter, state, slope, linear, follow, matrix)
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
     with np.errstate(all="ignore"):
-        length = np.sqrt(np.sum(slope * slope, axis=1))
+        length = np.sqrt(total(slope * slope))
         # the determinant bordered by the curve's own direction is that by the plane's, times their cosine
         size = np.linalg.det(matrix) * length
         places = Places(numbers, first / length[:, None], second, slope / length[:, None], size)
