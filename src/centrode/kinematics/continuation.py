@@ -25,7 +25,7 @@ from centrode.kinematics.surroundings import Surroundings
 from centrode.kinematics.tracing import trace
 from centrode.kinematics.tracks import Tracks
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import links_of, points_of
+from centrode.structure.groups import Newton, links_of, points_of
 from centrode.structure.positions import Positions, mapped_pose
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -38,6 +38,8 @@ WINDOW = 0.04
 """Half width of the mended stretch, in the path's units (rad for an angle)."""
 CLEAR = 6.0
 """The stretch keeps this many half widths away from what is not smooth: limits, other events of its group."""
+CLEAR_OF_HIGHER = 10.0
+"""The same for a group of higher class, which loses fewer digits: as much as one of its distance, not of its square."""
 REACH = 2.0 * WINDOW + CLEAR * WINDOW
 """How far beyond a sample events matter to it."""
 SIDE = 1.5 - 0.5 * np.cos((np.arange(6) + 0.5) * np.pi / 6)
@@ -131,7 +133,8 @@ class Continuation:
             and (event.group == group or (event.group < group and event.kind == "limit"))
             and abs(event.at - at) > 1e-9 * unit
         ]
-        return min(WINDOW * unit, min(others, default=np.inf) / CLEAR)
+        higher = isinstance(self.kinematics.structure.groups[group], Newton)
+        return min(WINDOW * unit, min(others, default=np.inf) / (CLEAR_OF_HIGHER if higher else CLEAR))
 
     def _replace(
         self, group: int, at: Positions, shape: tuple[int, ...], window: int, index: Index, offsets: Array

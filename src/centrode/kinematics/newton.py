@@ -34,6 +34,8 @@ Namespace: TypeAlias = Any
 
 STEPS = 12
 """Newton steps before a place counts as not converged."""
+COARSE = 1e-6
+"""Greatest step of rounding alone, next to a limit."""
 SMALL = 1e-9
 """After a step this small (in rad, or in the greatest length) the next is below rounding: convergence is quadratic."""
 
@@ -58,6 +60,14 @@ class System:
     numbers: Dimensions
     known: Positions
     places: int
+
+    def taken(self, which: npt.NDArray[np.intp]) -> System:
+        """The same equations at some of the places."""
+
+        def take(x: Number) -> Number:
+            return x if np.ndim(x) == 0 else x[which]
+
+        return System(self.group, self.numbers.mapped(take), self.known.mapped(take), len(which))
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -216,21 +226,23 @@ class Converged:
 def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
     """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
     state = start.copy()
-    active = np.isfinite(start).all(axis=1)
+    going = np.nonzero(np.isfinite(start).all(axis=1))[0]
     found = np.zeros(len(start), dtype=bool)
     sizes = np.full((steps, len(start)), np.nan)
     last = np.full(len(start), np.inf)
     for k in range(steps):
-        if not active.any():
+        if not len(going):
             break
-        motion, size = step_at(system, state)
-        sizes[k] = np.where(active, size, np.nan)
-        good = active & np.isfinite(size)
-        state = np.where(good[:, None], system.moved(state, motion), state)
-        done = good & settled(last, size)
-        found |= done
-        active = good & ~done & (size < 1.0e3)
-        last = size
+        part = system if len(going) == len(start) else system.taken(going)
+        motion, size = step_at(part, state[going])
+        sizes[k, going] = size
+        good = np.isfinite(size) & (size < 1.0e3)
+        state[going[good]] = part.moved(state[going], motion)[good]
+        # next to a limit rounding makes steps that are not small; they do not shrink any more
+        done = good & (settled(last[going], size) | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE)))
+        last[going] = size
+        found[going[done]] = True
+        going = going[good & ~done]
     return Converged(state, found, sizes)
 
 
@@ -262,6 +274,14 @@ def settled(last: Array, size: Array) -> Mask:
     with np.errstate(all="ignore"):
         next_size = size * (size / last) ** 2
         return np.asarray((size <= SMALL) & ((last <= SMALL) | (next_size <= UNIT_ROUNDOFF)))
+
+
+def total(columns: Array) -> Array:
+    """Sum over the second axis, added up in one order whatever the number of places."""
+    found = columns[:, 0].copy()
+    for j in range(1, columns.shape[1]):
+        found += columns[:, j]
+    return found
 
 
 def times(matrix: Array, vector: Array) -> Array:

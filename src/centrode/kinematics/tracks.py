@@ -18,8 +18,6 @@ Lanes: TypeAlias = npt.NDArray[np.intp]
 Mask: TypeAlias = npt.NDArray[np.bool_]
 End: TypeAlias = Literal["on", "limit", "lost"]
 
-AT_THE_LIMIT = 64.0
-"""A place this many units of rounding away from a limit is the limit itself."""
 HALVINGS, CLOSE = 60, 1e-13
 
 
@@ -40,11 +38,15 @@ class Piece:
 
 @dataclass
 class Trail:
-    """The pieces in one sense of the path, outward from the initial position, and how they end."""
+    """The pieces in one sense of the path, outward from the initial position, and how they end.
+
+    A place closer than `margin` to a limit is the limit itself.
+    """
 
     pieces: list[Piece] = field(default_factory=list)
     end: End = "on"
     limit: float = np.nan
+    margin: float = 0.0
     state: Array | None = None
 
 
@@ -72,6 +74,7 @@ class Tracks:
     edges: list[Array]
     first: Lanes
     limits: Array
+    margins: Array
     at_limit: Array
     followed: Array
 
@@ -80,7 +83,8 @@ class Tracks:
         """Tracks from trails; a mechanism without pieces has no track."""
         pieces: list[Piece] = []
         edges, first = [], []
-        limits, at_limit = np.full((len(ahead), 2), np.nan), np.full((len(ahead), 2, width), np.nan)
+        limits, margins = np.full((len(ahead), 2), np.nan), np.zeros((len(ahead), 2))
+        at_limit = np.full((len(ahead), 2, width), np.nan)
         followed = np.full((len(ahead), 2), np.nan)
         for lane, trails in enumerate(zip(behind, ahead, strict=True)):
             own = [*reversed(trails[0].pieces), *trails[1].pieces]
@@ -91,7 +95,8 @@ class Tracks:
                 if trail.pieces:
                     followed[lane, side] = trail.pieces[-1].last
                 if trail.end == "limit" and trail.state is not None:
-                    limits[lane, side], at_limit[lane, side] = trail.limit, trail.state
+                    limits[lane, side], margins[lane, side] = trail.limit, trail.margin
+                    at_limit[lane, side] = trail.state
         coefficients = np.array([piece.coefficients for piece in pieces]).reshape(-1, 6, width + 1)
         return cls(
             len(ahead),
@@ -101,6 +106,7 @@ class Tracks:
             edges,
             np.array(first, dtype=np.intp),
             limits,
+            margins,
             at_limit,
             followed,
         )
@@ -138,7 +144,7 @@ class Tracks:
         for side in (0, 1):
             place = self.limits[lanes, side]
             with np.errstate(invalid="ignore"):
-                here = np.abs(parameter - place) <= AT_THE_LIMIT * np.spacing(np.maximum(np.abs(place), 1e-3))
+                here = np.abs(parameter - place) <= self.margins[lanes, side]
             state[here] = self.at_limit[lanes[here], side]
             limit |= here
         return limit
@@ -149,18 +155,19 @@ def _share(powers: Array, which: Lanes, wanted: Array) -> Array:
     own = powers[:, which]
     slopes = own[1:] * np.arange(1.0, len(own))[:, None]
     low, high = np.zeros(len(wanted)), np.ones(len(wanted))
-    rising = own[1:].sum(axis=0) > 0.0
+    whole = _horner(own[1:], np.ones(len(wanted)))
     with np.errstate(all="ignore"):
-        share = np.clip(wanted / own[1:].sum(axis=0), 0.0, 1.0)
+        share = np.clip(wanted / whole, 0.0, 1.0)
+        going = np.ones(len(wanted), dtype=bool)
         for _step in range(HALVINGS):
             beyond = _horner(own, share) - wanted
-            short = (beyond < 0.0) == rising
+            short = (beyond < 0.0) == (whole > 0.0)
             low, high = np.where(short, share, low), np.where(short, high, share)
             better = share - beyond / _horner(slopes, share)
             better = np.where((better >= low) & (better <= high), better, 0.5 * (low + high))
-            change = np.max(np.abs(better - share), initial=0.0)
-            share = better
-            if change <= CLOSE:
+            change, share = np.abs(better - share), np.where(going, better, share)
+            going &= change > CLOSE  # each place stops by itself
+            if not going.any():
                 break
     return np.asarray(share, dtype=np.float64)
 
