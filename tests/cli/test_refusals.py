@@ -239,7 +239,7 @@ CHANGES = {
     ),
     "sphere": (
         'title = "Press"', 'title = "Press"\nspace = "sphere"',
-        "space: spherical linkages are not computed yet; leave it out",
+        "[links.AB]: length must be shorter than half a great circle, got 3.5; stay below 180 deg",
     ),
     "cylinder": (
         'link = "OA"', 'distance = ["A", "D"]',
