@@ -204,3 +204,21 @@ def test_a_group_of_higher_class_with_a_drive_between_moving_links() -> None:
         assert interval == pytest.approx((least, greatest), abs=1e3 * EPS)
     with pytest.raises(ct.NotComputedYet, match="higher class"):
         ct.reachable_region(mechanism)
+
+
+def test_too_far_to_be_brought_there() -> None:
+    with pytest.raises(ct.InputError, match="reaches too far"):
+        ct.limits(ct.example("geared-five-bar"), about=1e7)
+
+
+@pytest.mark.parametrize(("start", "sense"), [(4.0, 1.0), (2.0, -1.0)])
+def test_from_a_dead_point(start: float, sense: float) -> None:
+    """A drive that begins at its limit moves to the side on which the mechanism closes."""
+    slider = ct.Mechanism(
+        frame={"points": {"O": [0.0, 0.0]}},
+        links={"OA": {"length": 1.0}, "AB": {"length": 3.0}},
+        guides=[{"point": "B", "on": "frame", "through": "O", "direction": [1, 0]}],
+        drives=[{"guide": "B", "start": start, "speed": -sense}],
+        assembly={"sides": {"A": "left"}},
+    )
+    assert ct.limits(slider).interval == pytest.approx((2.0, 4.0), abs=16 * EPS)
