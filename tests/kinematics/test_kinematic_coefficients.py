@@ -193,7 +193,27 @@ def rates(mechanism: ct.Mechanism, time: Array) -> tuple[Array, Array]:
     return tuple(np.stack([law.derivative(k) + 0.0 * time for law in laws], axis=-1) for k in (1, 2))
 
 
+def spherical() -> ct.Mechanism:
+    """Two cranks and two rods on the sphere."""
+    return ct.Mechanism(
+        space="sphere",
+        frame={"points": {"A": [0.0, 0.0], "D": ["80 deg", 0.0]}},
+        links={
+            "AB": {"length": "30 deg", "reference": ["A", "D"]},
+            "BC": {"length": "70 deg"},
+            "CE": {"length": "60 deg"},
+            "DE": {"length": "35 deg", "reference": ["D", "A"]},
+        },
+        drives=[
+            {"link": "AB", "start": "60 deg", "law": "sin(t)"},
+            {"link": "DE", "start": "-70 deg", "speed": -0.5},
+        ],
+        assembly={"sides": {"C": "left"}},
+    )
+
+
 MECHANISMS = {
+    "sphere": spherical,
     "arm": lambda: arm(True),
     "crane": crane,
     "five-bar": five_bar,
@@ -211,8 +231,8 @@ def test_they_add_up_to_velocities_and_accelerations(name: str) -> None:
     motion = ct.motion(mechanism, at=TIMES)
     assert statuses(data) == statuses(motion)
     rate, second_rate = rates(mechanism, TIMES)
-    for prefix, end in (("", ("point", "axis")), ("angular_", ("link",)), ("slide_", ("guide",))):
-        if not motion.sizes[end[0]]:
+    for prefix, of in (("", "point"), ("angular_", "link"), ("joint_", "joint"), ("slide_", "guide")):
+        if not motion.sizes.get(of):
             continue
         first = data[f"{prefix}velocity_coefficient"].to_numpy()
         second = data[f"{prefix}acceleration_coefficient"].to_numpy()

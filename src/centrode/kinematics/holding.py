@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import tau
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,6 +21,7 @@ from centrode.kinematics.pace import Pace
 from centrode.kinematics.paths import DrivenBy, Path, unit_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.sampling import ORDERS, Samples, evaluate_columns
+from centrode.kinematics.spans import MAX_TURNS
 from centrode.laws import Uniform
 from centrode.locale import _
 from centrode.model.mechanism import Drive, Mechanism
@@ -135,6 +137,12 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
         DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id]) for one in old.driven
     )
     fastest = max(abs(ways[one.drive.id]) / unit_of(one.drive, old.scale) for one in driven)
+    if fastest > tau * MAX_TURNS:
+        raise InputError(
+            "hold",
+            _("it reaches too far: {turns:.3g} turns").format(turns=fastest / tau),
+            _("ask for at most {most:g}").format(most=MAX_TURNS),
+        )
     pace = Pace.of(lambda times: np.full(len(times), fastest))
     path = Path(driven, 0.0, 1.0, pace.unit_at(0.0), old.scale, pace)
     kinematics = replace(ready.kinematics, path=path)
