@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -64,7 +66,7 @@ def test_convergence_is_quadratic(prepared: Ready) -> None:
         assert found.found.all()
         steps = found.sizes[:, 0][np.isfinite(found.sizes[:, 0])]
         curvature = 20.0 / np.min(np.linalg.svd(linear.matrix[0], compute_uv=False))
-        for before, after in zip(steps, steps[1:], strict=False):
+        for before, after in pairwise(steps):
             assert after <= curvature * before**2 + 100 * EPS * curvature
         assert len(steps) <= 6
 
@@ -97,7 +99,8 @@ def test_matrix_is_the_derivative_of_the_residual(prepared: Ready) -> None:
         free = [1.0 if i == j else 0.0 for i in range(system.free)]
         motion = linear.whole(still, free)
         jets = Motion(
-            {e: tuple(Jet((0.0, x)) for x in shift) for e, shift in motion.items()}, [Jet((0.0, x)) for x in free]
+            {e: tuple(Jet((0.0, x)) for x in shift) for e, shift in motion.items()},
+            [Jet((0.0, x)) for x in free],
         )
         values = system.residual(JETS, system.at(JETS, system.known, state, jets))
         for i, k in enumerate(linear.pattern.kept):
