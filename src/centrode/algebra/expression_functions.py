@@ -46,7 +46,7 @@ class Expressions:
         return DERIVED["atan"](self, x)
 
     def abs(self, x: Operand) -> Operand:
-        return abs(x)
+        return operated("abs", x) if isinstance(x, Node) else math.fabs(x)
 
     def sign(self, x: Operand) -> Number:
         # zeros and NaN stay what they are
@@ -57,6 +57,15 @@ class Expressions:
 
     def max(self, x: Operand, y: Operand) -> Operand:
         return operated("maximum", x, y)
+
+    def least(self, x: Operand, y: Operand) -> Operand:
+        return operated("least", x, y)
+
+    def greatest(self, x: Operand, y: Operand) -> Operand:
+        return operated("greatest", x, y)
+
+    def is_number(self, x: Operand) -> Node:
+        return operated("equal", x, x)
 
     def less(self, x: Operand, y: Operand) -> Node:
         return operated("less", x, y)

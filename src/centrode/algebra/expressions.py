@@ -18,8 +18,6 @@ from typing import Any, TypeAlias
 from centrode.algebra.folding import FOLDED, exact_reciprocal
 from centrode.algebra.operations import CONSTANT, OPERATIONS, VARIABLE
 
-Operand: TypeAlias = "Node | float"
-
 
 class Node:
     """An expression: variable, constant, or an operation on other nodes.
@@ -101,6 +99,8 @@ class Node:
         return operated("abs", self)
 
 
+Operand: TypeAlias = Node | float
+
 _known: weakref.WeakValueDictionary[bytes, Node] = weakref.WeakValueDictionary()
 _one_at_a_time = threading.Lock()
 
@@ -162,7 +162,9 @@ def _check_kinds(operation: str, nodes: tuple[Node, ...]) -> None:
     for i, node in enumerate(nodes):
         condition = expected.of_conditions or (operation == "where" and i == 0)
         if node.is_condition is not condition:
-            raise TypeError(f"{operation} takes a {'condition' if condition else 'number'} as argument {i + 1}")
+            raise TypeError(
+                f"{operation} takes a {'condition' if condition else 'number'} as argument {i + 1}"
+            )
 
 
 def _rewritten(operation: str, nodes: tuple[Node, ...]) -> Node | None:
@@ -170,7 +172,8 @@ def _rewritten(operation: str, nodes: tuple[Node, ...]) -> Node | None:
     if operation in FOLDED and all(x.operation == CONSTANT for x in nodes):
         return constant(FOLDED[operation](*(x.detail for x in nodes)))
     rule = _RULES.get(operation)
-    return rule(*nodes) if rule else None
+    found: Node | None = rule(*nodes) if rule else None
+    return found
 
 
 def _negated(x: Node) -> Node | None:
@@ -267,6 +270,8 @@ _RULES: dict[str, Any] = {
     "cos": _cos,
     "minimum": _extreme,
     "maximum": _extreme,
+    "least": _extreme,
+    "greatest": _extreme,
     "both": _extreme,
     "either": _extreme,
     "opposite": _opposite,

@@ -1,4 +1,4 @@
-"""Operations on constants as the machine would do them: quotients by zero and roots of negative numbers are no errors."""
+"""Operations on constants as the machine does them: quotients by zero and roots below zero are no errors."""
 
 from __future__ import annotations
 
@@ -32,6 +32,16 @@ def maximum(a: float, b: float) -> float:
     return a if a > b or a != a else b
 
 
+def least(a: float, b: float) -> float:
+    """The lesser of two numbers; the other one if one is NaN."""
+    return a if a < b or b != b else b
+
+
+def greatest(a: float, b: float) -> float:
+    """The greater of two numbers; the other one if one is NaN."""
+    return a if a > b or b != b else b
+
+
 FOLDED: Mapping[str, Callable[..., float]] = {
     "add": lambda a, b: a + b,
     "subtract": lambda a, b: a - b,
@@ -42,6 +52,8 @@ FOLDED: Mapping[str, Callable[..., float]] = {
     "sqrt": square_root,
     "minimum": minimum,
     "maximum": maximum,
+    "least": least,
+    "greatest": greatest,
 }
 """Operations that are rounded correctly everywhere: their value does not depend on who computes it, or when."""
 

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from centrode.algebra.expression_functions import EXPRESSIONS as m
+from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, operated
 from centrode.algebra.graphs import ordered
 
+m = EXPRESSIONS
 Rule = Callable[..., tuple[Operand | None, ...]]
 
 
@@ -27,7 +28,9 @@ def gradient(output: Node, variables: Sequence[Node]) -> list[Operand]:
     for node in reversed(order):
         if node not in by or node not in needed or not node.arguments or node.is_condition:
             continue
-        for argument, factor in zip(node.arguments, _RULES[node.operation](node, *node.arguments), strict=True):
+        for argument, factor in zip(
+            node.arguments, _RULES[node.operation](node, *node.arguments), strict=True
+        ):
             if factor is not None and argument in needed:
                 _collect(by, argument, _chained(node, by[node], factor, node in guarded))
     return [by.get(x, 0.0) for x in variables]
@@ -85,6 +88,16 @@ def _power(node: Node, x: Node, exponent: Node) -> tuple[Operand, ...]:
     return exponent * operated("power", x, exponent - 1.0), node * m.log(x)
 
 
+def _least(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    first = m.either(m.less(a, b), m.not_equal(b, b))
+    return first, m.opposite(first)
+
+
+def _greatest(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    first = m.either(m.less(b, a), m.not_equal(b, b))
+    return first, m.opposite(first)
+
+
 def _lesser(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
     first = m.either(m.less(a, b), m.not_equal(a, a))
     return first, m.opposite(first)
@@ -95,7 +108,7 @@ def _greater(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
     return first, m.opposite(first)
 
 
-_SELECTIONS = frozenset({"where", "minimum", "maximum"})
+_SELECTIONS = frozenset({"where", "minimum", "maximum", "least", "greatest"})
 _RULES: Mapping[str, Rule] = {
     "add": lambda node, a, b: (1.0, 1.0),
     "subtract": lambda node, a, b: (1.0, -1.0),
@@ -112,6 +125,8 @@ _RULES: Mapping[str, Rule] = {
     "power": _power,
     "minimum": _lesser,
     "maximum": _greater,
+    "least": _least,
+    "greatest": _greatest,
     "where": lambda node, condition, a, b: (None, condition, m.opposite(condition)),
 }
 """For each operation its partial derivative by each argument; a condition stands for 1 where it holds, else 0."""

@@ -33,6 +33,8 @@ FUNCTIONS: Mapping[str, Callable[..., Number]] = {
     "power": np.power,
     "minimum": np.minimum,
     "maximum": np.maximum,
+    "least": np.fmin,
+    "greatest": np.fmax,
     "less": np.less,
     "less_equal": np.less_equal,
     "equal": np.equal,
@@ -56,7 +58,7 @@ def evaluate(
             if node.operation == VARIABLE:
                 found[node] = np.asarray(values[str(node.detail)], number)
             elif node.operation == CONSTANT:
-                found[node] = np.dtype(number).type(node.detail)
+                found[node] = np.asarray(node.detail, number)[()]
             else:
                 found[node] = FUNCTIONS[node.operation](*(found[x] for x in node.arguments))
             for x in node.arguments:
@@ -85,7 +87,9 @@ def run_on_arrays(
         found = evaluate(scan.graph, _values(scan, call, slice(k, k + 1), rows), number)
         for i, name in enumerate(scan.outputs):
             call.outputs[i, k] = found[name]
-        rows = np.array([np.broadcast_to(found[NEXT + name], (1, call.lanes))[0] for name in scan.state], number)
+        rows = np.array(
+            [np.broadcast_to(found[NEXT + name], (1, call.lanes))[0] for name in scan.state], number
+        )
     return Scanned(call.outputs, rows)
 
 

@@ -52,7 +52,7 @@ class Graph:
     def substituted(self, values: Mapping[str, Operand]) -> Graph:
         """The graph with expressions or numbers in the place of some variables."""
 
-        def replaced(node: Node) -> Operand | None:
+        def replaced(node: Node, _arguments: tuple[Node, ...]) -> Operand | None:
             return values.get(str(node.detail)) if node.operation == VARIABLE else None
 
         return Graph(rebuilt(self.outputs, replaced))
@@ -75,16 +75,20 @@ def ordered(roots: Iterable[Node]) -> list[Node]:
 
 
 def rebuilt(
-    outputs: Mapping[str, Node], replaced: Callable[[Node], Operand | None]
+    outputs: Mapping[str, Node], replaced: Callable[[Node, tuple[Node, ...]], Operand | None]
 ) -> dict[str, Node]:
-    """Outputs with some nodes replaced, and everything above these built anew."""
+    """Outputs with some nodes replaced, and everything above these built anew.
+
+    `replaced(node, arguments)` gives what stands for a node, its arguments being rebuilt already, or None.
+    """
     new: dict[Node, Node] = {}
     for node in ordered(outputs.values()):
-        other = replaced(node)
+        arguments = tuple(new[x] for x in node.arguments)
+        other = replaced(node, arguments)
         if other is not None:
             new[node] = as_node(other)
-        elif any(new[x] is not x for x in node.arguments):
-            new[node] = operated(node.operation, *(new[x] for x in node.arguments))
+        elif arguments != node.arguments:
+            new[node] = operated(node.operation, *arguments)
         else:
             new[node] = node
     return {name: new[node] for name, node in outputs.items()}
@@ -108,4 +112,4 @@ def split(graph: Graph, names: Iterable[str], prefix: str) -> tuple[Graph, Graph
     tops |= {node: None for node in graph.outputs.values() if node in alone}
     parts = {f"{prefix} {i}": x for i, x in enumerate(x for x in tops if x.arguments and not x.is_condition)}
     places = {node: variable(name) for name, node in parts.items()}
-    return Graph(parts), Graph(rebuilt(graph.outputs, places.get))
+    return Graph(parts), Graph(rebuilt(graph.outputs, lambda node, _arguments: places.get(node)))

@@ -45,6 +45,8 @@ OPERATIONS: Mapping[str, Operation] = {
     "power": Operation(2, "**", 8),
     "minimum": Operation(2),
     "maximum": Operation(2),
+    "least": Operation(2),
+    "greatest": Operation(2),
     "less": Operation(2, "<", 4, condition=True),
     "less_equal": Operation(2, "<=", 4, condition=True),
     "equal": Operation(2, "==", 4, condition=True, commutes=True),
@@ -54,4 +56,7 @@ OPERATIONS: Mapping[str, Operation] = {
     "opposite": Operation(1, "not ", 3, condition=True, of_conditions=True),
     "where": Operation(3),
 }
-"""Names are those of the operations in the listing, in counts, and of the functions that carry them out."""
+"""Names are those of the operations in the listing, in counts, and of the functions that carry them out.
+
+Of two numbers one of which is NaN, `minimum` and `maximum` are NaN, `least` and `greatest` the other one.
+"""

@@ -110,9 +110,9 @@ def call_of(
 
     Parameters
     ----------
-    parameters : (parameters, lanes); may be left out if there are none
+    parameters : (parameters, lanes), or (parameters, 1) for all lanes; may be left out if there are none
     inputs : (inputs, steps); may be left out if there are none
-    state : (states, lanes), before the first step; is left as it is
+    state : (states, lanes) or (states, 1), before the first step; is left as it is
     out : (outputs, steps, lanes), written to if given; its last axis has to be contiguous
     steps : how many, if there are no inputs to tell
     """
@@ -150,5 +150,8 @@ def _rows(names: tuple[str, ...], values: npt.ArrayLike | None, number: npt.DTyp
 def _length(what: str, arrays: Sequence[Array], otherwise: int) -> int:
     lengths = {rows.shape[1] for rows in arrays if len(rows)} or {otherwise}
     if len(lengths) > 1:
+        lengths -= {1}  # one for all
+    if len(lengths) > 1:
         raise ValueError(f"numbers of {what} differ: {sorted(lengths)}")
-    return lengths.pop()
+    (length,) = lengths
+    return int(length)

@@ -7,6 +7,7 @@ from collections import OrderedDict
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,10 @@ from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph, split
 from centrode.algebra.machine_code import cache
 from centrode.algebra.machine_code.compiling import VERSIONS, Loaded, loaded, object_code
+from centrode.algebra.machine_code.language import Vector
 from centrode.algebra.machine_code.loops import Shape, function_text
+from centrode.algebra.machine_code.relaxing import with_reciprocals
 from centrode.algebra.machine_code.target import Target, host
-from centrode.algebra.machine_code.text import Vector
 from centrode.algebra.scans import Array, Call, Scan, Scanned, call_of
 
 NUMBERS = {np.dtype(np.float64): "double", np.dtype(np.float32): "float"}
@@ -86,9 +88,7 @@ class Kernel:
         if not self.table.outputs:
             return call
         inside = self.shape.lanes_inside
-        names, rows = (
-            (self.scan.parameters, call.parameters) if inside else (self.scan.inputs, call.inputs)
-        )
+        names, rows = (self.scan.parameters, call.parameters) if inside else (self.scan.inputs, call.inputs)
         found = evaluate(self.table, dict(zip(names, rows, strict=True)), self.number)
         more = np.concatenate([rows, np.stack(list(found.values()))])
         return replace(call, parameters=more) if inside else replace(call, inputs=more)
@@ -101,7 +101,7 @@ class Kernel:
         bounds = [i * length // count for i in range(count + 1)]
         if not inside:
             bounds = [bound * width for bound in bounds[:-1]] + [call.lanes]
-        for first, last in zip(bounds[:-1], bounds[1:], strict=True):
+        for first, last in pairwise(bounds):
             some = slice(first, last)
             if inside:
                 yield replace(call, inputs=call.inputs[:, some], outputs=call.outputs[:, some]), state
@@ -122,7 +122,7 @@ def kernel_of(
     number: npt.DTypeLike = np.float64,
     width: int | None = None,
     lanes_inside: bool = False,
-    fused: bool = False,
+    relaxed: bool = False,
     target: Target | None = None,
 ) -> Kernel:
     """The kernel of a scan, from memory or disk if it has been compiled before.
@@ -132,7 +132,7 @@ def kernel_of(
     number : float64 or float32
     width : numbers in a vector; what the machine's registers hold if left out
     lanes_inside : take every step along all lanes; only for scans without a state
-    fused : a product and the sum behind it may be rounded once, where no status depends on them
+    relaxed : what no status depends on may be rounded otherwise than on NumPy (see `relaxing`); faster
     target : the machine to compile for; this one if left out
     """
     machine = target or host()
@@ -140,7 +140,7 @@ def kernel_of(
     vector = replace(vector, width=width or machine.width(vector.bits))
     if lanes_inside and scan.state:
         raise ValueError("a scan with a state takes its steps inside")
-    shape = Shape(vector, machine.has_fma, lanes_inside, fused)
+    shape = Shape(vector, machine.has_fma, lanes_inside, relaxed)
     key = (scan.key, shape, machine)
     with _one_at_a_time:
         if key in _remembered:
@@ -169,6 +169,8 @@ def _compiled(scan: Scan, shape: Shape, number: np.dtype[Any], machine: Target) 
         parameters=scan.parameters + more if shape.lanes_inside else scan.parameters,
         inputs=scan.inputs if shape.lanes_inside else scan.inputs + more,
     )
+    if shape.relaxed:
+        reduced = with_reciprocals(reduced, reduced.parameters if shape.lanes_inside else reduced.inputs)
     text = function_text(reduced, shape)
     return Kernel(scan, table, reduced, shape, number, _function(text, machine))
 

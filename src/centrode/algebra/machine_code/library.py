@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from centrode.algebra.machine_code.text import Code, Value
+from centrode.algebra.machine_code.language import Code, Value
 
 FUNCTIONS = {"exp": "exp", "log": "log", "power": "pow"}
 """Operations that are always left to the C library, by its names."""

@@ -11,9 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from centrode.algebra.expressions import Node, variable
-from centrode.algebra.machine_code.decisions import behind_decisions
+from centrode.algebra.machine_code.language import Block, Code, Value, Vector
 from centrode.algebra.machine_code.operating import Operating
-from centrode.algebra.machine_code.text import Block, Code, Value, Vector
+from centrode.algebra.machine_code.relaxing import behind_decisions
 from centrode.algebra.scans import Scan
 
 FUNCTION = "centrode_scan"
@@ -23,7 +23,7 @@ ARGUMENTS = (
     "ptr noalias %state", "i64 %state_row", "ptr noalias %new_state", "i64 %new_state_row",
     "ptr noalias %outputs", "i64 %output", "i64 %output_row",
 )  # fmt: skip
-"""Rows are distances in numbers from one row to the next: of `outputs` from one output, and from one step, to the next."""
+"""Rows are distances, in numbers, of one row from the next; `output` is that of one output from the next."""
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,13 @@ class Shape:
     vector : the type of its vectors
     has_fma : whether the machine rounds a product and a sum at once
     lanes_inside : whether the inner loop runs over lanes, else over steps
-    fused : whether operations behind all decisions may be rounded at once
+    relaxed : whether operations behind all decisions may be rounded otherwise
     """
 
     vector: Vector
     has_fma: bool
     lanes_inside: bool
-    fused: bool
+    relaxed: bool
 
 
 def function_text(scan: Scan, shape: Shape) -> str:
@@ -53,7 +53,7 @@ class _Writer:
     def __init__(self, scan: Scan, shape: Shape) -> None:
         self.scan, self.shape, self.block = scan, shape, Block()
         self.code = Code(self.block, shape.vector, shape.has_fma)
-        fused = behind_decisions(scan.graph) if shape.fused else frozenset()
+        fused = behind_decisions(scan.graph) if shape.relaxed else frozenset()
         self.operating = Operating(self.code, fused)
 
     def text(self) -> str:
@@ -80,7 +80,9 @@ class _Writer:
         outer = "%step" if inside else "%lane"
         self._axis(outer)
         self._take(outer)
-        early = self._independent_of(self.scan.parameters if inside else (*self.scan.inputs, *self.scan.state))
+        early = self._independent_of(
+            self.scan.parameters if inside else (*self.scan.inputs, *self.scan.state)
+        )
         self._compute([node for node in self.scan.graph.order if node in early])
         before_inner = block.label
         block.line("br label %inner")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from centrode.algebra.expressions import Node
+from centrode.algebra.machine_code.language import Code, Value
 from centrode.algebra.machine_code.library import FUNCTIONS, by_library
-from centrode.algebra.machine_code.text import Code, Value
 from centrode.algebra.machine_code.trigonometry import angle, sine_and_cosine
 from centrode.algebra.operations import CONSTANT
 
@@ -45,7 +45,8 @@ class Operating:
     def _computed(self, node: Node, arguments: list[Value]) -> Value:
         operation, code = node.operation, self.code
         if operation in ARITHMETIC:
-            return code.binary(ARITHMETIC[operation], *arguments, MAY_FUSE if node in self.fused else "")
+            a, b = arguments
+            return code.binary(ARITHMETIC[operation], a, b, MAY_FUSE if node in self.fused else "")
         if operation in COMPARISONS:
             return code.compare(COMPARISONS[operation], *arguments)
         if operation in LOGIC:
@@ -84,11 +85,12 @@ class Operating:
         return code.block.put(f"fptrunc {code.of_doubles().vector.name} {x} to {code.vector.name}")
 
 
-def _extreme(predicate: str) -> Callable[[Code, Value, Value], Value]:
-    """The first if it is less (greater) or NaN, else the second: so NaN wins."""
+def _extreme(predicate: str, nan_wins: bool) -> Callable[[Code, Value, Value], Value]:
+    """The first if it is less (greater), else the second, and what becomes of NaN."""
 
     def extreme(code: Code, a: Value, b: Value) -> Value:
-        first = code.logical("or", code.compare(predicate, a, b), code.compare("uno", a, a))
+        asked = a if nan_wins else b
+        first = code.logical("or", code.compare(predicate, a, b), code.compare("uno", asked, asked))
         return code.select(first, a, b)
 
     return extreme
@@ -102,8 +104,10 @@ _OTHERS: Mapping[str, Callable[..., Value]] = {
     "negate": lambda code, x: code.negate(x),
     "sqrt": lambda code, x: code.intrinsic("sqrt", x),
     "abs": lambda code, x: code.intrinsic("fabs", x),
-    "minimum": _extreme("olt"),
-    "maximum": _extreme("ogt"),
+    "minimum": _extreme("olt", nan_wins=True),
+    "maximum": _extreme("ogt", nan_wins=True),
+    "least": _extreme("olt", nan_wins=False),
+    "greatest": _extreme("ogt", nan_wins=False),
     "opposite": _opposite,
     "where": lambda code, condition, a, b: code.select(condition, a, b),
 }

@@ -48,5 +48,7 @@ def target_of(triple: str, cpu: str, features: dict[str, bool]) -> Target:
         return Target(triple, cpu, ",".join(words), NARROW, True)
     register = 512 if features.get("avx512f") else 256 if features.get("avx2") else NARROW
     if register == 512:
-        words.append("-prefer-256-bit")  # else LLVM splits vectors of 512 bits on most machines that have them
+        words.append(
+            "-prefer-256-bit"
+        )  # else LLVM splits vectors of 512 bits on most machines that have them
     return Target(triple, cpu, ",".join(words), register, bool(features.get("fma")))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from centrode.algebra.machine_code.language import Code, Value
 from centrode.algebra.machine_code.library import by_library_where
 from centrode.algebra.machine_code.polynomials import (
     ARCTANGENT,
@@ -16,7 +17,6 @@ from centrode.algebra.machine_code.polynomials import (
     QUARTER_TURN_SHORT,
     SINE,
 )
-from centrode.algebra.machine_code.text import Code, Value
 
 REDUCED = 1e5
 """Greatest magnitude that is reduced here: k stays below 2^17, so that its products with parts are exact."""
@@ -46,26 +46,31 @@ def sine_and_cosine(code: Code, x: Value) -> tuple[Value, Value]:
 
 
 def _reduced_by_fma(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
-    """x - k pi/2 as a sum of two; the first product and difference are exact together."""
+    """The rest x - k pi/2 as a sum of two; the first product and difference are exact together."""
     first, second, third = (code.constant(part) for part in QUARTER_TURN)
     back = code.negate(k)
     near = code.fma(back, first, x)
-    r = code.fma(back, second, near)
-    low = code.fma(back, second, code.subtract(near, r))
-    return _sum_of_two(code, r, code.fma(back, third, low))
+    product = code.multiply(k, second)
+    # what rounding took from the product
+    lost = code.fma(back, second, product)
+    r, low = _difference(code, near, product)
+    return _sum_of_two(code, r, code.fma(back, third, code.add(low, lost)))
 
 
 def _reduced(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
     """The same where the machine rounds products: parts so short that products with k are exact."""
     r, low = x, code.constant(0.0)
     for part in QUARTER_TURN_SHORT:
-        product = code.multiply(k, code.constant(part))
-        rest = code.subtract(r, product)
-        taken = code.subtract(r, rest)
-        # what rounding took from r - product
-        lost = code.subtract(code.subtract(r, code.add(rest, taken)), code.subtract(product, taken))
-        r, low = rest, code.add(low, lost)
+        r, lost = _difference(code, r, code.multiply(k, code.constant(part)))
+        low = code.add(low, lost)
     return _sum_of_two(code, r, low)
+
+
+def _difference(code: Code, a: Value, b: Value) -> tuple[Value, Value]:
+    """The difference of any two numbers, and what rounding took from it (Knuth)."""
+    rest = code.subtract(a, b)
+    taken = code.subtract(a, rest)
+    return rest, code.subtract(code.subtract(a, code.add(rest, taken)), code.subtract(b, taken))
 
 
 def _sum_of_two(code: Code, a: Value, b: Value) -> tuple[Value, Value]:

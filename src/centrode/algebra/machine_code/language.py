@@ -144,11 +144,11 @@ class Code:
         return self.block.put(f"call {v.name} {full}({', '.join(f'{v.name} {x}' for x in arguments)})")
 
     def multiply_add(self, a: Value, b: Value, c: Value) -> Value:
-        """a b + c, rounded once where the machine does that as fast."""
+        """The sum a b + c, rounded once where the machine does that as fast."""
         return self.intrinsic("fmuladd", a, b, c)
 
     def fma(self, a: Value, b: Value, c: Value) -> Value:
-        """a b + c, rounded once in any case."""
+        """The sum a b + c, rounded once in any case."""
         return self.intrinsic("fma", a, b, c)
 
     def compare(self, predicate: str, a: Value, b: Value) -> Value:
@@ -174,7 +174,9 @@ class Code:
 
     def whole(self, instruction: str, a: Value, constant: int) -> Value:
         """An operation of whole numbers with a constant."""
-        return self.block.put(f"{instruction} {self.vector.whole} {a}, {self.vector.whole_constant(constant)}")
+        return self.block.put(
+            f"{instruction} {self.vector.whole} {a}, {self.vector.whole_constant(constant)}"
+        )
 
     def polynomial(self, coefficients: Sequence[float], z: Value) -> Value:
         """Value of a polynomial by Horner's rule; the constant term comes first."""
