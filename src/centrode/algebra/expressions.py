@@ -132,7 +132,7 @@ def _operated(operation: str, a: Any, b: Any) -> Node:
     # what is neither node nor number (a jet, say) has operators of its own
     if isinstance(a, (Node, float, int)) and isinstance(b, (Node, float, int)):
         return operated(operation, a, b)
-    return NotImplemented
+    return NotImplemented  # type: ignore[no-any-return]
 
 
 def _node(operation: str, arguments: tuple[Node, ...], detail: str | float) -> Node:
