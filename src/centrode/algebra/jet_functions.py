@@ -94,6 +94,15 @@ class JetFunctions:
     def is_number(self, x: Number) -> Number:
         return self.base.is_number(_value(x))
 
+    def both(self, p: Number, q: Number) -> Number:
+        return self.base.both(p, q)
+
+    def either(self, p: Number, q: Number) -> Number:
+        return self.base.either(p, q)
+
+    def opposite(self, p: Number) -> Number:
+        return self.base.opposite(p)
+
     def where(self, condition: Number, x: Number, y: Number) -> Number:
         if not isinstance(x, Jet) and not isinstance(y, Jet):
             return self.base.where(condition, x, y)
