@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -94,11 +94,13 @@ def rebuilt(
     return {name: new[node] for name, node in outputs.items()}
 
 
-def split(graph: Graph, names: Iterable[str], prefix: str) -> tuple[Graph, Graph]:
+def split(
+    graph: Graph, names: Iterable[str], prefix: str, only: Container[str] | None = None
+) -> tuple[Graph, Graph]:
     """What depends on some variables alone, and the rest with that as variables.
 
     The first graph computes the greatest parts that depend on nothing but `names`; they are variables
-    `prefix 0`, `prefix 1` ... of the second.
+    `prefix 0`, `prefix 1` ... of the second. With `only`, parts are results of the operations it names.
     """
     wanted = frozenset(names)
     alone: set[Node] = set()
@@ -108,8 +110,12 @@ def split(graph: Graph, names: Iterable[str], prefix: str) -> tuple[Graph, Graph
                 alone.add(node)
         elif node.arguments and all(x in alone or x.operation == CONSTANT for x in node.arguments):
             alone.add(node)
-    tops = {x: None for node in graph.order if node not in alone for x in node.arguments if x in alone}
-    tops |= {node: None for node in graph.outputs.values() if node in alone}
+    if only is None:
+        tops = {x: None for node in graph.order if node not in alone for x in node.arguments if x in alone}
+        tops |= {node: None for node in graph.outputs.values() if node in alone}
+    else:
+        tops = {node: None for node in graph.order if node in alone and node.operation in only}
     parts = {f"{prefix} {i}": x for i, x in enumerate(x for x in tops if x.arguments and not x.is_condition)}
     places = {node: variable(name) for name, node in parts.items()}
-    return Graph(parts), Graph(rebuilt(graph.outputs, lambda node, _arguments: places.get(node)))
+    rest = Graph(rebuilt(graph.outputs, lambda node, _arguments: places.get(node)))
+    return Graph({name: node for name, node in parts.items() if name in rest.variables}), rest

@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.graph_arrays import evaluate
-from centrode.algebra.graphs import Graph, split
 from centrode.algebra.machine_code import cache
 from centrode.algebra.machine_code.compiling import VERSIONS, Loaded, loaded, object_code
 from centrode.algebra.machine_code.language import Vector
 from centrode.algebra.machine_code.loops import Shape, function_text
 from centrode.algebra.machine_code.relaxing import with_reciprocals
+from centrode.algebra.machine_code.tables import Tables
 from centrode.algebra.machine_code.target import Target, host
 from centrode.algebra.scans import Array, Call, Scan, Scanned, call_of
 
@@ -28,7 +27,6 @@ REMEMBERED = 256
 """Kernels kept in memory; the one that was longest not asked for goes first."""
 PARTS = 4
 """Parts of the work for each thread, so that none waits long for another."""
-TABLE = "table"
 
 _remembered: OrderedDict[tuple[Any, ...], Kernel] = OrderedDict()
 _one_at_a_time = threading.Lock()
@@ -41,13 +39,13 @@ class Kernel:
     Attributes
     ----------
     scan : what it computes
-    table : what depends on the inner loop alone; computed once a call, on NumPy
-    rest : the scan with that as further inputs (as parameters, if lanes are inside)
+    tables : what is computed before it runs
+    rest : what it computes in machine code
     shape : how the scan is carried out
     """
 
     scan: Scan
-    table: Graph
+    tables: Tables
     rest: Scan
     shape: Shape
     number: np.dtype[Any]
@@ -72,7 +70,7 @@ class Kernel:
         return self._run(call, threads)
 
     def _run(self, call: Call, threads: int) -> Scanned:
-        prepared = self._with_table(call)
+        prepared = self.tables.added(self.scan, call, self.number)
         state = np.empty_like(call.state)
         parts = list(self._parts(prepared, state, threads))
         if len(parts) == 1:
@@ -82,16 +80,6 @@ class Kernel:
                 for done in [pool.submit(self._call, *part) for part in parts]:
                     done.result()
         return Scanned(call.outputs, state)
-
-    def _with_table(self, call: Call) -> Call:
-        """The call with what depends on the inner loop alone."""
-        if not self.table.outputs:
-            return call
-        inside = self.shape.lanes_inside
-        names, rows = (self.scan.parameters, call.parameters) if inside else (self.scan.inputs, call.inputs)
-        found = evaluate(self.table, dict(zip(names, rows, strict=True)), self.number)
-        more = np.concatenate([rows, np.stack(list(found.values()))])
-        return replace(call, parameters=more) if inside else replace(call, inputs=more)
 
     def _parts(self, call: Call, state: Array, threads: int) -> Iterator[tuple[Call, Array]]:
         """The call in parts that do not touch one another."""
@@ -135,6 +123,8 @@ def kernel_of(
     relaxed : what no status depends on may be rounded otherwise than on NumPy (see `relaxing`); faster
     target : the machine to compile for; this one if left out
     """
+    if np.dtype(number) not in NUMBERS:
+        raise ValueError(f"numbers of a kernel are float64 or float32, not {np.dtype(number)}")
     machine = target or host()
     vector = Vector(NUMBERS[np.dtype(number)], 1)
     vector = replace(vector, width=width or machine.width(vector.bits))
@@ -161,18 +151,12 @@ def forget() -> None:
 
 
 def _compiled(scan: Scan, shape: Shape, number: np.dtype[Any], machine: Target) -> Kernel:
-    inner = scan.parameters if shape.lanes_inside else scan.inputs
-    table, rest = split(scan.graph, inner, TABLE)
-    more = tuple(table.outputs)
-    reduced = scan.with_graph(
-        rest,
-        parameters=scan.parameters + more if shape.lanes_inside else scan.parameters,
-        inputs=scan.inputs if shape.lanes_inside else scan.inputs + more,
-    )
+    tables = Tables.of(scan, shape.lanes_inside)
+    rest = tables.rest
     if shape.relaxed:
-        reduced = with_reciprocals(reduced, reduced.parameters if shape.lanes_inside else reduced.inputs)
-    text = function_text(reduced, shape)
-    return Kernel(scan, table, reduced, shape, number, _function(text, machine))
+        rest = with_reciprocals(rest, rest.parameters if shape.lanes_inside else rest.inputs)
+    text = function_text(rest, shape)
+    return Kernel(scan, tables, rest, shape, number, _function(text, machine))
 
 
 def _function(text: str, machine: Target) -> Loaded:
