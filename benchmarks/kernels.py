@@ -17,7 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 import centrode as ct
-from benchmarks import rivals
+from benchmarks import peer, rivals
+from benchmarks.motions import peer_of
 from benchmarks.table import Row
 from benchmarks.timing import best_times
 from centrode.algebra import machine_code
@@ -46,6 +47,7 @@ DIVIDED = 8
 PATH = 6
 """Place of a dyad's first coordinate among the outputs: a crank's two with their derivatives stand before it."""
 ROUNDS = 7
+OTHERS = ("gcc", "numba", "peer motion", "peer positions")
 
 
 @dataclass(frozen=True)
@@ -137,8 +139,13 @@ def _written(name: str, plan: Traced, write: float) -> Row:
         ):  # fmt: skip
             if there:
                 tasks[rival] = functools.partial(build(kernel.rest, Path(folder)), prepared)
+        if peer.PRESENT:
+            tasks |= _peers(name)
         times = best_times(tasks, rounds=ROUNDS)
     times["numpy"] *= LANES / few.shape[1]
+    for run in ("peer motion", "peer positions"):
+        if run in times:
+            times[run] *= LANES
     each = 1e9 / (LANES * SAMPLES)
     numbers = {
         "outputs": float(len(plan.outputs)),
@@ -146,8 +153,19 @@ def _written(name: str, plan: Traced, write: float) -> Row:
         "/ writing": times["kernel"] / times["write"],
         "numpy /": times["numpy"] / times["kernel"],
     }
-    numbers |= {f"{rival} /": times[rival] / times["kernel"] for rival in ("gcc", "numba") if rival in times}
+    numbers |= {f"{rival} /": times[rival] / times["kernel"] for rival in OTHERS if rival in times}
     return Row(f"{name}, written", numbers)
+
+
+def _peers(name: str) -> dict[str, Callable[[], object]]:
+    """The peer's compiled runs of one mechanism: with velocities and accelerations, and positions alone."""
+    mechanism = ct.example(name)
+    prepared, motion = ready(mechanism), ct.motion(mechanism, SAMPLES)
+    other = peer_of(prepared, prepared.structure.dimensions, motion)
+    return {
+        "peer motion": functools.partial(other.motion, SAMPLES),
+        "peer positions": functools.partial(other.positions, SAMPLES),
+    }
 
 
 def _reduced(name: str, plan: Traced, divide: float) -> Iterator[Row]:
