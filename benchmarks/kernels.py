@@ -44,15 +44,17 @@ SAMPLES = 361
 LANES = 2000
 """Mechanisms of a batch: the outputs of one take no more than some hundred megabytes."""
 DIVIDED = 8
-PATH = 6
-"""Place of a dyad's first coordinate among the outputs: a crank's two with their derivatives stand before it."""
 ROUNDS = 7
-OTHERS = ("gcc", "numba", "peer motion", "peer positions")
+OF_PEER = ("peer motion", "peer positions")
+OTHERS = ("gcc", "numba", *OF_PEER)
 
 
 @dataclass(frozen=True)
 class Traced:
-    """A plan as a graph: points and angles with two derivatives, by dimensions and the drive's value."""
+    """A plan as a graph: points and angles with two derivatives, by dimensions and the drive's value.
+
+    The crank, its end and its angle, is left out: they are products with what all mechanisms have in common.
+    """
 
     outputs: Mapping[str, Node]
     names: tuple[str, ...]
@@ -82,9 +84,16 @@ def traced(name: str) -> Traced:
     jets = JetFunctions(EXPRESSIONS)
     drive = Jet.variable(variable("drive"), 2)
     at = kinematics.positions(jets, drive, FixedSigns(jets, prepared.assembled.signs))
-    moving = prepared.mechanism.moving_points
+    crank = prepared.mechanism.drives[0].link
+    moving = [
+        point
+        for point in prepared.mechanism.moving_points
+        if point not in prepared.mechanism.links[str(crank)].coordinates
+    ]
     found = {f"{point} {axis}": x for point in moving for axis, x in enumerate(at.points[point])}
-    found |= {f"angle {link}": jets.atan2(*reversed(pose.rotor)) for link, pose in at.poses.items()}
+    found |= {
+        f"angle {link}": jets.atan2(*reversed(pose.rotor)) for link, pose in at.poses.items() if link != crank
+    }
     outputs = {
         f"{label}, {k}": x.derivative(k) for label, x in found.items() if isinstance(x, Jet) for k in range(3)
     }
@@ -133,7 +142,7 @@ def _written(name: str, plan: Traced, write: float) -> Row:
         "numpy": functools.partial(run_on_arrays, scan, DRIVE, few, out=out[:, : few.shape[1]].copy()),
     }
     with tempfile.TemporaryDirectory() as folder:
-        prepared = kernel.tables.added(scan, call_of(scan, DRIVE, lanes, out=out), kernel.number)
+        prepared = kernel.tables.added(call_of(scan, DRIVE, lanes, out=out))
         for rival, there, build in (
             ("gcc", rivals.HAS_GCC, rivals.by_gcc), ("numba", rivals.HAS_NUMBA, rivals.by_numba),
         ):  # fmt: skip
@@ -143,7 +152,7 @@ def _written(name: str, plan: Traced, write: float) -> Row:
             tasks |= _peers(name)
         times = best_times(tasks, rounds=ROUNDS)
     times["numpy"] *= LANES / few.shape[1]
-    for run in ("peer motion", "peer positions"):
+    for run in OF_PEER:
         if run in times:
             times[run] *= LANES
     each = 1e9 / (LANES * SAMPLES)
@@ -170,7 +179,7 @@ def _peers(name: str) -> dict[str, Callable[[], object]]:
 
 def _reduced(name: str, plan: Traced, divide: float) -> Iterator[Row]:
     """One number a mechanism: path extremes of a point, and all outputs together."""
-    point = plan.outputs[list(plan.outputs)[PATH]]
+    point = next(iter(plan.outputs.values()))
     whole = functools.reduce(lambda a, b: a + b, plan.outputs.values())
     for label, reduction in (
         ("extremes of a coordinate", together(greatest("hi", point), least("lo", point))),
@@ -229,7 +238,7 @@ def _two_threads(kernel: Kernel, lanes: Array, start: list[list[float]]) -> floa
 
 def _gradient(name: str, plan: Traced) -> Row:
     """A path error and its derivatives by six dimensions (or as many as there are), over the error alone."""
-    x, y = (plan.outputs[key] for key in list(plan.outputs)[PATH : PATH + 6 : 3])
+    x, y = (plan.outputs[key] for key in list(plan.outputs)[:6:3])
     error = (x - 1.0) * (x - 1.0) + (y - 2.0) * (y - 2.0)
     by = [variable(name) for name in plan.names[:6]]
     runs = {}

@@ -70,7 +70,7 @@ class Kernel:
         return self._run(call, threads)
 
     def _run(self, call: Call, threads: int) -> Scanned:
-        prepared = self.tables.added(self.scan, call, self.number)
+        prepared = self.tables.added(call)
         state = np.empty_like(call.state)
         parts = list(self._parts(prepared, state, threads))
         if len(parts) == 1:
