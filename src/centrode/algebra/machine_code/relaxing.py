@@ -2,7 +2,8 @@
 
 Whether something closes, which branch is taken and which side is chosen hangs on the last bit of radicands,
 divisors and compared numbers; all that these are computed from stays as it is. Of the rest, products and the
-sums behind them may be rounded once, and quotients by a common divisor become products with its reciprocal.
+sums behind them may be rounded once, and quotients by a common divisor become products with its reciprocal
+(which is infinite for a subnormal divisor: there, and only there, NaN may come out for a quotient of zeros).
 """
 
 from __future__ import annotations
