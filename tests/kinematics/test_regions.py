@@ -195,6 +195,8 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "too many": ({"drives": ("OA", "EC"), "samples": 10**9}, "ask for 2 to"),
     "held and moving": ({"drives": ("OA", "EC"), "held": {"EC": 1.0}}, "the one that moves"),
     "held open": ({"drives": ("OA", "EC"), "held": {"HE": 0.0}}, "does not close there"),
+    "far": ({"drives": ("OA", "EC"), "ranges": {"OA": (0, 1e9)}}, "range OA: it reaches too far: .* 500"),
+    "wide": ({"drives": ("OA", "EC"), "ranges": {"OA": (0, 100)}}, "15.9 turns; ask for at most 10"),
     "not finite": ({"drives": ("OA", "EC"), "held": {"HE": float("nan")}}, "hold HE"),
 }
 
