@@ -35,6 +35,8 @@ STRAIGHT = 0.9
 """Cosine of the angle by which the curve may turn in a step."""
 SHRINKING = 0.3
 """Part of a bordered determinant that must be left after a step, but for small ones."""
+AT_A_STOP = 1e-6
+"""A group that cannot be followed any further this close to a limit of one before it ends with that."""
 MOST = 400
 """Places a unit of the path, and in all at least, after which a group is given up."""
 
@@ -64,9 +66,17 @@ class Walkers:
 
 
 def trace(
-    around: Surroundings, start: Array, initial: float, extent: tuple[float, float], smooth: bool
+    around: Surroundings,
+    start: Array,
+    initial: float,
+    extent: tuple[float, float],
+    reaches: Array,
+    smooth: bool,
 ) -> tuple[Tracks, list[Event]]:
-    """Tracks of a group from the states (lanes, width) in the initial position, and the events on the way."""
+    """Tracks of a group from the states (lanes, width) in the initial position, and the events on the way.
+
+    `reaches` (lanes, 2) are the nearest limits of the groups before it, where what it stands on ends.
+    """
     walkers = _setting_out(around, start, initial, extent)
     events: list[Event] = []
     most = MOST * (1.0 + float(np.max(np.abs(walkers.end - initial))) / around.unit)
@@ -76,6 +86,9 @@ def trace(
     for walker in np.nonzero(walkers.active)[0]:
         walkers.stop(walker, lost=True)
     lanes = len(start)
+    for trail, stop in zip(walkers.trails, reaches.T.reshape(-1), strict=True):
+        if trail.end == "lost" and trail.pieces and abs(trail.pieces[-1].last - stop) <= AT_A_STOP * around.unit:
+            trail.end, trail.limit = "limit", float(stop)
     return Tracks.of(walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1]), events
 
 

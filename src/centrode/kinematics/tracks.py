@@ -46,8 +46,9 @@ class Trail:
     pieces: list[Piece] = field(default_factory=list)
     end: End = "on"
     limit: float = np.nan
-    margin: float = 0.0
+    margin: float = -1.0
     state: Array | None = None
+    """There, if the limit is the group's own."""
 
 
 @dataclass(frozen=True)
@@ -94,8 +95,9 @@ class Tracks:
             for side, trail in enumerate(trails):
                 if trail.pieces:
                     followed[lane, side] = trail.pieces[-1].last
-                if trail.end == "limit" and trail.state is not None:
+                if trail.end == "limit":
                     limits[lane, side], margins[lane, side] = trail.limit, trail.margin
+                if trail.state is not None:
                     at_limit[lane, side] = trail.state
         coefficients = np.array([piece.coefficients for piece in pieces]).reshape(-1, 6, width + 1)
         return cls(
