@@ -78,7 +78,9 @@ class Continuation:
         around, branches = self._around(group), self.branches
         first = starts(around, self.nominal, self.start, branches.initial, branches.lanes)
         with np.errstate(all="ignore"):
-            self._tracks[group], events = trace(around, first, branches.initial, extent, branches.reaches(), branches.smooth)
+            self._tracks[group], events = trace(
+                around, first, branches.initial, extent, branches.reaches(), branches.smooth
+            )
         branches.add(group, events)
 
     def close(

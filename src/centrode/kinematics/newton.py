@@ -239,7 +239,9 @@ def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
         good = np.isfinite(size) & (size < 1.0e3)
         state[going[good]] = part.moved(state[going], motion)[good]
         # next to a limit rounding makes steps that are not small; they do not shrink any more
-        done = good & (settled(last[going], size) | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE)))
+        done = good & (
+            settled(last[going], size) | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
+        )
         last[going] = size
         found[going[done]] = True
         going = going[good & ~done]

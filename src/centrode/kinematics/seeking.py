@@ -7,7 +7,7 @@ what closes, the positions count that have the angles given.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import cos, radians, remainder, sin, tau
+from math import cos, radians, sin, tau
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -72,6 +72,6 @@ def _misfit(mechanism: Mechanism, system: System, state: Array) -> float:
     given = {link: mechanism.links[link].angle for link in system.group.links if link in at.angles}
     angles = {link: float(np.reshape(at.angles[link], -1)[0]) for link in given}
     return max(
-        (abs(remainder(angles[link] - angle, tau)) for link, angle in given.items() if angle is not None),
+        (abs(angles[link] - angle) for link, angle in given.items() if angle is not None),
         default=0.0,
     )

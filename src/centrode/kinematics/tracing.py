@@ -87,7 +87,11 @@ def trace(
         walkers.stop(walker, lost=True)
     lanes = len(start)
     for trail, stop in zip(walkers.trails, reaches.T.reshape(-1), strict=True):
-        if trail.end == "lost" and trail.pieces and abs(trail.pieces[-1].last - stop) <= AT_A_STOP * around.unit:
+        if (
+            trail.end == "lost"
+            and trail.pieces
+            and abs(trail.pieces[-1].last - stop) <= AT_A_STOP * around.unit
+        ):
             trail.end, trail.limit = "limit", float(stop)
     return Tracks.of(walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1]), events
 
