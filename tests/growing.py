@@ -200,9 +200,9 @@ class Growing:
         }
 
 
-def grown(kinds: list[str], seed: int) -> dict[str, Any]:
+def grown(kinds: list[str], seed: int, growing: Growing | None = None) -> dict[str, Any]:
     """The description of a crank with groups of these kinds on it."""
-    growing = Growing(np.random.default_rng(seed))
+    growing = Growing(np.random.default_rng(seed)) if growing is None else growing
     pivot = growing.fixed_point(growing.place())
     growing.start = growing.angle()
     along = growing.random.uniform(0.3, 1.0) * cmath.exp(1j * growing.start)

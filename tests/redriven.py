@@ -11,7 +11,10 @@ import numpy.typing as npt
 import xarray as xr
 
 import centrode as ct
-from mechanisms import Parts, parts_of
+from centrode.kinematics.ready import ready
+from centrode.kinematics.solve import solve
+from centrode.kinematics.spans import span_at
+from mechanisms import STEP, Parts, nudged, parts_of
 
 Array = npt.NDArray[np.float64]
 
@@ -96,3 +99,41 @@ def _stretch(mechanism: ct.Mechanism, link: str, base: float) -> tuple[float, fl
             inside, outside = (middle, outside) if there == sense else (inside, middle)
         found.append(float(inside))
     return found[0], found[1]
+
+
+def reach_of(case: Redriven) -> tuple[float, float]:
+    """Least and greatest value of the new drive on the stretch."""
+    low, high = sorted(case.angle(case.stretch)[0])
+    return float(low), float(high)
+
+
+def by_chain_rule(case: Redriven, values: Array) -> Array:
+    """Positions with two derivatives by the new drive, from the motion by dyads: (3, samples, points, 2)."""
+    base = case.bases(values)
+    data = ct.motion(case.by_dyads, at=base)
+    _value, slope, bend = (x[:, None, None] for x in case.angle(base))
+    speed, turn = (data[name].to_numpy() for name in ("velocity_coefficient", "acceleration_coefficient"))
+    rate = speed / slope
+    return np.stack([data.position.to_numpy(), rate, (turn - rate * bend) / slope**2])
+
+
+def by_newton(case: Redriven, values: Array) -> tuple[xr.Dataset, Array]:
+    """The same by the new drive itself."""
+    data = ct.motion(case.other, at=values)
+    names = ("position", "velocity_coefficient", "acceleration_coefficient")
+    return data, np.stack([data[name].to_numpy() for name in names])
+
+
+def answer(mechanism: ct.Mechanism, values: Array, tries: int = 4) -> Array:
+    """How much positions and derivatives answer to dimensions: (3, samples), as `conditioning` does for dyads."""
+    prepared = ready(mechanism)
+    numbers, path = prepared.kinematics.numbers, prepared.kinematics.path
+    random = np.random.default_rng(11)
+    exact = solve(prepared, span_at(path, values)).points[:, 0]
+    found = np.zeros((3, len(values)))
+    for _ in range(tries):
+        changed = nudged(numbers, random).mapped(lambda x: np.array([x]))
+        step = STEP * random.choice([-1.0, 1.0]) * np.maximum(np.abs(values), path.unit)
+        near = solve(prepared, span_at(path, values + step), changed, 1).points[:, 0]
+        found = np.fmax(found, np.max(np.abs(near - exact), axis=(2, 3)) / STEP / float(numbers.scale))
+    return np.maximum(found, 1.0)

@@ -34,6 +34,9 @@ from .kinematics.reach import Limits as Limits
 from .kinematics.region import reachable_region as reachable_region
 from .study.running import study as study
 from .study.running import range_value as range_value
+from .study.limiting import limits_rows as limits_rows
+from .study.limiting import limits_text as limits_text
+from .study.regions import region_rows as region_rows
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 

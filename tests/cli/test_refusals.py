@@ -229,21 +229,30 @@ CHANGES = {
     ),
     "gears": (
         "[assembly]", '[[gears]]\nlinks = ["OA", "DB"]\nratio = 2\n[assembly]',
-        "[[gears]]: gears are not computed yet; leave it out, or wait for the version that computes it",
+        "[[drives]]: 1 drive is given, but the mobility (by rank) is 0; give as many drives as the mobility",
+    ),
+    "gear ratio": (
+        "[assembly]", '[[gears]]\nlinks = ["OA", "DB"]\nratio = 0\n[assembly]',
+        "[[gears]] 1: ratio must not be zero",
     ),
     "rolling": (
         "[assembly]",
         '[[rolling]]\nlink = "OA"\ncentre = "A"\nradius = 1\n'
         "along = { through = [0, 0], direction = [1, 0] }\n[assembly]",
-        "[[rolling]]: rolling contacts are not computed yet; leave it out",
+        "[[rolling]] OA: the wheel does not touch its track in the initial position: its centre is 0.1585 m too near;"
+        " correct the radius or the line; its direction has the wheel's centre on its left",
     ),
     "sphere": (
         'title = "Press"', 'title = "Press"\nspace = "sphere"',
-        "space: spherical linkages are not computed yet; leave it out",
+        "[links.AB]: length must be shorter than half a great circle, got 3.5; stay below 180 deg",
     ),
     "cylinder": (
         'link = "OA"', 'distance = ["A", "D"]',
-        "[[drives]] distance: cylinders (distance drives) are not computed yet; leave it out",
+        "group OA (point A): it does not close in the initial position: link OA and cylinder A-D together are too"
+        " short by 2 m; change a length, or the initial position",
+    ),
+    "cylinder shorter than zero": (
+        'link = "OA"\nstart = 1', 'distance = ["A", "D"]\nstart = -1', "[[drives]] 1: a cylinder shorter than zero",
     ),
 }  # fmt: skip
 

@@ -15,16 +15,19 @@ def test_every_variable_of_a_motion_is_named() -> None:
         "angle",
         "angular_velocity",
         "angular_acceleration",
+        "joint_angle",
+        "joint_velocity",
+        "joint_acceleration",
         "slide",
         "slide_velocity",
         "slide_acceleration",
     )
     coefficients = [
         f"{prefix}{order}_coefficient"
-        for prefix in ("", "angular_", "slide_")
+        for prefix in ("", "angular_", "joint_", "slide_")
         for order in ("velocity", "acceleration")
     ]
-    others = ("time", "drive_value", "position", "velocity", "acceleration", "status", "residual")
+    others = ("time", "drive_value", "position", "velocity", "acceleration", "contact", "status", "residual")
     events = ("event_value", "event_kind", "event_group")
     assert set(QUANTITIES) == {*bases, *coefficients, *others, *events}
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
@@ -49,6 +52,24 @@ def test_units_follow_the_kind_of_drive(name: str, displacement: str) -> None:
     assert quantity.for_drive("rad") == quantity
     assert quantity.for_drive("m").unit == displacement
     assert quantity.for_drive("m").name == name
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("position", "1"),
+        ("acceleration", "1/s^2"),
+        ("velocity_coefficient", "1/rad"),
+        ("slide", "rad"),
+        ("slide_velocity", "rad/s"),
+        ("slide_velocity_coefficient", "1"),
+        ("slide_acceleration_coefficient", "1/rad"),
+        ("angular_velocity", "rad/s"),
+    ],
+)
+def test_units_on_the_sphere(name: str, unit: str) -> None:
+    """Its radius is 1: places are plain numbers, displacements along circles are arcs."""
+    assert QUANTITIES[name].on_sphere().unit == unit
 
 
 DEGREE = 180 / math.pi

@@ -145,16 +145,80 @@ def test_a_five_bar_against_jets_along_single_directions() -> None:
         assert np.max(np.abs(second - (x.derivative(2) + 1j * y.derivative(2)))) <= 1024 * EPS
 
 
+def scissors() -> ct.Mechanism:
+    """A five-bar whose second motor turns one rod against the other: a group of higher class."""
+    return ct.Mechanism(
+        frame={"points": {"O": [0.0, 0.0], "E": [1.0, 0.0]}},
+        links={
+            "OA": {"length": 0.4},
+            "AB": {"length": 0.6, "angle": "70 deg"},
+            "CB": {"length": 0.7},
+            "EC": {"length": 0.5, "angle": "91 deg"},
+        },
+        drives=[
+            {"link": "OA", "start": 1.0, "law": "0.3*sin(t)"},
+            {"link": "CB", "relative_to": "AB", "start": 1.3, "law": "-0.2*t**2"},
+        ],
+    )
+
+
+def of_scissors(a: Any, v: Any) -> Any:
+    """B by the crank's angle and that between the rods: |AC| = |w|, w = 0.6 - 0.7 e^{i v}, then C over A -> E."""
+    ax, ay = M.cos(a) * 0.4, M.sin(a) * 0.4
+    wx, wy = M.cos(v) * -0.7 + 0.6, M.sin(v) * -0.7
+    reach = wx * wx + wy * wy
+    x, y = 1.0 - ax, -ay
+    squared = x * x + y * y
+    along = (squared + reach - 0.25) / (squared * 2.0)
+    left = M.sqrt(squared * reach - (squared + reach - 0.25) ** 2 * 0.25) / squared
+    cx, cy = along * x - left * y, along * y + left * x
+    return ax + (cx * wx + cy * wy) / reach * 0.6, ay + (cy * wx - cx * wy) / reach * 0.6
+
+
+def test_a_group_of_higher_class_with_a_drive_between_moving_links() -> None:
+    data = ct.kinematic_coefficients(scissors(), at=TIMES)
+    a, v = data["drive_value"].to_numpy().T
+    for p, q in ((1.0, 0.0), (0.0, 1.0), (1.0, -1.0)):
+        x, y = of_scissors(Jet((a, p, 0.0)), Jet((v, q, 0.0)))
+        first = by(data, ("OA",), point="B") * p + by(data, ("CB",), point="B") * q
+        second = by(data, ("OA", "OA"), point="B") * p * p + by(data, ("CB", "CB"), point="B") * q * q
+        second = second + 2.0 * by(data, ("OA", "CB"), point="B") * p * q
+        assert np.max(np.abs(first - (x.derivative(1) + 1j * y.derivative(1)))) <= 1024 * EPS
+        assert np.max(np.abs(second - (x.derivative(2) + 1j * y.derivative(2)))) <= 8192 * EPS
+
+
 def rates(mechanism: ct.Mechanism, time: Array) -> tuple[Array, Array]:
     """First and second derivatives of the drives by time: (n, drives)."""
     laws = [drive.motion_law.jet(M, Jet.variable(time, 2)) for drive in mechanism.drives]
     return tuple(np.stack([law.derivative(k) + 0.0 * time for law in laws], axis=-1) for k in (1, 2))
 
 
+def spherical() -> ct.Mechanism:
+    """Two cranks and two rods on the sphere."""
+    return ct.Mechanism(
+        space="sphere",
+        frame={"points": {"A": [0.0, 0.0], "D": ["80 deg", 0.0]}},
+        links={
+            "AB": {"length": "30 deg", "reference": ["A", "D"]},
+            "BC": {"length": "70 deg"},
+            "CE": {"length": "60 deg"},
+            "DE": {"length": "35 deg", "reference": ["D", "A"]},
+        },
+        drives=[
+            {"link": "AB", "start": "60 deg", "law": "sin(t)"},
+            {"link": "DE", "start": "-70 deg", "speed": -0.5},
+        ],
+        assembly={"sides": {"C": "left"}},
+    )
+
+
 MECHANISMS = {
+    "sphere": spherical,
     "arm": lambda: arm(True),
     "crane": crane,
     "five-bar": five_bar,
+    "scissors": scissors,
+    "excavator-arm": lambda: ct.example("excavator-arm"),
     "two-link-arm": lambda: ct.example("two-link-arm"),
     "five-bar-two-drives": lambda: ct.example("five-bar-two-drives"),
 }
@@ -167,8 +231,8 @@ def test_they_add_up_to_velocities_and_accelerations(name: str) -> None:
     motion = ct.motion(mechanism, at=TIMES)
     assert statuses(data) == statuses(motion)
     rate, second_rate = rates(mechanism, TIMES)
-    for prefix, end in (("", ("point", "axis")), ("angular_", ("link",)), ("slide_", ("guide",))):
-        if not motion.sizes[end[0]]:
+    for prefix, of in (("", "point"), ("angular_", "link"), ("joint_", "joint"), ("slide_", "guide")):
+        if not motion.sizes.get(of):
             continue
         first = data[f"{prefix}velocity_coefficient"].to_numpy()
         second = data[f"{prefix}acceleration_coefficient"].to_numpy()

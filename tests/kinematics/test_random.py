@@ -39,7 +39,9 @@ def motion_about_the_start(parts: dict[str, Any]) -> tuple[Solved, list[int], An
 def jet_positions(solved: Solved, sample: int) -> Positions:
     """Everything at a sample as jets of second order along the drive, from the motion's values and derivatives."""
     kinematics = solved.ready.kinematics
-    at = Positions.of_frame(kinematics.numbers, {"link0": Jet((solved.span.parameter[sample], 1.0, 0.0))}, JETS)
+    at = Positions.of_frame(
+        kinematics.numbers, {"link0": Jet((solved.span.parameter[sample], 1.0, 0.0))}, JETS
+    )
     for k, name in enumerate(solved.layout.points):
         x, y = (solved.points[:, 0, sample, k, axis] for axis in (0, 1))
         at.points[name] = (Jet((x[0], x[1], x[2] / 2)), Jet((y[0], y[1], y[2] / 2)))

@@ -80,6 +80,10 @@ class RoundedFunctions:
         x = Rounded.of(x)
         return Rounded(np.cos(x.value), np.abs(np.sin(x.value)) * x.bound + UNIT_ROUNDOFF)
 
+    def sign(self, x: Number) -> Number:
+        """Sign of the value, a plain number."""
+        return np.sign(Rounded.of(x).value)
+
     def sqrt(self, x: Number) -> Rounded:
         x = Rounded.of(x)
         value = np.sqrt(x.value)

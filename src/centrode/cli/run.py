@@ -82,6 +82,11 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
             study.instants, folder / "instants.csv", mechanism.display, mechanism.moving_points
         )
     ct.write_motion_netcdf(study.motion, folder / "motion.nc")
+    if study.coefficients is not None:
+        ct.write_coefficients_csv(
+            study.coefficients, folder / "coefficients.csv", mechanism.display, mechanism.moving_points
+        )
+        ct.write_motion_netcdf(study.coefficients, folder / "coefficients.nc")
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
     (folder / "summary.json").write_text(text, encoding="utf-8")

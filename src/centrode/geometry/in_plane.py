@@ -21,6 +21,7 @@ from centrode.geometry.plane import (
     meet_lines,
     pose_with_point,
     reversed_rotor,
+    rotor_of,
     subtract,
     turned,
 )
@@ -61,6 +62,19 @@ class Plane:
         self, m: Namespace, first: Vector, second: Vector, at_first: Vector, at_second: Vector
     ) -> Pose:
         return plane.pose_by_two_points(first, second, at_first, at_second)
+
+    def pose_at_angle(
+        self,
+        m: Namespace,
+        angle: Number,
+        points: Sequence[Vector],
+        at: Sequence[Vector | None],
+        towards: Sequence[Vector],
+    ) -> Pose | None:
+        for local, place in zip(points, at, strict=True):
+            if place is not None:
+                return pose_with_point(local, place, rotor_of(m, angle))
+        return None
 
     def turned_pose(
         self, m: Namespace, base: Pose, rotor: Vector, pivot: Vector, at: Vector, reference: Reference

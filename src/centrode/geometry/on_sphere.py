@@ -79,6 +79,22 @@ class Sphere:
     ) -> Attitude:
         return sphere.attitude_by_two_points(m, first, second, at_first, at_second)
 
+    def pose_at_angle(
+        self,
+        m: Namespace,
+        angle: Number,
+        points: Sequence[Coordinates],
+        at: Sequence[Vector | None],
+        towards: Sequence[Vector],
+    ) -> Attitude | None:
+        if at[0] is None or not towards:
+            return None
+        first, second = points[:2]
+        along = tangent_inside(m, first, second)
+        zero = slopes.unit(m, tangent(at[0], towards[0]))
+        arm = sphere.turned(m, at[0], zero, (m.cos(angle), m.sin(angle)))
+        return attitude_on(unit_vector(m, first), along, at[0], arm, slopes.length(m, along))
+
     def turned_pose(
         self,
         m: Namespace,

@@ -56,6 +56,11 @@ def length(m: Namespace, v: Vector) -> Number:
     return m.sqrt(dot(v, v))
 
 
+def unit(m: Namespace, v: Vector) -> Vector:
+    """A vector of unit length."""
+    return times(1.0 / length(m, v), v)
+
+
 def components(arm: Vector, zero: Vector, axis: Vector) -> tuple[Number, Number]:
     """Cosine and sine, times a common factor, of the angle from one tangent to another, about their place."""
     return dot(arm, zero), dot(arm, cross(axis, zero))

@@ -90,6 +90,19 @@ class Space(Protocol):
     ) -> Pose:
         """Pose of a link from the places of two of its points."""
 
+    def pose_at_angle(
+        self,
+        m: Namespace,
+        angle: Number,
+        points: Sequence[Coordinates],
+        at: Sequence[Place | None],
+        towards: Sequence[Place],
+    ) -> Pose | None:
+        """Pose of a link of a known angle from the places of its points that are known; None if it takes others.
+
+        `towards` are the places that the angle is measured towards.
+        """
+
     def turned_pose(
         self, m: Namespace, base: Pose, rotor: Rotor, pivot: Coordinates, at: Place, reference: Reference
     ) -> Pose:

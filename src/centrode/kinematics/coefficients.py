@@ -69,7 +69,12 @@ def kinematic_coefficients(
 
 def coefficients_of(solved: Solved) -> xr.Dataset:
     """The same for a motion solved before."""
-    _check_size(solved)
+    if solved.status.size > most_samples(solved):
+        raise InputError(
+            _("samples"),
+            _("{asked} positions were asked for").format(asked=solved.status.size),
+            _("ask for at most {most} at once, samples times mechanisms").format(most=most_samples(solved)),
+        )
     found = partials(solved)
     variables = {"status": judgements_of(found.solved, ())["status"]}
     units, length = units_of_drives(solved), solved.layout.space.unit
@@ -84,16 +89,10 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
     return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved))
 
 
-def _check_size(solved: Solved) -> None:
+def most_samples(solved: Solved) -> int:
+    """How many samples' coefficients fit into the memory of an ordinary machine."""
     drives = len(solved.ready.mechanism.drives)
-    samples = solved.status.size
-    most = GREATEST_RESULT // (max(solved.layout.width, 1) * drives * drives)
-    if samples > most:
-        raise InputError(
-            _("samples"),
-            _("{asked} positions were asked for").format(asked=samples),
-            _("ask for at most {most} at once, samples times mechanisms").format(most=most),
-        )
+    return GREATEST_RESULT // (max(solved.layout.width, 1) * drives * drives)
 
 
 def _tensors(found: Partials, number: int) -> tuple[Array, Array]:

@@ -25,7 +25,7 @@ from centrode.kinematics.surroundings import Surroundings
 from centrode.kinematics.tracing import trace
 from centrode.kinematics.tracks import Tracks
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import links_of, points_of
+from centrode.structure.groups import Newton, links_of, points_of
 from centrode.structure.positions import Positions, mapped_pose
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -38,6 +38,8 @@ WINDOW = 0.04
 """Half width of the mended stretch, in the path's units (rad for an angle)."""
 CLEAR = 6.0
 """The stretch keeps this many half widths away from what is not smooth: limits, other events of its group."""
+CLEAR_OF_HIGHER = 10.0
+"""The same for a group of higher class, which loses fewer digits: as much as one of its distance, not of its square."""
 REACH = 2.0 * WINDOW + CLEAR * WINDOW
 """How far beyond a sample events matter to it."""
 SIDE = 1.5 - 0.5 * np.cos((np.arange(6) + 0.5) * np.pi / 6)
@@ -76,12 +78,22 @@ class Continuation:
         around, branches = self._around(group), self.branches
         first = starts(around, self.nominal, self.start, branches.initial, branches.lanes)
         with np.errstate(all="ignore"):
-            self._tracks[group], events = trace(around, first, branches.initial, extent, branches.smooth)
+            self._tracks[group], events = trace(
+                around, first, branches.initial, extent, branches.reaches(), branches.smooth
+            )
         branches.add(group, events)
 
-    def close(self, group: int, m: Namespace, at: Positions, parameter: Array, lanes: Lanes | None) -> Judged:
+    def close(
+        self,
+        group: int,
+        m: Namespace,
+        at: Positions,
+        parameter: Array,
+        lanes: Lanes | None,
+        rough: bool = False,
+    ) -> Judged:
         """Add what a group of higher class gives at parameters."""
-        return close(self._around(group), self._tracks[group], m, at, parameter, lanes)
+        return close(self._around(group), self._tracks[group], m, at, parameter, lanes, rough)
 
     def _around(self, group: int) -> Surroundings:
         return Surroundings(self.kinematics, group, self.hooks)
@@ -123,7 +135,8 @@ class Continuation:
             and (event.group == group or (event.group < group and event.kind == "limit"))
             and abs(event.at - at) > 1e-9 * unit
         ]
-        return min(WINDOW * unit, min(others, default=np.inf) / CLEAR)
+        higher = isinstance(self.kinematics.structure.groups[group], Newton)
+        return min(WINDOW * unit, min(others, default=np.inf) / (CLEAR_OF_HIGHER if higher else CLEAR))
 
     def _replace(
         self, group: int, at: Positions, shape: tuple[int, ...], window: int, index: Index, offsets: Array
@@ -183,6 +196,13 @@ class Smooth(Hooks):
 
     def after(self, group: int, at: Positions) -> None:
         self.continuation.mend(group, at, self.parameter, self.lanes)
+
+
+class Rough(Smooth):
+    """The same for the mesh, on which places are looked at and not kept."""
+
+    def higher(self, group: int, m: Namespace, at: Positions) -> None:
+        self.judge(group, self.continuation.close(group, m, at, self.parameter, self.lanes, rough=True))
 
 
 def _inside(window: Window, along: Array, lanes: Lanes | None) -> Index | None:

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.kinematics.newton import Motion, System, settled, size_of
+from centrode.kinematics.newton import Motion, System, settled, size_of, total
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.reduction import Linear, Shift, solved
 from centrode.kinematics.surroundings import Surroundings
@@ -28,6 +28,8 @@ Shifts: TypeAlias = Mapping[Entity, Shift]
 
 STEPS = 7
 """Newton steps onto a plane."""
+ENOUGH = 1e-11
+"""What the next Newton step onto a plane may be."""
 CONTRACTION = 0.2
 """By how much every Newton step must be smaller than the one before, but for rounding."""
 
@@ -66,7 +68,7 @@ class Places:
 
     def distance(self, numbers: Array) -> Array:
         """Distance of numbers (k, width + 1) along the curve's direction here."""
-        return np.asarray(np.sum(self.first * numbers, axis=1) / np.sum(self.first**2, axis=1))
+        return total(self.first * numbers) / total(self.first**2)
 
 
 @dataclass(frozen=True)
@@ -93,9 +95,15 @@ class Reached:
 
 
 def reach(
-    around: Surroundings, lanes: Lanes, base: Places, along: Array, parameter: Array, state: Array
+    around: Surroundings,
+    lanes: Lanes,
+    base: Places,
+    along: Array,
+    parameter: Array,
+    state: Array,
+    exact: bool = False,
 ) -> Reached:
-    """Where curves pass planes square to `along` through foretold places."""
+    """Where curves pass planes square to `along` through foretold places, as well as it takes to foretell others."""
     count, free = len(parameter), along.shape[1] - 1
     found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
     last, wrong = np.full(count, np.inf), np.full(count, np.nan)
@@ -110,20 +118,22 @@ def reach(
         good = active & np.isfinite(size) & (size < 1.0)
         state = np.where(good[:, None], system.moved(state, motion), state)
         parameter = np.where(good, parameter + around.unit * step[:, -1], parameter)
-        done = good & settled(last, size)
+        with np.errstate(all="ignore"):
+            enough = settled(last, size) if exact else size * (size / last) ** 2 <= ENOUGH
+        done = good & enough
         found |= done
         active = good & ~done & (size <= np.maximum(CONTRACTION * last, 1e-9))
         last = size
         if not active.any():
             break
-    # the last step was so small that the equations made linear before it still hold
+    system, linear, _moved, _rest, follow, matrix = bordered(around, lanes, parameter, state, along)
     ahead = np.zeros((count, free + 1, 1))
     ahead[:, -1] = 1.0
     slope = solved(matrix, ahead)[:, :, 0]
     first, second = _coefficients(around, lanes, parameter, state, slope, linear, follow, matrix)
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
     with np.errstate(all="ignore"):
-        length = np.sqrt(np.sum(slope * slope, axis=1))
+        length = np.sqrt(total(slope * slope))
         # the determinant bordered by the curve's own direction is that by the plane's, times their cosine
         size = np.linalg.det(matrix) * length
         places = Places(numbers, first / length[:, None], second, slope / length[:, None], size)
@@ -205,7 +215,10 @@ def _coefficients(
     bend = solved(matrix, right[:, :, None])[:, :, 0]
     two = motion_along(linear, moved, follow, bend)
     curved = Motion(
-        {e: tuple(Jet((zero, x, y)) for x, y in zip(one.shifts[e], two.shifts[e], strict=True)) for e in one.shifts},
+        {
+            e: tuple(Jet((zero, x, y)) for x, y in zip(one.shifts[e], two.shifts[e], strict=True))
+            for e in one.shifts
+        },
         [Jet((zero, x, y)) for x, y in zip(one.free, two.free, strict=True)],
     )
     at = system.at(JETS, known, state, curved)

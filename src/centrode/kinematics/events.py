@@ -19,13 +19,13 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.continuation import REACH, Continuation, Smooth
+from centrode.kinematics.continuation import REACH, Continuation, Rough
 from centrode.kinematics.evaluate import Kinematics, Reached
 from centrode.kinematics.pace import OFF_GRID
 from centrode.kinematics.paths import JETS, Path
 from centrode.kinematics.roots import bracketed_roots
 from centrode.kinematics.turns import counted
-from centrode.structure.groups import Aim, Meet, Newton
+from centrode.structure.groups import Aim, Meet
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -70,7 +70,7 @@ class Scan:
     def run(self) -> Positions:
         """Find all events, record them in the branches, and return the positions on the mesh as plain arrays."""
         groups = self.kinematics.structure.groups
-        last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim, Newton))), default=0)
+        last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
         along = self.mesh[None, :]
         with np.errstate(all="ignore"):
             at = self.kinematics.frame(JETS, Jet.variable(along, 1))
@@ -79,6 +79,10 @@ class Scan:
             plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
             self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, _Counting(self, ARRAYS))
         return plain
+
+    def trace(self, group: int) -> None:
+        """Follow a group of higher class over the mesh."""
+        self.continuation.trace(group, (float(self.mesh[0]), float(self.mesh[-1])))
 
     def find(self, group: int, radicand: Jet) -> None:
         """Record where a group's radicand is zero."""
@@ -171,7 +175,7 @@ class Scan:
         return guard_with_bound(self.continuation, group, lanes, at)
 
 
-class _Counting(Smooth):
+class _Counting(Rough):
     """Counts the turns of angles along the mesh, for all that is asked for afterwards."""
 
     def __init__(self, scan: Scan, m: Namespace) -> None:
@@ -182,6 +186,10 @@ class _Counting(Smooth):
         branches, mesh = self.scan.branches, self.scan.mesh
         branches.turns[key] = counted(angle, mesh, branches.angles.get(key, 0.0), branches.initial)
         return super().continued(group, key, angle)
+
+    def higher(self, group: int, m: Namespace, at: Positions) -> None:
+        self.scan.trace(group)
+        super().higher(group, m, at)
 
 
 class _Searching(_Counting):
@@ -198,9 +206,8 @@ class _Searching(_Counting):
         return super().root(group, radicand)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
-        self.continuation.trace(group, (float(self.scan.mesh[0]), float(self.scan.mesh[-1])))
         if group == self.last:
-            raise Reached(None)
+            raise Reached(None)  # no radicand at all
         super().higher(group, m, at)
 
     def divisor(self, group: int, divisor: Number) -> Number:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -23,6 +23,8 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
 Number: TypeAlias = Any
 
+AT_A_NODE = 64.0
+"""A limit this many units of the last place from a node is that node itself: it parts no neighbours."""
 CHUNK = 200_000
 """Lines are followed together as long as lines times mesh nodes stay below this."""
 
@@ -41,6 +43,30 @@ class Lines:
     closed: Mask
     margins: Mapping[int, Array]
     limits: tuple[npt.NDArray[np.intp], Array, npt.NDArray[np.intp]]
+
+    def passages(self, nodes: Array) -> Mask:
+        """Where a line is closed at two neighbouring nodes and passes no limit between them: (lines, nodes - 1)."""
+        free = self.closed[:, :-1] & self.closed[:, 1:]
+        line, value, _group = self.limits
+        cell = cells_of(nodes, value)
+        margin = AT_A_NODE * np.spacing(np.max(np.abs(nodes)))
+        inside = (nodes[cell] + margin < value) & (value < nodes[cell + 1] - margin)
+        free[line[inside], cell[inside]] = False
+        return free
+
+    def margin(self) -> Array:
+        """Smallest radicand of all groups, each over its greatest; NaN where none is known."""
+        least = np.full(self.closed.shape, np.nan)
+        for values in self.margins.values():
+            with np.errstate(all="ignore"):
+                greatest = float(np.nanmax(np.abs(values), initial=0.0))
+                least = np.fmin(least, values / greatest if greatest > 0.0 else values)
+        return least if self.margins else np.ones_like(least)
+
+
+def cells_of(nodes: Array, values: Array) -> npt.NDArray[np.intp]:
+    """Between which node and the next values lie."""
+    return np.clip(np.searchsorted(nodes, values, side="right") - 1, 0, len(nodes) - 2)
 
 
 def lines_along(
@@ -65,7 +91,9 @@ def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first
     """Some of the lines together."""
     path = held_path(ready, drive, float(ready.assembled.positions.drives[drive]), held)
     lanes = max(len(value) for value in held.values() if isinstance(value, np.ndarray))
-    branches = branches_at_start(path, ready.assembled.signs, smooth=False, lanes=lanes)
+    branches = branches_at_start(
+        path, ready.assembled.signs, ready.assembled.angles, smooth=False, lanes=lanes
+    )
     kinematics = replace(ready.kinematics, path=path)
     continuation = Continuation(kinematics, branches, ready.assembled.positions, kinematics.numbers)
     Scan(continuation, mesh_of(path, nodes)).run()
@@ -113,3 +141,29 @@ def _judged(continuation: Continuation, layout: Layout, nodes: Array, lanes: int
         fill_columns(kinematics, layout, at, columns)
     judging.opened |= ~np.isfinite(columns[0]).all(axis=0)
     return judging
+
+
+def reached_from(
+    closed: Mask, first: Mask, second: Mask, seed: tuple[int, int], rounds: Sequence[bool]
+) -> Mask:
+    """Nodes connected with the seed by free passages along the first and the second drive.
+
+    Where a drive comes round within its range, its last line goes on at its first.
+    """
+    reached = np.zeros(closed.shape, dtype=bool)
+    reached[seed] = closed[seed]
+    while True:
+        before = int(reached.sum())
+        for free, here, closes, comes_round in (
+            (first, reached, closed, rounds[0]),
+            (second.T, reached.T, closed.T, rounds[1]),
+        ):
+            if comes_round:
+                ends = here[0] | here[-1]
+                here[0], here[-1] = ends & closes[0], ends & closes[-1]
+            for k in range(len(free)):
+                here[k + 1] |= here[k] & free[k]
+            for k in range(len(free) - 1, -1, -1):
+                here[k] |= here[k + 1] & free[k]
+        if int(reached.sum()) == before:
+            return reached

@@ -13,7 +13,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import RoundedFunctions
-from centrode.kinematics.newton import System, newton
+from centrode.kinematics.newton import System, newton, step_at
 from centrode.kinematics.reduction import Linear
 from centrode.kinematics.surroundings import Surroundings, flattened, needed, plain, shaped
 from centrode.kinematics.tracks import Tracks
@@ -42,9 +42,18 @@ class Judged:
 
 
 def close(
-    around: Surroundings, tracks: Tracks, m: Namespace, at: Positions, parameter: Array, lanes: Lanes | None
+    around: Surroundings,
+    tracks: Tracks,
+    m: Namespace,
+    at: Positions,
+    parameter: Array,
+    lanes: Lanes | None,
+    rough: bool = False,
 ) -> Judged:
-    """Add the group's points and links to positions at parameters: (n,) for all lanes, or one lane for each."""
+    """Add the group's points and links to positions at parameters: (n,) for all lanes, or one lane for each.
+
+    Rough positions are those of the track, after one Newton step where derivatives are wanted as well.
+    """
     shape = (tracks.lanes, parameter.shape[-1]) if lanes is None else parameter.shape
     flat = np.broadcast_to(parameter, shape).reshape(-1)
     which = np.repeat(np.arange(tracks.lanes), shape[-1]) if lanes is None else lanes
@@ -53,19 +62,28 @@ def close(
     known = flattened(needed(group, at), shape)
     system = System(group, numbers, known.mapped(plain), len(flat))
     foretold = tracks.foretell(flat, which)
+    start = system.righted(foretold.state)
     with np.errstate(all="ignore"):
-        found = newton(system, system.righted(foretold.state))
-        linear = system.linear(system.at(ARRAYS, system.known, found.state))
-        right = found.found & (np.sign(np.linalg.det(linear.matrix)) == foretold.sense)
-        state = np.where(right[:, None], found.state, np.nan)
+        if rough:
+            right, state, linear = ~(foretold.beyond | foretold.limit), start, None
+            if isinstance(m, JetFunctions):
+                linear = system.linear(system.at(ARRAYS, system.known, state))
+                state = system.moved(state, step_at(system, state, linear)[0])
+        else:
+            found = newton(system, start)
+            linear = system.linear(system.at(ARRAYS, system.known, found.state))
+            right = found.found & (np.sign(np.linalg.det(linear.matrix)) == foretold.sense)
+            state = np.where(right[:, None], found.state, np.nan)
         state[foretold.limit] = foretold.state[foretold.limit]
         shaped(_lifted(system, m, known, state, linear), group, shape, at)
     lost = ~(right | foretold.limit | foretold.beyond)
     return Judged(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))
 
 
-def _lifted(system: System, m: Namespace, known: Positions, state: Array, linear: Linear) -> Positions:
+def _lifted(system: System, m: Namespace, known: Positions, state: Array, linear: Linear | None) -> Positions:
     """Converged states over the algebra of the known positions."""
+    if linear is None:
+        return system.at(m, known, state)
     if isinstance(m, JetFunctions):
         order = max((jet.order for jet in _jets(known)), default=0)
         motion = system.jets(known, state, linear, order) if order else None

@@ -34,6 +34,8 @@ Namespace: TypeAlias = Any
 
 STEPS = 12
 """Newton steps before a place counts as not converged."""
+COARSE = 1e-6
+"""Greatest step of rounding alone, next to a limit."""
 SMALL = 1e-9
 """After a step this small (in rad, or in the greatest length) the next is below rounding: convergence is quadratic."""
 
@@ -58,6 +60,14 @@ class System:
     numbers: Dimensions
     known: Positions
     places: int
+
+    def taken(self, which: npt.NDArray[np.intp]) -> System:
+        """The same equations at some of the places."""
+
+        def take(x: Number) -> Number:
+            return x if np.ndim(x) == 0 else x[which]
+
+        return System(self.group, self.numbers.mapped(take), self.known.mapped(take), len(which))
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -123,7 +133,9 @@ class System:
             at.poses[name] = space.righted(ARRAYS, at.poses[name])
         for name in self._turns:
             near = at.angles[name]
-            at.angles[name] = near + space.turn(ARRAYS, at.poses[name], space.at_rest, rotor_of(ARRAYS, near), None)
+            at.angles[name] = near + space.turn(
+                ARRAYS, at.poses[name], space.at_rest, rotor_of(ARRAYS, near), None
+            )
         return self.state_of(at)
 
     def residual(self, m: Namespace, at: Positions) -> list[Number]:
@@ -148,10 +160,10 @@ class System:
 
     def stacked(self, values: Sequence[Number]) -> Array:
         """Numbers as an array (k, numbers)."""
-        found = np.empty((self.places, len(values)))
-        for j, value in enumerate(values):
-            found[:, j] = value
-        return found
+        found = np.empty((len(values), self.places))
+        for row, value in zip(found, values, strict=True):
+            row[:] = value
+        return found.T
 
     def jets(self, known: Positions, state: Array, linear: Linear, order: int) -> Motion:
         """Taylor coefficients of the motion from a converged state, by the variable of the known jets."""
@@ -214,28 +226,32 @@ class Converged:
 def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
     """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
     state = start.copy()
-    active = np.isfinite(start).all(axis=1)
+    going = np.nonzero(np.isfinite(start).all(axis=1))[0]
     found = np.zeros(len(start), dtype=bool)
     sizes = np.full((steps, len(start)), np.nan)
     last = np.full(len(start), np.inf)
     for k in range(steps):
-        if not active.any():
+        if not len(going):
             break
-        motion, size = step_at(system, state)
-        sizes[k] = np.where(active, size, np.nan)
-        good = active & np.isfinite(size)
-        state = np.where(good[:, None], system.moved(state, motion), state)
-        done = good & settled(last, size)
-        found |= done
-        active = good & ~done & (size < 1.0e3)
-        last = size
+        part = system if len(going) == len(start) else system.taken(going)
+        motion, size = step_at(part, state[going])
+        sizes[k, going] = size
+        good = np.isfinite(size) & (size < 1.0e3)
+        state[going[good]] = part.moved(state[going], motion)[good]
+        # next to a limit rounding makes steps that are not small; they do not shrink any more
+        done = good & (
+            settled(last[going], size) | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
+        )
+        last[going] = size
+        found[going[done]] = True
+        going = going[good & ~done]
     return Converged(state, found, sizes)
 
 
-def step_at(system: System, state: Array) -> tuple[Motion, Array]:
+def step_at(system: System, state: Array, linear: Linear | None = None) -> tuple[Motion, Array]:
     """A Newton step from a state, and its size."""
     at = system.at(ARRAYS, system.known, state)
-    linear = system.linear(at)
+    linear = system.linear(at) if linear is None else linear
     moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
     free = solved(linear.matrix, system.stacked(rest)[:, :, None])[:, :, 0]
     return Motion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
@@ -260,6 +276,14 @@ def settled(last: Array, size: Array) -> Mask:
     with np.errstate(all="ignore"):
         next_size = size * (size / last) ** 2
         return np.asarray((size <= SMALL) & ((last <= SMALL) | (next_size <= UNIT_ROUNDOFF)))
+
+
+def total(columns: Array) -> Array:
+    """Sum over the second axis, added up in one order whatever the number of places."""
+    found = columns[:, 0].copy()
+    for j in range(1, columns.shape[1]):
+        found += columns[:, j]
+    return found
 
 
 def times(matrix: Array, vector: Array) -> Array:

@@ -22,7 +22,7 @@ from centrode.errors import Status
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.events import Scan, mesh_of
 from centrode.kinematics.paths import JETS, unit_of
-from centrode.kinematics.sampling import ORDERS, Judging, fill_columns
+from centrode.kinematics.sampling import ORDERS, Judging, fill_columns, fill_number
 from centrode.kinematics.solve import Solved, fit_for, start_of
 from centrode.kinematics.spins import spins_of
 from centrode.structure.positions import Positions
@@ -56,16 +56,17 @@ def partials(solved: Solved) -> Partials:
     units = {drive.id: _power_of_two(unit_of(drive, path.scale)) for drive in drives}
     continuation = _found(solved)
     singular = np.zeros(solved.status.shape, dtype=bool)
-    columns = {}
+    columns, turning = {}, {}
     for i, first in enumerate(units):
         for j, second in enumerate(list(units)[i:], start=i):
             moving = {name: units[name] for name in (first, second)}
-            columns[i, j], lost = _along(continuation, solved, moving)
+            columns[i, j], turning[i, j], lost = _along(continuation, solved, moving)
             singular |= lost
     status = np.where(singular & (solved.status == Status.OK), Status.SINGULAR, solved.status)
     absent = singular | np.isin(status, (Status.OPEN, Status.UNCONVERGED, Status.SINGULAR))
     judged = replace(solved, status=status.astype(np.int8))
-    return Partials(judged, units, {pair: _solved(judged, found, absent) for pair, found in columns.items()})
+    along = {pair: _solved(judged, columns[pair], turning[pair], absent) for pair in columns}
+    return Partials(judged, units, along)
 
 
 def _power_of_two(unit: float) -> float:
@@ -89,8 +90,11 @@ class _Straight(Judging):
             np.logical_or(total, found, out=total)
 
 
-def _along(continuation: Continuation, solved: Solved, moving: Mapping[str, float]) -> tuple[Array, Mask]:
-    """Columns (3, columns, 1, n) with derivatives along a direction, and where they do not exist."""
+def _along(
+    continuation: Continuation, solved: Solved, moving: Mapping[str, float]
+) -> tuple[Array, Array, Mask]:
+    """Columns and angles (3, ..., 1, n) with derivatives along a direction, and where they do not exist."""
+    layout = solved.layout
     kinematics, parameter = continuation.kinematics, solved.span.parameter[None, :]
     values = kinematics.path.drive_values(ARRAYS, parameter)
     drives = {
@@ -98,23 +102,27 @@ def _along(continuation: Continuation, solved: Solved, moving: Mapping[str, floa
         for name, value in values.items()
     }
     hooks = _Straight(continuation, parameter, parameter.shape)
-    columns = np.empty((ORDERS, solved.layout.width, *parameter.shape))
+    columns = np.empty((ORDERS, layout.width, *parameter.shape))
+    angles = np.empty((ORDERS, len(layout.angles), *parameter.shape))
     with np.errstate(all="ignore"):
         at = Positions.of_frame(kinematics.numbers, drives, ARRAYS)
         kinematics.advance(at, range(len(kinematics.structure.groups)), JETS, hooks)
-        fill_columns(kinematics, solved.layout, at, columns)
+        fill_columns(kinematics, layout, at, columns)
+        for k, link in enumerate(layout.angles):
+            if layout.runs_on and link in at.angles:
+                fill_number(angles[:, k], at.angles[link])
+            else:
+                rotor = columns[:, layout.rotor(link)]
+                angles[:, k] = rotor[0, 0] * rotor[:, 1] - rotor[0, 1] * rotor[:, 0]
         whole = np.isfinite(columns.sum(axis=(0, 1)))
-    return columns, hooks.zero | ~whole
+    return columns, angles, hooks.zero | ~whole
 
 
-def _solved(solved: Solved, columns: Array, absent: Mask) -> Solved:
+def _solved(solved: Solved, columns: Array, angles: Array, absent: Mask) -> Solved:
     """The motion with derivatives along a direction in the place of those along its path."""
     layout = solved.layout
     columns[1:, :, absent] = np.nan
-    rotors = [columns[:, layout.rotor(link)] for link in layout.angles]
-    angles = np.empty((ORDERS, len(rotors), *absent.shape))
-    for k, (cosine, sine) in enumerate(rotor.swapaxes(0, 1) for rotor in rotors):
-        angles[:, k] = cosine[0] * sine - sine[0] * cosine
+    angles[1:, :, absent] = np.nan
     points = columns[:, : layout.first_attitude].reshape(ORDERS, -1, layout.axes, *absent.shape)
     fixed = np.zeros((ORDERS, len(solved.ready.structure.dimensions.frame), layout.axes, *absent.shape))
     fixed[..., absent] = np.nan

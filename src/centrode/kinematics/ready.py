@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.assembly import Assembled, assemble
 from centrode.kinematics.branches import branches_at_start
@@ -120,9 +121,12 @@ def _places(kinematics: Kinematics, assembled: Assembled) -> Iterator[Positions]
     mesh = mesh_of(path, looks)
     branches = branches_at_start(path, assembled.signs, assembled.angles, smooth=True)
     continuation = Continuation(kinematics, branches, assembled.positions, kinematics.numbers)
-    on_mesh = Scan(continuation, mesh).run()
-    for node in np.argmin(np.abs(mesh[:, None] - looks), axis=0):
-        at = on_mesh.mapped(lambda x, node=node: float(np.broadcast_to(x, (1, len(mesh)))[0, node]))  # type: ignore[misc]
+    Scan(continuation, mesh).run()
+    nodes = mesh[np.argmin(np.abs(mesh[:, None] - looks), axis=0)]
+    with np.errstate(all="ignore"):
+        there = kinematics.positions(ARRAYS, nodes[None, :], continuation.hooks(ARRAYS, nodes[None, :], None))
+    for k in range(len(nodes)):
+        at = there.mapped(lambda x, k=k: float(np.broadcast_to(x, (1, len(nodes)))[0, k]))  # type: ignore[misc]
         if all(np.isfinite(x) for v in at.points.values() for x in v):
             yield at
 

@@ -60,7 +60,11 @@ class Pattern:
 @lru_cache(maxsize=256)
 def pattern_of(group: Newton) -> Pattern:
     """In which order the unknowns of a group follow."""
-    whole = [c for c, row in group.equations if row == 1 and isinstance(c, PointInLink) and (c, 0) in group.equations]
+    whole = [
+        c
+        for c, row in group.equations
+        if row == 1 and isinstance(c, PointInLink) and (c, 0) in group.equations
+    ]
     left = [Entity("link", name) for name in group.links] + [Entity("point", name) for name in group.points]
     follows: list[Follow] = []
     used: set[PointInLink] = set()
@@ -109,7 +113,9 @@ class Linear:
         self._shifts: dict[Entity, Sequence[Shift]] = {}
         for follow in self.pattern.follows:
             self.tangents[follow.entity] = self._tangents(follow, at)
-        self.units = [1.0 if group.equations[i][0].angular else 1.0 / numbers.scale for i in self.pattern.kept]
+        self.units = [
+            1.0 if group.equations[i][0].angular else 1.0 / numbers.scale for i in self.pattern.kept
+        ]
         self.matrix = self._matrix()
 
     def _tangents(self, follow: Follow, at: Positions) -> dict[int, Shift]:
@@ -214,7 +220,9 @@ def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
     for x, y in zip(a, b, strict=True):
         if is_literal_zero(x) or is_literal_zero(y):
             continue
-        total = _sum(total, y if type(x) is float and x == 1.0 else x if type(y) is float and y == 1.0 else x * y)
+        total = _sum(
+            total, y if type(x) is float and x == 1.0 else x if type(y) is float and y == 1.0 else x * y
+        )
     return total
 
 
@@ -226,4 +234,7 @@ def _inverse(block: Sequence[Sequence[Number]]) -> Block:
     """Inverse of a matrix of two rows and columns."""
     (a, b), (c, d) = block
     over = 1.0 / (_dot((a,), (d,)) - _dot((b,), (c,)))
-    return (_dot((d,), (over,)), _minus(_dot((b,), (over,)))), (_minus(_dot((c,), (over,))), _dot((a,), (over,)))
+    return (_dot((d,), (over,)), _minus(_dot((b,), (over,)))), (
+        _minus(_dot((c,), (over,))),
+        _dot((a,), (over,)),
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
@@ -12,16 +13,15 @@ import xarray as xr
 from centrode import __version__
 from centrode.errors import InputError, NotComputedYet, Status
 from centrode.kinematics.dataset import labels_of
-from centrode.kinematics.grids import Lines, lines_along
+from centrode.kinematics.grids import Lines, cells_of, lines_along, reached_from
 from centrode.kinematics.holding import (
     Value,
     held_values,
     initial_values,
     named_drive,
     unit_of_value,
-    value_of,
 )
-from centrode.kinematics.reach import limits_about
+from centrode.kinematics.ranges import Ranges, comes_round, grid_nodes, node_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.locale import _, speaking
 from centrode.model.files import mechanism_text
@@ -31,12 +31,8 @@ from centrode.structure.steps import name_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
-Ranges: TypeAlias = Mapping[str, tuple[Value, Value]]
 
 DEFAULT_NODES = 181
-MOST_NODES = 1001
-BESIDE = 0.1
-"""Share of the way between the limits of a displacement that is shown beyond them on both sides."""
 
 
 def reachable_region(
@@ -54,7 +50,8 @@ def reachable_region(
         May be left out where there are two.
     ranges : drive -> (first, last) [rad or m, or texts with units]
         They hold the initial values. Left out: one turn about the initial value of an angle; the limits of a
-        displacement with the other drives at their initial values, and a little beyond.
+        displacement with the other drives at their initial values, and a little beyond. A range of one turn goes
+        on at its other end, where the mechanism stands alike.
     samples : int
         Grid lines of each drive; those of the initial values are added.
     held : drive -> value
@@ -78,24 +75,25 @@ def reachable_region(
     _refuse_what_is_not_computed(prepared)
     first, second = _two_drives(mechanism, drives)
     others = held_values(prepared, (first, second), held)
-    nodes = [_nodes(prepared, name, (first, second), others, ranges, samples) for name in (first, second)]
+    nodes = [grid_nodes(prepared, name, (first, second), others, ranges, samples) for name in (first, second)]
     along_first = lines_along(prepared, first, nodes[0], second, nodes[1], others)
     along_second = lines_along(prepared, second, nodes[1], first, nodes[0], others)
     start = initial_values(prepared)
-    seed = _node(nodes[0], start[first]), _node(nodes[1], start[second])
+    seed = node_of(nodes[0], start[first]), node_of(nodes[1], start[second])
     if not along_second.closed[seed]:
         raise InputError(
             "hold",
             _("the mechanism does not close there in its initial position"),
             _("choose values at which it closes"),
         )
-    passages = _passages(along_first, nodes[0]).T, _passages(along_second, nodes[1])
-    reached = _reached(along_second.closed, *passages, seed)
+    passages = along_first.passages(nodes[0]).T, along_second.passages(nodes[1])
+    rounds = [comes_round(mechanism, name, n) for name, n in zip((first, second), nodes, strict=True)]
+    reached = reached_from(along_second.closed, *passages, seed, rounds)
     status = np.where(reached, Status.OK, np.where(along_second.closed, Status.CUT_OFF, Status.OPEN))
     variables: dict[str, Any] = {
         "status": _named(("first", "second"), status.astype(np.int8), "status of the node", "1"),
         "margin": _named(
-            ("first", "second"), _margin(along_second), "smallest radicand over its greatest", "1"
+            ("first", "second"), along_second.margin(), "smallest radicand over its greatest", "1"
         ),
         **_border(prepared, nodes, (along_first, along_second), reached),
     }
@@ -131,93 +129,6 @@ def _two_drives(mechanism: Mechanism, drives: Sequence[str] | None) -> tuple[str
     return chosen[0], chosen[1]
 
 
-def _nodes(
-    prepared: Ready,
-    name: str,
-    pair: tuple[str, str],
-    held: Mapping[str, float],
-    ranges: Ranges | None,
-    samples: int,
-) -> Array:
-    """Evenly spaced values of a drive over its range, with its initial value among them."""
-    if isinstance(samples, bool) or not 2 <= samples <= MOST_NODES:
-        raise InputError(
-            _("samples"),
-            _("{samples} samples were asked for").format(samples=samples),
-            _("ask for {least} to {most}").format(least=2, most=MOST_NODES),
-        )
-    for given in ranges or {}:
-        if given not in pair:
-            raise InputError("ranges", _("{name} is not one of the two drives").format(name=given))
-    mechanism, start = prepared.mechanism, initial_values(prepared)
-    drive = named_drive(mechanism, name, "ranges")
-    if ranges is not None and name in ranges:
-        low, high = sorted(value_of(mechanism, drive, value, f"range {name}") for value in ranges[name])
-    elif drive.kind == "angle":
-        low, high = start[name] - np.pi, start[name] + np.pi
-    else:
-        low, high = _between_limits(prepared, name, {**start, **held})
-    if not low <= start[name] <= high or low == high:
-        raise InputError(
-            f"range {name}",
-            _("it has to hold the initial value, {value:.6g}").format(value=start[name]),
-            _("ask for a range about it"),
-        )
-    return np.union1d(np.linspace(low, high, samples), [start[name]])
-
-
-def _between_limits(prepared: Ready, name: str, values: Mapping[str, float]) -> tuple[float, float]:
-    """Range of a displacement: its limits with the other drives held, and a little beyond."""
-    held = {drive: value for drive, value in values.items() if drive != name}
-    low, high = limits_about(prepared, name, held, values[name]).interval
-    if not np.isfinite(high - low):
-        raise InputError(
-            f"range {name}", _("its range is unlimited"), _("say from where to where, first and last value")
-        )
-    beyond = BESIDE * (high - low)
-    cylinder = named_drive(prepared.mechanism, name, "ranges").kind == "distance"
-    return (max(low - beyond, 1e-3 * high) if cylinder else low - beyond), high + beyond
-
-
-def _node(nodes: Array, value: float) -> int:
-    return int(np.argmin(np.abs(nodes - value)))
-
-
-def _passages(lines: Lines, nodes: Array) -> Mask:
-    """Where a line is closed at two neighbouring nodes and passes no limit between them: (lines, nodes - 1)."""
-    free = lines.closed[:, :-1] & lines.closed[:, 1:]
-    line, value, _group = lines.limits
-    cell = np.clip(np.searchsorted(nodes, value, side="right") - 1, 0, len(nodes) - 2)
-    inside = (nodes[cell] < value) & (value < nodes[cell + 1])
-    free[line[inside], cell[inside]] = False
-    return free
-
-
-def _reached(closed: Mask, first: Mask, second: Mask, seed: tuple[int, int]) -> Mask:
-    """Nodes connected with the seed by free passages along the first and the second drive."""
-    reached = np.zeros(closed.shape, dtype=bool)
-    reached[seed] = closed[seed]
-    while True:
-        before = int(reached.sum())
-        for free, here in ((first, reached), (second.T, reached.T)):
-            for k in range(len(free)):
-                here[k + 1] |= here[k] & free[k]
-            for k in range(len(free) - 1, -1, -1):
-                here[k] |= here[k + 1] & free[k]
-        if int(reached.sum()) == before:
-            return reached
-
-
-def _margin(lines: Lines) -> Array:
-    """Smallest radicand of all groups, each over its greatest; NaN where none is known."""
-    least = np.full(lines.closed.shape, np.nan)
-    for values in lines.margins.values():
-        with np.errstate(all="ignore"):
-            greatest = float(np.nanmax(np.abs(values), initial=0.0))
-            least = np.fmin(least, values / greatest if greatest > 0.0 else values)
-    return np.ones_like(least) if not lines.margins else least
-
-
 def _border(
     prepared: Ready, nodes: Sequence[Array], lines: tuple[Lines, Lines], reached: Mask
 ) -> dict[str, Any]:
@@ -227,7 +138,7 @@ def _border(
         line, value, group = found.limits
         across = nodes[1 - k][line]
         places.append(np.stack([value, across] if k == 0 else [across, value], axis=-1))
-        cell = np.clip(np.searchsorted(nodes[k], value, side="right") - 1, 0, len(nodes[k]) - 2)
+        cell = cells_of(nodes[k], value)
         grid = reached.T if k == 0 else reached
         touching.append(grid[line, cell] | grid[line, cell + 1])
         groups.append(group)
@@ -272,6 +183,6 @@ def _dataset(
         "title": mechanism.title,
         "mechanism": mechanism_text(mechanism),
         "version": __version__,
-        **{f"held_{name}": value for name, value in held.items()},
+        "held": json.dumps(held),
     }
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)

@@ -47,6 +47,13 @@ class Samples:
     status: npt.NDArray[np.int8]
     followed: set[str] = field(default_factory=set)
 
+    @classmethod
+    def of_layout(cls, layout: Layout, lanes: int, samples: int) -> Samples:
+        """Room for samples."""
+        columns = np.empty((ORDERS, layout.width, lanes, samples))
+        angles = np.empty((ORDERS, len(layout.angles), lanes, samples))
+        return cls(layout, columns, angles, np.zeros((lanes, samples), dtype=np.int8))
+
     def of(self, rows: slice) -> Samples:
         """A view of some mechanisms of the batch."""
         return Samples(self.layout, self.columns[:, :, rows], self.angles[:, :, rows], self.status[rows])
@@ -67,9 +74,10 @@ def evaluate_columns(continuation: Continuation, samples: Samples, parameter: Ar
     with np.errstate(all="ignore"):
         at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)
         fill_columns(continuation.kinematics, layout, at, samples.columns)
+    judging.opened |= continuation.kinematics.path.impossible(parameter)
     for k, link in enumerate(layout.angles):
         if layout.runs_on and link in at.angles:
-            _fill(samples.angles[:, k], at.angles[link])
+            fill_number(samples.angles[:, k], at.angles[link])
             samples.followed.add(link)
     return judging
 
@@ -122,10 +130,10 @@ def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Ar
 def fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
     """Values and derivatives of every column, from jets."""
     for k, number in enumerate(layout.numbers(JETS, kinematics.numbers, at)):
-        _fill(columns[:, k], number)
+        fill_number(columns[:, k], number)
 
 
-def _fill(column: Array, number: Number) -> None:
+def fill_number(column: Array, number: Number) -> None:
     """A number with its derivatives (3, lanes, n)."""
     if isinstance(number, Jet):
         column[0], column[1] = number.coefficients[:2]
@@ -138,7 +146,6 @@ def _fill(column: Array, number: Number) -> None:
 def sample(continuation: Continuation, parameter: Array, samples: Samples) -> None:
     """Fill in columns and statuses."""
     judged = evaluate_columns(continuation, samples, parameter)
-    judged.opened |= continuation.kinematics.path.impossible(parameter)
     reach = continuation.branches.reaches()
     margin = 4.0 * np.spacing(np.abs(parameter))
     beyond = (parameter < reach[:, :1] - margin) | (parameter > reach[:, 1:] + margin)

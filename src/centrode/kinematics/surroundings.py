@@ -69,7 +69,9 @@ class Surroundings:
 
     def blank(self, lanes: Lanes) -> System:
         """The group's equations beside nothing: for what needs the state alone."""
-        return System(self.equations, self.kinematics.taken(lanes).numbers, Positions({}, {}, {}, {}), len(lanes))
+        return System(
+            self.equations, self.kinematics.taken(lanes).numbers, Positions({}, {}, {}, {}), len(lanes)
+        )
 
     def with_numbers(self, numbers: Dimensions) -> Surroundings:
         """The same part of the plan with other dimensions."""
@@ -124,4 +126,5 @@ def shaped(at: Positions, names: Newton, shape: tuple[int, ...], into: Positions
         into.points[name] = folded.points[name]
     for name in names.links:
         into.poses[name] = folded.poses[name]
-        into.angles[name] = folded.angles[name]
+        if name in folded.angles:
+            into.angles[name] = folded.angles[name]

@@ -17,6 +17,8 @@ import numpy.typing as npt
 from centrode.kinematics.branches import Event
 from centrode.kinematics.crossings import crossing
 from centrode.kinematics.curves import Places, Reached, quintic, reach
+from centrode.kinematics.limits import limits
+from centrode.kinematics.newton import total
 from centrode.kinematics.surroundings import Surroundings
 from centrode.kinematics.tracks import Piece, Tracks, Trail
 
@@ -33,6 +35,8 @@ STRAIGHT = 0.9
 """Cosine of the angle by which the curve may turn in a step."""
 SHRINKING = 0.3
 """Part of a bordered determinant that must be left after a step, but for small ones."""
+AT_A_STOP = 1e-6
+"""A group that cannot be followed any further this close to a limit of one before it ends with that."""
 MOST = 400
 """Places a unit of the path, and in all at least, after which a group is given up."""
 
@@ -62,9 +66,17 @@ class Walkers:
 
 
 def trace(
-    around: Surroundings, start: Array, initial: float, extent: tuple[float, float], smooth: bool
+    around: Surroundings,
+    start: Array,
+    initial: float,
+    extent: tuple[float, float],
+    reaches: Array,
+    smooth: bool,
 ) -> tuple[Tracks, list[Event]]:
-    """Tracks of a group from the states (lanes, width) in the initial position, and the events on the way."""
+    """Tracks of a group from the states (lanes, width) in the initial position, and the events on the way.
+
+    `reaches` (lanes, 2) are the nearest limits of the groups before it, where what it stands on ends.
+    """
     walkers = _setting_out(around, start, initial, extent)
     events: list[Event] = []
     most = MOST * (1.0 + float(np.max(np.abs(walkers.end - initial))) / around.unit)
@@ -74,12 +86,17 @@ def trace(
     for walker in np.nonzero(walkers.active)[0]:
         walkers.stop(walker, lost=True)
     lanes = len(start)
+    for trail, stop in zip(walkers.trails, reaches.T.reshape(-1), strict=True):
+        if (
+            trail.end == "lost"
+            and trail.pieces
+            and abs(trail.pieces[-1].last - stop) <= AT_A_STOP * around.unit
+        ):
+            trail.end, trail.limit = "limit", float(stop)
     return Tracks.of(walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1]), events
 
 
-def _setting_out(
-    around: Surroundings, start: Array, initial: float, extent: tuple[float, float]
-) -> Walkers:
+def _setting_out(around: Surroundings, start: Array, initial: float, extent: tuple[float, float]) -> Walkers:
     lanes = len(start)
     both = np.tile(np.arange(lanes), 2)
     forward = np.repeat([-1.0, 1.0], lanes)
@@ -111,7 +128,7 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     there = reach(around, walkers.lane[who], here, here.along, parameter, state)
     step = walkers.step[who]
     with np.errstate(all="ignore"):
-        cosine = np.sum(there.places.along * here.along, axis=1)
+        cosine = total(there.places.along * here.along)
         left = np.abs(there.places.size / here.size)
         good = there.found & (there.wrong <= TRUST) & (cosine >= STRAIGHT) & (there.arc > 0.0)
         good &= (step <= CAUTIOUS) | (left >= SHRINKING)
@@ -130,7 +147,7 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     ends = good & (there.places.along[:, -1] * walkers.forward[who] <= 0.0)
     on = good & ~ends
     if ends.any():
-        events += _turn_back(around, walkers, who[ends], here.of(ends), there, ends)
+        events += _turn_back(around, walkers, who[ends], here.of(ends), there.of(ends))
     if on.any():
         _go_on(walkers, who[on], here.of(on), there.of(on), passed[on], smooth)
     return events
@@ -143,11 +160,11 @@ def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: Places) 
     passed, rate = walkers.passed[who].T[:, :, None]
     with np.errstate(all="ignore"):
         share = 1.0 + step * rate / passed
-        total = np.zeros(taylor.shape)
+        value = np.zeros(taylor.shape)
         for k in range(5, -1, -1):
-            total = total * share + walkers.last[who, k]
-        end = walkers.last[who].sum(axis=1)
-    ahead = np.where(np.isfinite(total), total - end, taylor)
+            value = value * share + walkers.last[who, k]
+        end = total(walkers.last[who])
+    ahead = np.where(np.isfinite(value), value - end, taylor)
     parameter = here.parameter + ahead[:, -1]
     return parameter, around.blank(walkers.lane[who]).righted(here.state + ahead[:, :-1])
 
@@ -185,42 +202,22 @@ def _go_on(walkers: Walkers, who: Lanes, here: Places, there: Reached, passed: A
 
 
 def _turn_back(
-    around: Surroundings, walkers: Walkers, who: Lanes, here: Places, there: Reached, ends: Mask
+    around: Surroundings, walkers: Walkers, who: Lanes, here: Places, there: Reached
 ) -> list[Event]:
     """Limits between places and those found beyond them; the walkers stop there."""
-    lanes, found = walkers.lane[who], there.of(ends)
-    whole = quintic(here, found)
-    share = _first_turn(whole[:, :, -1])
-    for _pass in range(4):
-        value = sum(whole[:, k] * share[:, None] ** k for k in range(6))
-        parameter = here.parameter + value[:, -1]
-        state = around.blank(lanes).righted(value[:, :-1])
-        limit = reach(around, lanes, here, here.along, parameter, state)
-        with np.errstate(all="ignore"):
-            change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / found.arc
-        share = share + np.where(np.isfinite(change), np.clip(change, -0.1, 0.1), 0.0)
+    limit = limits(around, walkers.lane[who], here, there)
+    pieces = quintic(here, limit.reached)
     events = []
-    pieces = quintic(here, limit)
     for k, walker in enumerate(who):
-        trail, at = walkers.trails[walker], float(limit.places.parameter[k])
-        if not limit.found[k]:
-            walkers.stop(walker, lost=True)
+        trail, at = walkers.trails[walker], float(limit.reached.places.parameter[k])
+        walkers.stop(walker, lost=not limit.reached.found[k])
+        if not limit.reached.found[k]:
             continue
         sense = float(walkers.sense[walker] * walkers.forward[walker])
-        trail.pieces.append(Piece(pieces[k], float(here.parameter[k]), float(here.parameter[k]), at, sense))
-        trail.end, trail.limit, trail.state = "limit", at, limit.places.state[k]
-        walkers.stop(walker)
+        start = float(here.parameter[k])
+        trail.pieces.append(Piece(pieces[k], start, start, at, sense))
+        trail.end, trail.limit, trail.margin = "limit", at, float(limit.margin[k])
+        trail.state = limit.reached.places.state[k]
         backwards = bool(walkers.forward[walker] < 0.0)
-        events.append(Event("limit", around.group, int(lanes[k]), at, backwards))
+        events.append(Event("limit", around.group, int(walkers.lane[walker]), at, backwards))
     return events
-
-
-def _first_turn(coefficients: Array) -> Array:
-    """The first share in [0, 1] at which polynomials (k, 6) turn back."""
-    found = np.full(len(coefficients), 0.5)
-    for k, c in enumerate(coefficients):
-        roots = np.polynomial.Polynomial(c).deriv().roots()
-        real = np.sort(roots.real[np.abs(roots.imag) < 1e-6])
-        inside = real[(real >= -1e-6) & (real <= 1.0 + 1e-6)]
-        found[k] = inside[0] if len(inside) else 0.5
-    return found

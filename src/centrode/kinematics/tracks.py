@@ -18,9 +18,7 @@ Lanes: TypeAlias = npt.NDArray[np.intp]
 Mask: TypeAlias = npt.NDArray[np.bool_]
 End: TypeAlias = Literal["on", "limit", "lost"]
 
-AT_THE_LIMIT = 64.0
-"""A place this many units of rounding away from a limit is the limit itself."""
-HALVINGS = 30
+HALVINGS, CLOSE = 60, 1e-13
 
 
 @dataclass(frozen=True)
@@ -40,12 +38,17 @@ class Piece:
 
 @dataclass
 class Trail:
-    """The pieces in one sense of the path, outward from the initial position, and how they end."""
+    """The pieces in one sense of the path, outward from the initial position, and how they end.
+
+    A place closer than `margin` to a limit is the limit itself.
+    """
 
     pieces: list[Piece] = field(default_factory=list)
     end: End = "on"
     limit: float = np.nan
+    margin: float = -1.0
     state: Array | None = None
+    """There, if the limit is the group's own."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +56,6 @@ class Foretold:
     """Where Newton's method starts at every place, and what is known of the place beforehand."""
 
     state: Array
-    slope: Array
     sense: Array
     beyond: Mask
     limit: Mask
@@ -61,15 +63,19 @@ class Foretold:
 
 @dataclass(frozen=True)
 class Tracks:
-    """The tracks of all mechanisms of a batch: one trail behind and one ahead of each initial position."""
+    """The tracks of all mechanisms of a batch: one trail behind and one ahead of each initial position.
+
+    `powers` (6, width + 1, pieces) are the coefficients of all pieces.
+    """
 
     lanes: int
-    coefficients: Array
+    powers: Array
     origin: Array
     sense: Array
     edges: list[Array]
     first: Lanes
     limits: Array
+    margins: Array
     at_limit: Array
     followed: Array
 
@@ -78,7 +84,8 @@ class Tracks:
         """Tracks from trails; a mechanism without pieces has no track."""
         pieces: list[Piece] = []
         edges, first = [], []
-        limits, at_limit = np.full((len(ahead), 2), np.nan), np.full((len(ahead), 2, width), np.nan)
+        limits, margins = np.full((len(ahead), 2), np.nan), np.zeros((len(ahead), 2))
+        at_limit = np.full((len(ahead), 2, width), np.nan)
         followed = np.full((len(ahead), 2), np.nan)
         for lane, trails in enumerate(zip(behind, ahead, strict=True)):
             own = [*reversed(trails[0].pieces), *trails[1].pieces]
@@ -88,17 +95,20 @@ class Tracks:
             for side, trail in enumerate(trails):
                 if trail.pieces:
                     followed[lane, side] = trail.pieces[-1].last
-                if trail.end == "limit" and trail.state is not None:
-                    limits[lane, side], at_limit[lane, side] = trail.limit, trail.state
-        empty = np.zeros((0, 6, width + 1))
+                if trail.end == "limit":
+                    limits[lane, side], margins[lane, side] = trail.limit, trail.margin
+                if trail.state is not None:
+                    at_limit[lane, side] = trail.state
+        coefficients = np.array([piece.coefficients for piece in pieces]).reshape(-1, 6, width + 1)
         return cls(
             len(ahead),
-            np.array([piece.coefficients for piece in pieces]) if pieces else empty,
+            np.ascontiguousarray(np.moveaxis(coefficients, 0, 2)),
             np.array([piece.origin for piece in pieces]),
             np.array([piece.sense for piece in pieces]),
             edges,
             np.array(first, dtype=np.intp),
             limits,
+            margins,
             at_limit,
             followed,
         )
@@ -106,22 +116,17 @@ class Tracks:
     def foretell(self, parameter: Array, lanes: Lanes) -> Foretold:
         """Starting states at parameters, one lane for each."""
         which, known = self._pieces(parameter, lanes)
-        share = np.zeros(len(parameter))
-        state = np.full((len(parameter), self.at_limit.shape[2]), np.nan)
-        slope = np.full(state.shape, np.nan)
+        state = np.full((self.at_limit.shape[2], len(parameter)), np.nan).T
         sense = np.zeros(len(parameter))
-        if known.any():
-            chosen = which[known]
-            on_curve = self.coefficients[chosen]
-            share = _share(on_curve[:, :, -1], parameter[known] - self.origin[chosen])
-            value, rate = _horner(on_curve, share)
-            state[known] = value[:, :-1]
-            with np.errstate(all="ignore"):
-                slope[known] = rate[:, :-1] / rate[:, -1:]
+        chosen = which[known]
+        if len(chosen):
+            share = _share(self.powers[:, -1], chosen, parameter[known] - self.origin[chosen])
+            for column, powers in enumerate(np.moveaxis(self.powers[:, :-1], 1, 0)):
+                state[known, column] = _value(powers, chosen, share)
             sense[known] = self.sense[chosen]
         limit = self._at_limits(parameter, lanes, state)
         past = (parameter < self.limits[lanes, 0]) | (parameter > self.limits[lanes, 1])
-        return Foretold(state, slope, sense, past & ~limit, limit)
+        return Foretold(state, sense, past & ~limit, limit)
 
     def _pieces(self, parameter: Array, lanes: Lanes) -> tuple[Lanes, Mask]:
         """The piece of each place, and whether the curve was followed as far as that."""
@@ -141,35 +146,41 @@ class Tracks:
         for side in (0, 1):
             place = self.limits[lanes, side]
             with np.errstate(invalid="ignore"):
-                here = np.abs(parameter - place) <= AT_THE_LIMIT * np.spacing(np.maximum(np.abs(place), 1e-3))
+                here = np.abs(parameter - place) <= self.margins[lanes, side]
             state[here] = self.at_limit[lanes[here], side]
             limit |= here
         return limit
 
 
-def _share(coefficients: Array, wanted: Array) -> Array:
-    """Where polynomials (n, 6) that run one way from 0 to 1 take values (n,): halving, then Newton's method."""
+def _share(powers: Array, which: Lanes, wanted: Array) -> Array:
+    """Where polynomials (6, pieces) that run one way from 0 to 1 take values: Newton's method between bounds."""
+    own = powers[:, which]
+    slopes = own[1:] * np.arange(1.0, len(own))[:, None]
     low, high = np.zeros(len(wanted)), np.ones(len(wanted))
-    rising = coefficients[:, 1:].sum(axis=1) > 0.0
-    share = np.full(len(wanted), 0.5)
-    for _step in range(HALVINGS):
-        value, slope = _horner(coefficients[:, :, None], share)
-        short = (value[:, 0] < wanted) == rising
-        low, high = np.where(short, share, low), np.where(short, high, share)
-        with np.errstate(all="ignore"):
-            better = share - (value[:, 0] - wanted) / slope[:, 0]
-        moved = np.where((better > low) & (better < high), better, 0.5 * (low + high))
-        if np.array_equal(moved, share):
-            break
-        share = moved
-    return share
+    whole = _horner(own[1:], np.ones(len(wanted)))
+    with np.errstate(all="ignore"):
+        share = np.clip(wanted / whole, 0.0, 1.0)
+        going = np.ones(len(wanted), dtype=bool)
+        for _step in range(HALVINGS):
+            beyond = _horner(own, share) - wanted
+            short = (beyond < 0.0) == (whole > 0.0)
+            low, high = np.where(short, share, low), np.where(short, high, share)
+            better = share - beyond / _horner(slopes, share)
+            better = np.where((better >= low) & (better <= high), better, 0.5 * (low + high))
+            change, share = np.abs(better - share), np.where(going, better, share)
+            going &= change > CLOSE  # each place stops by itself
+            if not going.any():
+                break
+    return np.asarray(share, dtype=np.float64)
 
 
-def _horner(coefficients: Array, share: Array) -> tuple[Array, Array]:
-    """Values and derivatives of polynomials (n, 6, columns) at shares (n,)."""
-    value = coefficients[:, -1].copy()
-    slope = np.zeros(value.shape)
-    for k in range(coefficients.shape[1] - 2, -1, -1):
-        slope = slope * share[:, None] + value
-        value = value * share[:, None] + coefficients[:, k]
-    return value, slope
+def _value(powers: Array, which: Lanes, share: Array) -> Array:
+    """Values of polynomials (6, pieces), a piece and a share for each place."""
+    return _horner(powers[:, which], share)
+
+
+def _horner(coefficients: Array, share: Array) -> Array:
+    value = coefficients[-1]
+    for c in coefficients[-2::-1]:
+        value = value * share + c
+    return np.asarray(value, dtype=np.float64)

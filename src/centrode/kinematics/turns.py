@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import Rounded
+from centrode.kinematics.pace import nearest_node
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -22,20 +23,18 @@ TURN = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class Turns:
-    """An angle at evenly spaced nodes, and the whole turns to add to it there.
+    """An angle at the nodes of a mesh, and the whole turns to add to it there.
 
     `angle` and `turns` have shape (lanes, nodes), or (1, nodes) where the lanes agree.
     """
 
-    first: float
-    step: float
+    mesh: Array
     angle: Array
     turns: Array
 
     def continued(self, angle: Number, parameter: Array, lanes: Lanes | None) -> Number:
         """An angle in (-pi, pi], over any algebra, with its turns at parameters as `Hooks` has them."""
-        node = np.round((parameter - self.first) / self.step).astype(np.intp)
-        node = np.clip(node, 0, self.angle.shape[1] - 1)
+        node = nearest_node(self.mesh, parameter)
         if lanes is None:
             where: Any = (slice(None), node.reshape(-1))
         else:
@@ -54,7 +53,7 @@ def counted(angle: Number, mesh: Array, initial: float, start: float) -> Turns:
     turns = np.zeros(values.shape)
     np.cumsum(steps, axis=1, out=turns[:, 1:])
     turns += (np.round((initial - values[:, node]) / TURN) - turns[:, node])[:, None]
-    return Turns(float(mesh[0]), float(mesh[1] - mesh[0]), values, turns)
+    return Turns(mesh, values, turns)
 
 
 def _bridged(values: Array, start: int) -> Array:

@@ -63,7 +63,8 @@ def rolled_turn(
     gearing, phase = numbers.gearing, numbers.gearing.phase[rolling.rolling]
     if isinstance(gearing.track[rolling.rolling], Straight):
         return phase - rolling.slide(numbers, at) / gearing.radius[rolling.rolling]
-    bearing = continued(bearing_key(rolling.rolling), rolling.bearing(m, numbers, at))
+    key = bearing_key(rolling.rolling)
+    bearing = at.angles[key] = continued(key, rolling.bearing(m, numbers, at))
     return phase + gearing.spin(rolling.rolling) * bearing
 
 

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from centrode.present.coefficient_tables import write_coefficients_csv
     from centrode.present.drawing import draw_mechanism
     from centrode.present.figures import motion_figures
+    from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
-    from centrode.present.scene import scene_of
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
 
 __all__ = [
@@ -41,10 +41,10 @@ _attached, __dir__, _names = lazy_loader.attach(
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
         "figures": ["motion_figures"],
+        "reading": ["scene_of"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],
-        "scene": ["scene_of"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
     },
 )

@@ -15,9 +15,10 @@ from centrode.present.obstacles import drive_arcs, ground_line, lines, unit
 from centrode.present.scene import Array, Scene, corners
 from centrode.present.shown import plain
 from centrode.present.style import GROUND, INK, Pen, pens
+from centrode.present.wheels import cylinders, round_track, straight_track, wheel_at
 
 if TYPE_CHECKING:
-    from centrode.model.mechanism import Guide
+    from centrode.model.mechanism import Guide, Rolling
 
 MARGIN = 0.10  # room around the drawing, as a part of its extent
 NAME_POINTS = 10.0  # height of the names of points [pt]
@@ -76,6 +77,9 @@ def frame_axes(axes: Axes, scene: Scene) -> None:
 def draw_links(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen], alpha: float = 1.0) -> None:
     """Links as lines and filled polygons, their slots, and the sliders."""
     places = scene.at(sample)
+    draw_wheels(axes, scene, sample, links, alpha)
+    for _drive, foot, mouth, end in cylinders(scene, sample):
+        signs.cylinder(axes, foot, mouth, end, scene.sign, alpha)
     slotted = {guide.on for guide in scene.mechanism.guides}
     for name, link in scene.mechanism.links.items():
         outline = [places[point] for point in corners(link) if point in places]
@@ -90,6 +94,21 @@ def draw_links(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen], 
             turn = 0.0 if guide.on == "frame" else float(scene.turns[guide.on][sample])
             tint = INK if guide.link is None else links[guide.link].colour
             signs.slider(axes, places[guide.point], turn + guide.direction_angle, scene.sign, tint, alpha)
+
+
+def draw_wheels(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen], alpha: float) -> None:
+    """Rolling wheels with a spoke, and the tracks that moving links carry."""
+    for wheel in scene.mechanism.rolling:
+        disc = wheel_at(scene, wheel, sample)
+        if disc is not None:
+            signs.wheel(axes, disc.centre, disc.radius, disc.angle, links[wheel.link].colour, alpha)
+        if wheel.on == "frame":
+            continue
+        track, line = round_track(scene, wheel, sample), straight_track(scene, wheel, sample)
+        if track is not None:
+            signs.circle(axes, track.centre, track.radius, links[wheel.on].colour, alpha)
+        if line is not None:
+            draw_body(axes, line, links[wheel.on], alpha, wheel.on, behind=True)
 
 
 def draw_body(
@@ -143,18 +162,32 @@ def draw_slot(
 
 
 def draw_frame(axes: Axes, scene: Scene, sample: int) -> None:
-    """Hatched guides of the frame and its fixed hinges."""
+    """Hatched guides and tracks of the frame and its fixed hinges."""
     used = {point for link in scene.mechanism.links.values() for point in link.coordinates}
+    used |= {point for drive in scene.mechanism.drives for point in drive.distance or ()}
     places = scene.at(sample)
     for guide in scene.mechanism.guides:
         line = scene.guide_line(guide, sample) if guide.on == "frame" else None
         if line is not None:
             signs.ground(axes, *ground_line(scene, guide, line), scene.sign)
+    for wheel in scene.mechanism.rolling:
+        if wheel.on == "frame":
+            draw_track(axes, scene, wheel)
     for name in scene.mechanism.frame.points:
         if name in used and name in places:
             signs.fixed_hinge(axes, places[name], scene.sign)
         elif name in places:
             signs.traced_point(axes, places[name], scene.sign, GROUND)
+
+
+def draw_track(axes: Axes, scene: Scene, wheel: Rolling) -> None:
+    """A line or a circle of the frame, hatched on the side away from its wheel."""
+    track, line = round_track(scene, wheel, 0), straight_track(scene, wheel, 0)
+    if track is not None:
+        signs.round_ground(axes, track.centre, track.radius, not wheel.along.inside, scene.sign)
+    if line is not None:
+        x, y = wheel.along.unit
+        signs.ground(axes, *line, np.array([y, -x]), scene.sign)
 
 
 def draw_hinges(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen]) -> None:
@@ -164,7 +197,8 @@ def draw_hinges(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen])
             continue
         owners = [link for link, body in scene.mechanism.links.items() if name in body.coordinates]
         pins = [guide for guide in scene.mechanism.guides if guide.point == name and guide.link is None]
-        if len(owners) + len(pins) >= 2:
+        ends = [drive for drive in scene.mechanism.drives if name in (drive.distance or ())]
+        if len(owners) + len(pins) + len(ends) >= 2:
             signs.hinge(axes, place, scene.sign)
         else:
             signs.traced_point(axes, place, scene.sign, links[owners[0]].colour if owners else INK)

@@ -1,4 +1,4 @@
-"""The figures of a planar motion."""
+"""The figures of a motion."""
 
 from __future__ import annotations
 
@@ -11,9 +11,19 @@ from matplotlib.figure import Figure
 from centrode.locale import _
 from centrode.present.abscissa import Abscissa, main_abscissa, over_drive
 from centrode.present.curves import sheet
-from centrode.present.panels import Motion, Rows, of_coefficients, of_guides, of_links, of_points
+from centrode.present.globe import Globe, globe_of
+from centrode.present.panels import (
+    Motion,
+    Rows,
+    of_coefficients,
+    of_guides,
+    of_joints,
+    of_links,
+    of_points,
+)
 from centrode.present.pictures import mechanism_figure, paths_figure
-from centrode.present.scene import Scene, scene_of
+from centrode.present.reading import scene_of
+from centrode.present.scene import Scene
 from centrode.present.style import house_style, pens
 
 if TYPE_CHECKING:
@@ -26,7 +36,7 @@ def motion_figures(
     instants: Sequence[float] = (),
     at_instants: xarray.Dataset | None = None,
 ) -> dict[str, Figure]:
-    """Figures of a planar motion, by name.
+    """Figures of a motion, by name.
 
     Parameters
     ----------
@@ -44,16 +54,18 @@ def motion_figures(
     -------
     dict of name -> Figure
         "mechanism", "paths", "angles", "angular-velocities", "angular-accelerations", "velocities",
-        "accelerations", "slides", "kinematic-coefficients": those that have something to show.
+        "accelerations", "slides", "kinematic-coefficients": those that have something to show. On the sphere
+        "joint-angles", "joint-velocities" and "joint-accelerations" in place of "angles".
     """
     with house_style():
-        scene = scene_of(mechanism, dataset)
+        scene = read_scene(mechanism, dataset)
         kept = {
             "link": pens(mechanism.link_names),
+            "joint": pens(mechanism.link_names),
             "point": pens(mechanism.moving_points),
             "guide": pens(guide.id for guide in mechanism.guides),
         }
-        motion = Motion(mechanism, dataset, scene, main_abscissa(mechanism, dataset), kept)
+        motion = Motion(mechanism, dataset, main_abscissa(mechanism, dataset), kept)
         figures = {
             "mechanism": mechanism_figure(*_with(mechanism, dataset, at_instants), instants),
             "paths": paths_figure(scene, dataset, motion.abscissa, kept["point"]),
@@ -66,20 +78,31 @@ def motion_figures(
 
 def _with(
     mechanism: Mechanism, dataset: xarray.Dataset, more: xarray.Dataset | None
-) -> tuple[Scene, xarray.Dataset]:
+) -> tuple[Scene | Globe, xarray.Dataset]:
     """Scene and samples of a motion, with samples of another behind them."""
     if more is None:
-        return scene_of(mechanism, dataset), dataset
+        return read_scene(mechanism, dataset), dataset
     together = [data.drop_dims("event", errors="ignore") for data in (more, dataset)]
     joined = xarray.concat(together, dim="sample", data_vars="minimal")
-    return scene_of(mechanism, joined), joined
+    return read_scene(mechanism, joined), joined
+
+
+def read_scene(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene | Globe:
+    """Where everything stands, in the plane or on the sphere."""
+    on_sphere = mechanism.space == "sphere"
+    return globe_of(mechanism, dataset) if on_sphere else scene_of(mechanism, dataset)
 
 
 def sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:
     """Title, panels and abscissa of every figure of curves."""
     main = motion.abscissa
     found = {
-        "angles": (_("Angles of the links"), of_links(motion, "angle"), main),
+        **(joint_sheets(motion) if "joint" in motion.dataset.dims else {}),
+        **(
+            {"angles": (_("Angles of the links"), of_links(motion, "angle"), main)}
+            if motion.axes == 2
+            else {}
+        ),
         "angular-velocities": (
             _("Angular velocities of the links"),
             of_links(motion, "angular_velocity"),
@@ -98,3 +121,21 @@ def sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:
         over = over_drive(motion.mechanism, motion.dataset)
         found["kinematic-coefficients"] = (_("Kinematic coefficients"), of_coefficients(motion), over)
     return found
+
+
+def joint_sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:
+    """Angles of links from their reference arcs, and the rates of these."""
+    main = motion.abscissa
+    return {
+        "joint-angles": (_("Angles from the reference arcs"), of_joints(motion, "joint_angle"), main),
+        "joint-velocities": (
+            _("Angular velocities from the reference arcs"),
+            of_joints(motion, "joint_velocity"),
+            main,
+        ),
+        "joint-accelerations": (
+            _("Angular accelerations from the reference arcs"),
+            of_joints(motion, "joint_acceleration"),
+            main,
+        ),
+    }

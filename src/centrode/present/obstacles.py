@@ -10,6 +10,7 @@ import numpy as np
 
 from centrode.present import signs
 from centrode.present.scene import Array, Scene, corners
+from centrode.present.wheels import cylinders, round_track, straight_track, wheel_at
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Guide
@@ -33,6 +34,19 @@ def lines(scene: Scene, sample: int) -> Segments:
             found += [(places[name], places[name] + foot) for foot in feet]
     for arc in drive_arcs(scene, sample):
         found += along(list(arc))
+    return found + wheel_lines(scene, sample)
+
+
+def wheel_lines(scene: Scene, sample: int) -> Segments:
+    """Wheels, tracks and cylinders as segments."""
+    found: Segments = []
+    for wheel in scene.mechanism.rolling:
+        for disc in (wheel_at(scene, wheel, sample), round_track(scene, wheel, sample)):
+            found += [] if disc is None else around(list(disc.outline))
+        line = straight_track(scene, wheel, sample)
+        found += [] if line is None else [line]
+    for _drive, foot, mouth, end in cylinders(scene, sample):
+        found += [*around(list(signs.barrel_outline(foot, mouth, scene.sign))), (mouth, end)]
     return found
 
 

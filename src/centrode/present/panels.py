@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 
 from centrode.present.abscissa import Abscissa
 from centrode.present.curves import Panel
-from centrode.present.scene import Scene
 from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.style import Pen, in_panels
 from centrode.quantities import QUANTITIES
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Rows = list[list[Panel]]
-COMPONENTS = ("x", "y")
 MAGNITUDE = "magnitude"
 
 
@@ -33,20 +32,37 @@ class Motion:
 
     mechanism: Mechanism
     dataset: xarray.Dataset
-    scene: Scene
     abscissa: Abscissa
     pens: Mapping[str, Mapping[str, Pen]]
 
+    @property
+    def axes(self) -> int:
+        """Number of components of a place."""
+        return int(self.dataset.sizes["axis"])
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(self.dataset["axis"].to_numpy().tolist())
+
 
 def of_links(motion: Motion, variable: str) -> Rows:
-    """One panel below another, with as many links each as can be told apart."""
-    return [[panel(motion, variable, "link", names)] for names in in_panels(turning_links(motion.mechanism))]
+    """One panel below another, with as many links each as can be told apart; magnitudes of vectors."""
+    part = MAGNITUDE if "axis" in motion.dataset[variable].dims else ""
+    groups = in_panels(turning_links(motion.mechanism))
+    return [[panel(motion, variable, "link", names, part)] for names in groups]
+
+
+def of_joints(motion: Motion, variable: str) -> Rows:
+    """Links whose angle is measured from a reference arc."""
+    groups = in_panels(motion.dataset["joint"].to_numpy().tolist())
+    return [[panel(motion, variable, "joint", names)] for names in groups]
 
 
 def of_points(motion: Motion, variable: str) -> Rows:
     """Components and magnitude below each other; further points in further columns."""
     groups = in_panels(motion.pens["point"])
-    parts = (*COMPONENTS, MAGNITUDE)
+    parts = (*motion.components, MAGNITUDE)
     return [
         [panel(motion, variable, "point", names, part, part == "x") for names in groups] for part in parts
     ]
@@ -65,9 +81,15 @@ def of_guides(motion: Motion) -> Rows:
 def of_coefficients(motion: Motion) -> Rows:
     """Velocity coefficients at the left, acceleration coefficients at the right: links, points, guides."""
     points = in_panels(motion.pens["point"])
+    turning = in_panels(turning_links(motion.mechanism))
+    if motion.axes > 2:
+        joints = in_panels(motion.dataset["joint"].to_numpy().tolist())
+        first = [both(motion, "joint_", "joint", names) for names in joints]
+    else:
+        first = [both(motion, "angular_", "link", names) for names in turning]
     rows = [
-        *(both(motion, "angular_", "link", names) for names in in_panels(turning_links(motion.mechanism))),
-        *(both(motion, "", "point", names, part) for part in COMPONENTS for names in points),
+        *first,
+        *(both(motion, "", "point", names, part) for part in motion.components for names in points),
         *(both(motion, "slide_", "guide", names) for names in in_panels(motion.pens["guide"])),
     ]
     return [row for row in rows if row[0].curves]
@@ -95,7 +117,7 @@ def panel(
     unit = str(values.attrs.get("units", QUANTITIES[variable].unit))
     factor, shown = shown_as(unit, motion.mechanism.display)
     curves = {name: factor * one_part(values.sel({dim: name}), part) for name in names}
-    text = formula(QUANTITIES[variable].symbol, part if part in COMPONENTS else "")
+    text = formula(QUANTITIES[variable].symbol, part if part != MAGNITUDE else "")
     scale = factor * scale_of(motion.dataset, variable)
     return Panel(labelled(text, shown), shown, curves, motion.pens[dim], scale, legend)
 
@@ -103,7 +125,7 @@ def panel(
 def one_part(values: xarray.DataArray, part: str) -> Array:
     """A curve of a scalar, or of a vector's component or magnitude."""
     if part == MAGNITUDE:
-        return np.asarray(np.hypot(values.sel(axis="x").to_numpy(), values.sel(axis="y").to_numpy()))
+        return np.asarray(functools.reduce(np.hypot, values.transpose("axis", ...).to_numpy()))
     return np.asarray((values.sel(axis=part) if part else values).to_numpy())
 
 

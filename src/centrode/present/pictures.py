@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -23,6 +23,8 @@ from centrode.present.curves import (
     write_title,
 )
 from centrode.present.drawing import MARGIN, draw_mechanism
+from centrode.present.globe import Globe
+from centrode.present.globe_drawing import HIDDEN, draw_globe
 from centrode.present.scene import Scene
 from centrode.present.shown import drive_unit, formula, labelled, shown_as
 from centrode.present.style import MUTED, Decimals, Pen, pens
@@ -38,7 +40,7 @@ COLUMNS = 3
 FAINT = "#B4B4B4"
 
 
-def mechanism_figure(scene: Scene, dataset: xarray.Dataset, instants: Sequence[float]) -> Figure:
+def mechanism_figure(scene: Scene | Globe, dataset: xarray.Dataset, instants: Sequence[float]) -> Figure:
     """The mechanism at the chosen values of the drive, or initially over fading pictures of its motion."""
     samples = [nearest_sample(dataset, instant) for instant in instants] or [initial_sample(scene, dataset)]
     columns = 2 if len(samples) == 4 else min(COLUMNS, len(samples))
@@ -47,9 +49,8 @@ def mechanism_figure(scene: Scene, dataset: xarray.Dataset, instants: Sequence[f
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     faded = [] if instants else ghosts(scene, dataset, samples[0])
     for axes, sample in zip(grid, samples, strict=False):
-        draw_mechanism(axes, scene, sample, faded=faded)
+        draw(axes, scene, sample, faded=faded)
         axes.set_title(caption(scene.mechanism, dataset, sample))
-        label_lengths(axes, scene)
     for axes in grid[len(samples) :]:
         axes.set_axis_off()
     write_legend(grid[columns - 1], link_key(scene.mechanism), inches=figure.get_figheight() - 1.0)
@@ -58,17 +59,23 @@ def mechanism_figure(scene: Scene, dataset: xarray.Dataset, instants: Sequence[f
 
 
 def paths_figure(
-    scene: Scene, dataset: xarray.Dataset, abscissa: Abscissa, points: Mapping[str, Pen]
+    scene: Scene | Globe, dataset: xarray.Dataset, abscissa: Abscissa, points: Mapping[str, Pen]
 ) -> Figure:
     """Paths of all moving points, with the mechanism faint in its initial position."""
     scene, figure = picture(scene, list(points))
     axes = figure.subplots()
-    draw_mechanism(axes, scene, initial_sample(scene, dataset), colour=FAINT)
+    draw(axes, scene, initial_sample(scene, dataset), colour=FAINT)
     drawn = []
     for name, pen in points.items():
-        x, y = (abscissa.parts(scene.tracks[name][:, axis]) for axis in (0, 1))
+        path = scene.tracks[name]
+        if isinstance(scene, Globe):
+            hidden = np.where(scene.in_front(path)[:, None], np.nan, scene.flat(path))
+            axes.plot(
+                *hidden[abscissa.order].T, color=pen.colour, linestyle=HIDDEN, linewidth=1.0, zorder=6.5
+            )
+            path = np.where(scene.in_front(path)[:, None], scene.flat(path), np.nan)
+        x, y = (abscissa.parts(path[:, axis]) for axis in (0, 1))
         drawn.append((draw_parts(axes, x, y, name, pen, level=7.0), name))
-    label_lengths(axes, scene)
     key = []
     if abscissa.cut.any():
         key.append((Line2D([], [], color=MUTED, linewidth=1.0, linestyle=CUT_DASHES), _("cut off")))
@@ -79,7 +86,18 @@ def paths_figure(
     return figure
 
 
-def picture(scene: Scene, names: Sequence[str], rows: int = 1, columns: int = 1) -> tuple[Scene, Figure]:
+def draw(axes: Axes, scene: Scene | Globe, sample: int, **how: Any) -> None:
+    """A mechanism in the plane with its coordinates along the axes, or on the sphere."""
+    if isinstance(scene, Globe):
+        draw_globe(axes, scene, sample, **how)
+    else:
+        draw_mechanism(axes, scene, sample, **how)
+        label_lengths(axes, scene)
+
+
+def picture(
+    scene: Scene | Globe, names: Sequence[str], rows: int = 1, columns: int = 1
+) -> tuple[Scene | Globe, Figure]:
     """The scene at the size that it gets on paper, and an empty figure in its proportions."""
     inches = 5.2 if columns == 1 else 3.6
     wide, high = inches * ((scene.high - scene.low) / scene.extent + 2 * MARGIN)
@@ -132,7 +150,7 @@ def nearest_sample(dataset: xarray.Dataset, instant: float) -> int:
     return int(np.argmin(np.abs(instants_of(dataset) - instant)))
 
 
-def initial_sample(scene: Scene, dataset: xarray.Dataset) -> int:
+def initial_sample(scene: Scene | Globe, dataset: xarray.Dataset) -> int:
     """The sample nearest to the start, at time zero, among those with every point in place."""
     known = complete(scene)
     if not known.any():
@@ -142,7 +160,7 @@ def initial_sample(scene: Scene, dataset: xarray.Dataset) -> int:
     return int(np.lexsort((distance, worth, ~known))[0])
 
 
-def ghosts(scene: Scene, dataset: xarray.Dataset, sample: int) -> list[int]:
+def ghosts(scene: Scene | Globe, dataset: xarray.Dataset, sample: int) -> list[int]:
     """Samples evenly spread over the motion's regular part, the nearest to the given one last."""
     regular = np.flatnonzero(complete(scene) & (dataset["status"].to_numpy() == Status.OK))
     if regular.size < 2:
@@ -151,7 +169,7 @@ def ghosts(scene: Scene, dataset: xarray.Dataset, sample: int) -> list[int]:
     return sorted({int(k) for k in chosen} - {sample}, key=lambda k: -abs(k - sample))
 
 
-def complete(scene: Scene) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def complete(scene: Scene | Globe) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """True where every moving point has a position."""
     moving = [scene.tracks[name] for name in scene.mechanism.moving_points]
     return np.asarray(np.isfinite(np.stack(moving)).all(axis=(0, 2)))

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.present.shown import shown_as
-
 if TYPE_CHECKING:
-    import xarray
-
     from centrode.model.mechanism import Guide, Link, Mechanism
 
 Array = NDArray[np.float64]
@@ -87,36 +83,6 @@ class Scene:
         along = turned(np.asarray(guide.unit, dtype=float), turn)
         least, most = self.travels[guide.id]
         return start + least * along, start + most * along
-
-
-def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene:
-    """Read a motion for drawing.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-        The description, with every "placed" resolved.
-    dataset : Dataset
-        Its motion, without batch dimensions.
-    """
-    factor = shown_as("m", mechanism.display)[0]
-    samples = dataset.sizes["sample"]
-    tracks = {
-        name: np.tile(factor * np.asarray(place, dtype=float), (samples, 1))
-        for name, place in mechanism.frame.coordinates.items()
-    }
-    for name in dataset["point"].to_numpy().tolist():
-        if name not in tracks:
-            tracks[name] = factor * dataset["position"].sel(point=name).to_numpy()
-    turns = {name: dataset["angle"].sel(link=name).to_numpy() for name in dataset["link"].to_numpy().tolist()}
-    travels = {
-        guide.id: factor * span(dataset["slide"].sel(guide=guide.id).to_numpy()) for guide in mechanism.guides
-    }
-    scene = Scene(mechanism, tracks, turns, travels, *box(list(tracks.values())), factor)
-    lines = [scene.guide_line(guide, slice(None)) for guide in mechanism.guides if guide.on != "frame"]
-    ends = [end for line in lines if line is not None for end in line]
-    low, high = box([*tracks.values(), *ends])
-    return replace(scene, low=low, high=high)
 
 
 def turned(vector: Array, angle: Array | float) -> Array:

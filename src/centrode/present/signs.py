@@ -115,3 +115,65 @@ def turning_arc(place: Array, angle: float, forward: bool, size: float) -> Array
     turn = np.linspace(middle - 0.75, middle + 0.75, 15)
     arc = place + 4.2 * size * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     return np.asarray(arc if forward else arc[::-1])
+
+
+def wheel(axes: Axes, centre: Array, radius: float, angle: float, colour: str, alpha: float = 1.0) -> None:
+    """A circle with a spoke at its angle, lightly filled."""
+    axes.add_patch(
+        Circle(
+            (centre[0], centre[1]), radius, facecolor=colour, edgecolor="none", alpha=0.12 * alpha, zorder=1.9
+        )
+    )
+    rim = Circle(
+        (centre[0], centre[1]), radius, facecolor="none", edgecolor=colour, linewidth=1.4, zorder=2.5
+    )
+    rim.set_alpha(alpha)
+    axes.add_patch(rim)
+    spoke = [centre, centre + radius * np.array([np.cos(angle), np.sin(angle)])]
+    axes.add_collection(
+        LineCollection([spoke], colors=colour, linewidths=1.0, alpha=alpha, zorder=2.5), autolim=False
+    )
+
+
+def round_ground(axes: Axes, centre: Array, radius: float, inward: bool, size: float) -> None:
+    """A circle of the frame, hatched on its inner or outer side."""
+    rim = Circle(
+        (centre[0], centre[1]), radius, facecolor="none", edgecolor=GROUND, linewidth=1.2, zorder=1.5
+    )
+    axes.add_patch(rim)
+    strokes = max(12, round(2.0 * np.pi * radius / (0.9 * size)))
+    turn = np.linspace(0.0, 2.0 * np.pi, strokes, endpoint=False)
+    out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    along = np.stack([-out[:, 1], out[:, 0]], axis=1)
+    feet = centre + radius * out
+    tips = feet + 0.9 * size * ((-out if inward else out) - along)
+    axes.add_collection(
+        LineCollection(list(np.stack([feet, tips], axis=1)), colors=GROUND, linewidths=0.6, zorder=1.4),
+        autolim=False,
+    )
+
+
+def circle(axes: Axes, centre: Array, radius: float, colour: str, alpha: float = 1.0) -> None:
+    """A circle that a link carries."""
+    rim = Circle(
+        (centre[0], centre[1]), radius, facecolor="none", edgecolor=colour, linewidth=1.4, zorder=2.4
+    )
+    rim.set_alpha(alpha)
+    axes.add_patch(rim)
+
+
+def cylinder(axes: Axes, foot: Array, mouth: Array, end: Array, size: float, alpha: float = 1.0) -> None:
+    """A barrel from its foot to its mouth, and the rod that comes out of it."""
+    rod = LineCollection(
+        [[mouth, end]], colors=INK, linewidths=2.0 if alpha == 1.0 else 1.2, alpha=alpha, zorder=2.6
+    )
+    axes.add_collection(rod, autolim=False)
+    body = Polygon(barrel_outline(foot, mouth, size), closed=True, edgecolor=INK, linewidth=1.2)
+    lay(axes, body, alpha, 2.7)
+
+
+def barrel_outline(foot: Array, mouth: Array, size: float) -> Array:
+    """Corners of a barrel."""
+    along = mouth - foot
+    across = 1.3 * size * np.array([-along[1], along[0]]) / max(float(np.hypot(*along)), np.finfo(float).tiny)
+    return np.array([foot + across, mouth + across, mouth - across, foot - across])

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from centrode.errors import InputError, Status
+from centrode.kinematics.coefficients import coefficients_of, most_samples
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
@@ -43,6 +44,7 @@ class StudyResults:
     check : structure, mobility, plan, initial position
     motion : the labelled motion
     instants : the motion exactly at the instants the description asks for
+    coefficients : kinematic coefficients by each drive, where there are several
     scalars : name -> number and SI unit, as `summary.json` holds them
     failure : why the mechanism cannot do what was asked, in a sentence; None if it can
     notes : what a reader should know besides
@@ -53,6 +55,7 @@ class StudyResults:
     check: Check
     motion: xr.Dataset
     instants: xr.Dataset | None
+    coefficients: xr.Dataset | None
     scalars: dict[str, Scalar]
     failure: str | None
     notes: tuple[str, ...]
@@ -74,11 +77,17 @@ def study(
         checked,
         data,
         _at_instants(prepared),
+        coefficients_of(solved) if _by_each_drive(solved) else None,
         _scalars(checked, solved),
         _failure(solved, words),
         notes,
         words,
     )
+
+
+def _by_each_drive(solved: Solved) -> bool:
+    """Whether there are coefficients besides those of the motion, and not too many."""
+    return len(solved.ready.mechanism.drives) > 1 and solved.status.size <= most_samples(solved)
 
 
 def _at_instants(prepared: Ready) -> xr.Dataset | None:
@@ -178,6 +187,12 @@ def _notes(mechanism: Mechanism, solved: Solved, words: Words) -> list[str]:
                 "{n} samples are singular: their positions are given, their derivatives do not exist",
                 singular,
             ).format(n=singular)
+        )
+    if len(mechanism.drives) > 1 and not _by_each_drive(solved):
+        notes.append(
+            _("kinematic coefficients by each drive are left out; ask for at most {most} samples").format(
+                most=most_samples(solved)
+            )
         )
     notes += words.period()
     if mechanism.loads or mechanism.machine is not None:

@@ -10,7 +10,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
-from centrode.model.mechanism import Drive
+from centrode.model.mechanism import Display, Drive
 from centrode.quantities import display_unit
 from centrode.structure.steps import name_of
 
@@ -28,6 +28,13 @@ def extremes(solved: Solved) -> list[tuple[Drive, float, float]]:
     return [(drive, float(np.min(values[drive.id])), float(np.max(values[drive.id]))) for drive in drives]
 
 
+def value_text(at: float, unit: str, display: Display) -> str:
+    """A value in SI as it is shown, with its unit; angles in radians also in degrees."""
+    factor, shown = display_unit(unit, display.length, display.angle)
+    text = f"{at * factor:.9g} {shown}"
+    return f"{text} ({np.degrees(at):.6g} deg)" if shown == "rad" else text
+
+
 class Words:
     """Sentences about one solved motion."""
 
@@ -40,10 +47,7 @@ class Words:
 
     def value(self, at: float, unit: str = "") -> str:
         """A value of the path's parameter (or one in another unit) with its unit, angles also in degrees."""
-        unit = unit or self.unit
-        factor, shown = display_unit(unit, self.display.length, self.display.angle)
-        text = f"{at * factor:.9g} {shown}"
-        return f"{text} ({np.degrees(at):.6g} deg)" if shown == "rad" else text
+        return value_text(at, unit or self.unit, self.display)
 
     def range(self) -> str:
         """From where to where, and how long that takes; times and extremes where a law drives."""

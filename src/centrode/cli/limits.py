@@ -1,0 +1,62 @@
+"""`centrode limits`: between which values one drive can move while the others are held."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about as about_file
+from centrode.cli.pairs import pairs
+from centrode.locale import _, mark, speaking
+
+
+@click.command(help=mark("Find the limits of one drive while the others are held."))
+@click.argument(
+    "mechanism",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in mechanism."),
+)
+@click.option(
+    "--drive", metavar=mark("NAME"), help=mark("The drive that moves; needed where there are several.")
+)
+@click.option(
+    "--hold",
+    multiple=True,
+    metavar=mark("NAME=VALUE"),
+    help=mark('Value of another drive ("EC=30 deg"); its initial one if left out.'),
+)
+@click.option(
+    "--about", metavar=mark("VALUE"), help=mark("Value from which it moves; its initial one if left out.")
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("FILE"),
+    help=mark("Also write FILE.json or FILE.csv, by the ending of its name."),
+)
+@click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
+def limits(
+    mechanism: str,
+    drive: str | None,
+    hold: tuple[str, ...],
+    about: str | None,
+    out: Path | None,
+    force: bool,
+) -> None:
+    """Print the limits of a drive, and write them where asked."""
+    description = ct.load(mechanism)
+    held = pairs(hold, "--hold")
+    with about_file(mechanism):
+        found = ct.limits(description, drive, held, about)
+    if out is not None:
+        with speaking("en"):  # what files hold is English
+            text = ct.limits_text(ct.limits(description, drive, held, about), out.suffix[1:].lower())
+        output.write_file(out, text, force=force)
+    click.echo(_(description.title) or mechanism)
+    click.echo()
+    click.echo(output.table(ct.limits_rows(description, found)))
+    if out is not None:
+        click.echo("\n" + _("wrote {file}").format(file=out))

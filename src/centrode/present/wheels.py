@@ -1,0 +1,107 @@
+"""Where rolling wheels, their tracks and cylinders are drawn, in the units of the display."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.present.scene import Array, Samples, Scene, span, turned
+
+if TYPE_CHECKING:
+    from centrode.model.mechanism import Drive, Rolling
+
+BARREL = 0.8  # length of a barrel as a part of the shortest length of its cylinder
+OVER = 0.4  # how far a straight track goes on beyond the contacts, in radii of the wheel
+CORNERS = 24  # of a polygon that stands for a circle
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A circle with the direction of its spoke."""
+
+    centre: Array
+    radius: float
+    angle: float = 0.0
+
+    @property
+    def outline(self) -> Array:
+        """Corners around it."""
+        turns = np.linspace(0.0, 2.0 * np.pi, CORNERS, endpoint=False)
+        return np.asarray(self.centre + self.radius * np.stack([np.cos(turns), np.sin(turns)], axis=1))
+
+
+def wheel_at(scene: Scene, wheel: Rolling, sample: int) -> Disc | None:
+    """A wheel at a sample; nothing if it has no position."""
+    centre, angle = scene.tracks[wheel.centre][sample], scene.turns[wheel.link][sample]
+    if not np.isfinite(centre).all() or not np.isfinite(angle):
+        return None
+    return Disc(centre, scene.factor * wheel.radius, float(angle))
+
+
+def round_track(scene: Scene, wheel: Rolling, sample: int) -> Disc | None:
+    """The circle a wheel rolls on; nothing for a line, or where its link has no position."""
+    circle = wheel.along.radius
+    if circle is None:
+        return None
+    centre = wheel.along.centre
+    local = scene.mechanism.points_of(wheel.on)[centre] if isinstance(centre, str) else centre
+    place = scene.carried(wheel.on, local or (0.0, 0.0), sample)
+    return None if place is None else Disc(place, scene.factor * circle)
+
+
+def straight_track(scene: Scene, wheel: Rolling, sample: Samples) -> tuple[Array, Array] | None:
+    """The part of a line that its wheel rolls over, as two ends in its direction; nothing for a circle."""
+    through = wheel.along.through
+    if through is None:
+        return None
+    start = scene.carried(wheel.on, through, sample)
+    if start is None:
+        return None
+    way = span(slides(scene, wheel))
+    over = OVER * scene.factor * wheel.radius
+    along = turned(np.asarray(wheel.along.unit, dtype=float), heading(scene, wheel, sample))
+    return start + (way[0] - over) * along, start + (way[1] + over) * along
+
+
+def slides(scene: Scene, wheel: Rolling) -> Array:
+    """Way of a wheel's centre along its line at every sample."""
+    through = scene.carried(wheel.on, wheel.along.through or (0.0, 0.0), slice(None))
+    along = turned(np.asarray(wheel.along.unit, dtype=float), heading(scene, wheel, slice(None)))
+    centre = scene.tracks[wheel.centre]
+    offset = centre - (np.nan * centre if through is None else through)
+    return np.asarray(np.sum(offset * along, axis=-1))
+
+
+def heading(scene: Scene, wheel: Rolling, sample: Samples) -> Array | float:
+    """Angle of the link that carries a track."""
+    return 0.0 if wheel.on == "frame" else scene.turns[wheel.on][sample]
+
+
+def cylinders(scene: Scene, sample: int) -> Iterator[tuple[Drive, Array, Array, Array]]:
+    """Each cylinder with its foot, the end of its barrel and the end of its rod."""
+    for drive in scene.mechanism.drives:
+        if drive.distance is None:
+            continue
+        first, second = (scene.tracks[point] for point in drive.distance)
+        shortest = span(np.hypot(*(second - first).T))[0]
+        foot, end = first[sample], second[sample]
+        length = float(np.hypot(*(end - foot)))
+        if np.isfinite(length) and length > 0.0:
+            yield drive, foot, foot + BARREL * shortest * (end - foot) / length, end
+
+
+def reaches(scene: Scene) -> list[Array]:
+    """Corners of what wheels and tracks need of the drawing's box."""
+    found: list[Array] = []
+    for wheel in scene.mechanism.rolling:
+        around = scene.factor * wheel.radius * np.array([[-1.0, -1.0], [1.0, 1.0]])
+        found += [scene.tracks[wheel.centre] + corner for corner in around]
+        line = straight_track(scene, wheel, slice(None))
+        found += [] if line is None else [np.atleast_2d(end) for end in line]
+        if wheel.along.radius is not None:
+            circle = round_track(scene, wheel, 0) if wheel.on == "frame" else None
+            found += [] if circle is None else [circle.outline]
+    return found

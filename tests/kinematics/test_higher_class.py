@@ -1,0 +1,91 @@
+"""Groups of higher class against dyads: one mechanism, driven from links that leave triads and from one that does not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.structure.plan import structure_of
+from mechanisms import EPS, OPERATIONS, events, parts_of, statuses
+from redriven import Redriven, answer, by_chain_rule, by_newton, reach_of, redriven
+
+DRIVEN = [
+    ("stephenson-six-bar", "FR", -0.13), ("stephenson-six-bar", "FR", -2.14), ("stephenson-six-bar", "PR", -0.42),
+    ("watt-six-bar", "PR", 0.55), ("watt-six-bar", "QR", 1.49), ("watt-six-bar", "QR", 2.87),
+    ("klann-leg", "leg", -3.13), ("klann-leg", "leg", 2.97), ("klann-leg", "hip", -1.2),
+    ("jansen-leg", "CF", 1.52), ("jansen-leg", "FG", 0.93), ("jansen-leg", "EG", 1.23),
+]  # fmt: skip
+"""Example of class II, the link driven instead, and where: also next to limits (leg at -3.13), dyads behind (CF)."""
+
+
+@pytest.fixture(scope="module", params=DRIVEN, ids=lambda p: "-".join(map(str, p)))
+def case(request: pytest.FixtureRequest) -> Redriven:
+    name, link, base = request.param
+    return redriven(ct.example(name), link, base)
+
+
+def test_the_plan_has_a_group_of_higher_class(case: Redriven) -> None:
+    assert "higher class" in [group.kind for group in structure_of(case.other).groups]
+    assert "higher class" not in [group.kind for group in structure_of(case.by_dyads).groups]
+
+
+def test_newton_agrees_with_dyads(case: Redriven) -> None:
+    """Positions and two derivatives, to what rounding of the dimensions would make of them on either route."""
+    low, high = reach_of(case)
+    values = np.linspace(low, high, 41)[1:-1]
+    data, found = by_newton(case, values)
+    assert set(statuses(data)) == {"ok"}
+    expected = by_chain_rule(case, values)
+    scale = float(np.max(np.abs(expected[0])))
+    allowed = 2.0 * OPERATIONS * EPS * answer(case.other, values) * scale
+    assert np.all(np.max(np.abs(found - expected), axis=(2, 3)) <= allowed)
+    assert float(data.residual.max()) <= 1e-12
+
+
+def test_limits_are_the_extremes_of_the_motion_by_dyads(case: Redriven) -> None:
+    """The drive's value at an extreme is exact to rounding: there it answers to the position in second order only."""
+    low, high = reach_of(case)
+    found = np.array(events(ct.motion(case.other, at=[low - 1e-3, high + 1e-3]), "limit"))
+    for end in (low, high):
+        assert np.min(np.abs(found - end)) <= 16 * EPS * max(1.0, abs(end)), end
+
+
+def test_beyond_a_limit_is_open_and_beside_it_ok(case: Redriven) -> None:
+    low, high = reach_of(case)
+    found = np.array(events(ct.motion(case.other, at=[low - 1e-3, high + 1e-3]), "limit"))
+    ends = [found[np.argmin(np.abs(found - end))] for end in (low, high)]
+    beside = [1e-13, 1e-10, 1e-6]
+    inside = [ends[0] + x for x in beside] + [ends[1] - x for x in beside]
+    outside = [ends[0] - x for x in beside] + [ends[1] + x for x in beside]
+    assert statuses(ct.motion(case.other, at=inside)) == ["ok"] * 6
+    assert statuses(ct.motion(case.other, at=outside)) == ["open"] * 6
+    at_ends = ct.motion(case.other, at=ends)
+    assert statuses(at_ends) == ["singular"] * 2
+    assert np.isfinite(at_ends.position).all()
+    assert np.isnan(at_ends.angular_velocity).all()
+
+
+def test_next_to_a_limit_positions_follow_its_square_root(case: Redriven) -> None:
+    """A place at a distance x from a limit is some sqrt(x) away from that at the limit: four times x, twice as far."""
+    low, _high = reach_of(case)
+    found = np.array(events(ct.motion(case.other, at=[low - 1e-3]), "limit"))
+    end = found[np.argmin(np.abs(found - low))]
+    data = ct.motion(case.other, at=[end, end + 1e-10, end + 4e-10])
+    away = np.abs(data.position - data.position[0]).max(dim=("point", "axis")).to_numpy()
+    # the next term is smaller by sqrt(x); rounding of the end itself is seen through the square root
+    slack = 100.0 * np.sqrt(4e-10) + np.sqrt(64 * EPS / 1e-10)
+    assert away[2] / away[1] == pytest.approx(2.0, rel=slack)
+
+
+@pytest.mark.parametrize(("name", "link", "base"), DRIVEN[:5])
+def test_the_order_of_the_description_does_not_matter(name: str, link: str, base: float) -> None:
+    case = redriven(ct.example(name), link, base)
+    parts = parts_of(case.other)
+    parts["links"] = dict(reversed(parts["links"].items()))
+    low, high = reach_of(case)
+    values = np.linspace(low, high, 9)[1:-1]
+    one, other = ct.motion(case.other, at=values), ct.motion(ct.Mechanism(**parts), at=values)
+    allowed = 2.0 * OPERATIONS * EPS * answer(case.other, values)[0] * float(np.abs(one.position).max())
+    gap = np.abs(one.position - other.position.sel(point=one.point)).max(dim=("point", "axis"))
+    assert np.all(gap.to_numpy() <= allowed)
