@@ -13,6 +13,7 @@ import xarray as xr
 from centrode.errors import InputError
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
+from centrode.model.problems import nearest, shown
 from centrode.sweeps.designs import Design, Rows
 from centrode.sweeps.formulas import Formula, formulas_of
 from centrode.sweeps.outputs import Output, outputs_of
@@ -83,6 +84,9 @@ def asked_of(
         raise InputError(
             "reduce", _("it is one of {names}, or a formula").format(names=", ".join(REDUCTIONS))
         )
+    if isinstance(reduce, str) and reduce.isidentifier():
+        what = _("unknown reduction {name}").format(name=shown(reduce))
+        raise InputError("reduce", what, nearest(reduce, REDUCTIONS))
     if outputs:
         raise InputError(
             "outputs",

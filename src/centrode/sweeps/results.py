@@ -67,7 +67,13 @@ def frame_of(
     for path, (dimension, values) in design.coordinates.items():
         coordinates[path] = ((dimension,), values, {"units": units[path]})
     told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
-    return Frame(design, asked, xr.Dataset(coords=coordinates, attrs={**told, "executor": executor}))
+    return Frame(
+        design,
+        asked,
+        xr.Dataset(
+            coords=coordinates, attrs={**told, "samples": motion.sizes["sample"], "executor": executor}
+        ),
+    )
 
 
 class InMemory:

@@ -119,10 +119,13 @@ def opened(path: Path, frame: Frame, blocks: Blocks, task: Task) -> Iterator[Sto
         yield Store(path, frame, blocks)
 
 
-def read(path: Path) -> xr.Dataset:
+def read(path: Path, frame: Frame) -> xr.Dataset:
     """The result in a store; numbers are read when they are asked for."""
-    data: xr.Dataset = xr.open_zarr(str(path), chunks=None)
-    return data
+    data = xr.open_zarr(str(path), chunks=None)
+    # a folder has no order of its own
+    return xr.Dataset(
+        {column.name: data[column.name] for column in frame.asked.columns}, data.coords, data.attrs
+    )
 
 
 def _refuse_other_folders(path: Path) -> None:

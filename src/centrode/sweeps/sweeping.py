@@ -90,8 +90,10 @@ def sweep(
         return _in_memory(frame, blocks, task, chosen, progress)
     _check_size(frame, limits.IN_STORE, _("reduce it, or ask for fewer"))
     with opened(Path(store), frame, blocks, task) as kept:
+        found = kept.tally.mechanisms
         _compute(frame, kept, task, chosen, progress)
-    return told(read(Path(store)), frame, kept.tally)
+    data = told(read(Path(store), frame), frame, kept.tally)
+    return data.assign_attrs(mechanisms_found=found)
 
 
 def _check_size(frame: Frame, most: int, repair: str) -> None:
