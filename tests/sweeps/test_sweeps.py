@@ -115,8 +115,8 @@ def test_reductions_are_numpys(name: str) -> None:
     mechanism, vary = open_cases()
     motion = ct.motion(mechanism, 37, vary=vary)
     ok = motion["status"].to_numpy() == ct.Status.OK
-    assert ok.any(axis=1).sum() == 40
-    assert 0.2 < (~ok.all(axis=1)).mean() < 0.6
+    whole, none = ok.all(axis=1), ~ok.any(axis=1)
+    assert min(whole.sum(), none.sum(), (~whole & ~none).sum()) >= 5, "of each kind a few"
     found = ct.sweep(mechanism, vary, ["position.B", "angular_velocity"], 37, reduce=name)
     for output, values in (
         ("position.B", motion["position"].sel(point="B").to_numpy()),
