@@ -21,6 +21,7 @@ from centrode.kinematics.spans import Span
 from centrode.locale import _
 from centrode.model.problems import nearest, shown
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.groups import Newton
 from centrode.sweeps import limits
 from centrode.sweeps.asked import Asked
 from centrode.sweeps.designs import Rows
@@ -32,8 +33,10 @@ Results: TypeAlias = Mapping[str, AnyArray]
 AUTO = "auto"
 NUMBER = 8
 """Bytes of a float64."""
-AT_SAMPLES, ON_MESH = 9, 6
+AT_SAMPLES, ON_MESH = 9, 2
 """Numbers alive at once for each column of the layout, at a sample and at a node of the mesh (measured)."""
+OF_ANCHORS = 45
+"""The same at a node of the mesh where a group of higher class is followed along it."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,8 @@ class ArraysExecutor:
         samples = len(task.span.parameter)
         mesh = len(mesh_of(task.ready.kinematics.path, task.span.parameter))
         columns = layout.width + layout.axes * len(task.ready.kinematics.numbers.frame) + len(layout.angles)
-        each = NUMBER * columns * (AT_SAMPLES * samples + ON_MESH * mesh)
+        higher = any(isinstance(group, Newton) for group in task.ready.structure.groups)
+        each = NUMBER * columns * (AT_SAMPLES * samples + (OF_ANCHORS if higher else ON_MESH) * mesh)
         each += sum(column.bytes for column in task.asked.columns)
         return max(1, limits.WORKING_SET // each)
 

@@ -181,7 +181,8 @@ def _make(path: Path, frame: Frame, blocks: Blocks) -> None:
     columns = frame.asked.columns
     ours = {"zarr.json", PROGRESS, *map(str, frame.empty.coords), *(column.name for column in columns)}
     remains = [entry for entry in path.iterdir() if entry.name != PROGRESS]
-    if any(entry.name not in ours for entry in remains):
+    # zarr writes zarr.json under a longer name first
+    if any(entry.name not in ours and not entry.name.startswith("zarr.json.") for entry in remains):
         raise InputError(str(path), _("the folder holds something else"), _("name another place"))
     for entry in remains:
         shutil.rmtree(entry) if entry.is_dir() else entry.unlink()

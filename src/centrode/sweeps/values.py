@@ -24,7 +24,10 @@ _ANGLES = frozenset({"direction", "angle", "longitude", "latitude"})
 
 def kind_of(mechanism: Mechanism, path: str) -> str:
     """Kind of the number at a path, which tells its units; InputError where there is no such path."""
-    value_at(mechanism, path)
+    try:
+        value_at(mechanism, path)
+    except InputError as error:
+        raise InputError("vary", error.what, error.repair) from None
     word = path.rpartition(".")[2]
     if word in _ALONG:
         return "length" if mechanism.space == "plane" else "arc"
@@ -41,6 +44,7 @@ def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
 
     Raises InputError at the path: none, not in one dimension, not finite, a text that is no number, a range.
     """
+    kind = kind_of(mechanism, path)
     if (
         isinstance(given, tuple)
         and len(given) == 3
@@ -49,7 +53,7 @@ def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
     ):
         raise InputError(path, _("a range stands where values are expected"), _("say ct.grid or ct.sample"))
     if isinstance(given, Sequence) and not isinstance(given, str) and any(isinstance(x, str) for x in given):
-        given = [_number(mechanism, path, value) for value in given]
+        given = [_number(kind, path, value) for value in given]
     try:
         array = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError, OverflowError):
@@ -68,7 +72,8 @@ def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
 
 def ends(mechanism: Mechanism, path: str, first: Any, last: Any) -> tuple[float, float]:
     """Both ends [SI] of a range; InputError at the path where it is reversed or has no extent."""
-    low, high = (_number(mechanism, path, end) for end in (first, last))
+    kind = kind_of(mechanism, path)
+    low, high = (_number(kind, path, end) for end in (first, last))
     if not low < high:
         what = _("the range from {first} to {last} does not rise").format(
             first=shown(first), last=shown(last)
@@ -77,10 +82,10 @@ def ends(mechanism: Mechanism, path: str, first: Any, last: Any) -> tuple[float,
     return low, high
 
 
-def _number(mechanism: Mechanism, path: str, given: Any) -> float:
+def _number(kind: str, path: str, given: Any) -> float:
     value = given.item() if isinstance(given, np.generic) else given
     try:
-        return to_si(value, kind_of(mechanism, path))
+        return to_si(value, kind)
     except InputError as error:
         raise InputError(path, error.what, error.repair) from None
 
