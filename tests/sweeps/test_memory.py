@@ -17,7 +17,7 @@ def peak():
 def run(count):
     ranges = {"links.AB.length": (3.2, 3.8, count // 10), "frame.points.D.x": (3.9, 4.1, 10)}
     return ct.sweep(ct.example("crank-rocker"), ct.grid(ranges), "position.B", int(sys.argv[2]), reduce="range")
-run(10)
+run(20)
 before = peak()
 data = run(int(sys.argv[1]))
 print(peak() - before, sum(v.nbytes for v in data.variables.values()))
