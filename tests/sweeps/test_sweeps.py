@@ -22,6 +22,8 @@ CASES: list[tuple[str, dict[str, Any], int]] = [
     ("slider-crank-offset", {"guides.B.through.y": np.linspace(0.0, 2.5, 17)}, 25),
     ("triple-rocker", {"links.OA.length": np.linspace(1.8, 2.6, 11)}, 31),
     ("five-bar-two-drives", {}, 19),
+    ("geared-five-bar", {}, 19),
+    ("rolling-wheel-rod", {}, 19),
     ("third-class-triad", {}, 19),
     ("spherical-four-bar", {}, 19),
 ]

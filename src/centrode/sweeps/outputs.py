@@ -21,7 +21,7 @@ from centrode.sweeps import limits
 Array: TypeAlias = npt.NDArray[np.float64]
 
 COEFFICIENTS = ("velocity_coefficient", "acceleration_coefficient")
-RESIDUAL = "residual"
+RESIDUAL, CONTACT = "residual", "contact"
 _LENGTH = 200
 
 
@@ -51,6 +51,8 @@ class Output:
         """Its values (lanes, samples, ...): the same bits as in the motion's dataset."""
         if self.quantity == RESIDUAL:
             return solved.residual
+        if self.quantity == CONTACT:
+            return solved.contacts[:, :, *self.where]
         for kind in kinds_of(solved):
             orders = [None if x is None else x[:, :, *self.where] for x in kind.orders]
             _values, first, second = orders
