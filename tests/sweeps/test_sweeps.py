@@ -42,8 +42,8 @@ def varied(name: str, vary: dict[str, Any]) -> dict[str, Any]:
 @pytest.fixture
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
     """A few mechanisms at once, a few chunks in a block."""
-    monkeypatch.setattr(limits, "WORKING_SET", 3_000_000)
-    monkeypatch.setattr(limits, "BLOCK_POSITIONS", 6_000)
+    monkeypatch.setattr(limits, "WORKING_SET", 250_000)
+    monkeypatch.setattr(limits, "BLOCK_POSITIONS", 3_000)
 
 
 def quantities(motion: xr.Dataset) -> list[str]:
