@@ -35,7 +35,7 @@ NUMBER = 8
 """Bytes of a float64."""
 AT_SAMPLES, ON_MESH = 9, 2
 """Numbers alive at once for each column of the layout, at a sample and at a node of the mesh (measured)."""
-OF_ANCHORS = 45
+OF_ANCHORS = 5
 """The same at a node of the mesh where a group of higher class is followed along it."""
 
 

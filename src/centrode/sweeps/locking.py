@@ -24,13 +24,25 @@ def locked(file: Path, what: str) -> Iterator[None]:
     Raises InputError about `what` where another process holds it. A lock left by a process that was killed does
     not hold: it belongs to the open file, not to the file's being there.
     """
-    with file.open("a+b") as stream:
+    try:
+        stream = file.open("a+b")
+    except OSError as refusal:
+        raise _refused(what, refusal) from refusal
+    with stream:
         try:
             _take(stream.fileno())
-        except OSError as refusal:
+        except (BlockingIOError, PermissionError) as refusal:
             busy = _("another run is writing into it")
             raise InputError(what, busy, _("wait until it ends, or name another place")) from refusal
+        except OSError as refusal:
+            raise _refused(what, refusal) from refusal
         yield
+
+
+def _refused(what: str, refusal: OSError) -> InputError:
+    """A file system that cannot lock, or lets nobody write."""
+    reason = refusal.strerror or str(refusal)
+    return InputError(what, _("cannot be locked: {reason}").format(reason=reason), _("name another place"))
 
 
 def _take(handle: int) -> None:
