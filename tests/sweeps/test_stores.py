@@ -218,6 +218,23 @@ def test_folders_that_are_no_store(tmp_path: Path) -> None:
     ct.sweep(crank_rocker(), ct.grid(VARY), "angle", 5, store=tmp_path / "empty")
 
 
+def test_a_making_that_was_cut_short_is_made_again(tmp_path: Path) -> None:
+    store = tmp_path / "r.zarr"
+    (store / "progress").mkdir(parents=True)
+    (store / "angle" / "c").mkdir(parents=True)
+    for name in (
+        "progress/lock",
+        "zarr.0c5dc6be.partial",
+        "zarr.json",
+        "progress/zarr.json",
+        "angle/zarr.json",
+    ):
+        (store / name).touch()
+    found = ct.sweep(crank_rocker(), ct.grid(VARY), OUTPUTS, 19, store=store)
+    xr.testing.assert_equal(found, ct.sweep(crank_rocker(), ct.grid(VARY), OUTPUTS, 19))
+    assert not list(store.glob("*.partial"))
+
+
 def test_two_runs_at_once_are_refused_and_a_dead_one_is_not_feared(tmp_path: Path) -> None:
     store = tmp_path / "r.zarr"
     (store / "progress").mkdir(parents=True)

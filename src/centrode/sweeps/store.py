@@ -10,6 +10,7 @@ import functools
 import importlib.util
 import json
 import os
+import re
 import shutil
 import warnings
 from collections.abc import Iterator, Mapping
@@ -34,6 +35,8 @@ AnyArray: TypeAlias = npt.NDArray[Any]
 
 PROGRESS, LOCK, STUDY, DONE = "progress", "lock", "study.json", "done"
 FORMAT = 3
+DRAFT = re.compile(r"zarr\.[\w.]*partial")
+"""Name under which zarr writes metadata before it renames them."""
 TOGETHER = 1000
 """Markers in one folder."""
 
@@ -181,8 +184,7 @@ def _make(path: Path, frame: Frame, blocks: Blocks) -> None:
     columns = frame.asked.columns
     ours = {"zarr.json", PROGRESS, *map(str, frame.empty.coords), *(column.name for column in columns)}
     remains = [entry for entry in path.iterdir() if entry.name != PROGRESS]
-    # zarr writes zarr.json under a longer name first
-    if any(entry.name not in ours and not entry.name.startswith("zarr.json.") for entry in remains):
+    if any(entry.name not in ours and not DRAFT.fullmatch(entry.name) for entry in remains):
         raise InputError(str(path), _("the folder holds something else"), _("name another place"))
     for entry in remains:
         shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
