@@ -1,4 +1,4 @@
-"""Groups of higher class against dyads: one mechanism, driven from links that leave triads and from one that does not."""
+"""Groups of higher class against dyads: one mechanism, driven from links that leave triads and from others."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.curves import Places, Reached, bordered, motion_along, quintic
-from centrode.kinematics.newton import Motion
+from centrode.kinematics.newton import Motion, total
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.surroundings import Surroundings
 
@@ -93,7 +93,7 @@ class _Saddle:
 def crossing(around: Surroundings, lane: Lanes, base: Places, there: Reached) -> float | None:
     """The parameter at which curves cross between two places; None if they do not."""
     share = float(np.clip(base.size[0] / (base.size[0] - there.places.size[0]), 0.0, 1.0))
-    middle = sum(quintic(base, there)[:, k] * share**k for k in range(6))
+    middle = total(quintic(base, there) * share ** np.arange(6)[:, None])
     system = around.blank(lane)
     state = system.righted(middle[:, :-1])
     saddle = _Saddle(around, lane, base.parameter + middle[:, -1], state)

@@ -28,8 +28,8 @@ Shifts: TypeAlias = Mapping[Entity, Shift]
 
 STEPS = 7
 """Newton steps onto a plane."""
-ENOUGH = 1e-11
-"""What the next Newton step onto a plane may be."""
+ENOUGH = 1e-9
+"""What part of a step along the curve the next Newton step onto a plane may be."""
 CONTRACTION = 0.2
 """By how much every Newton step must be smaller than the one before, but for rounding."""
 
@@ -101,9 +101,12 @@ def reach(
     along: Array,
     parameter: Array,
     state: Array,
-    exact: bool = False,
+    stride: Array | None = None,
 ) -> Reached:
-    """Where curves pass planes square to `along` through foretold places, as well as it takes to foretell others."""
+    """Where curves pass planes square to `along` through foretold places.
+
+    They are as good as it takes to foretell others at such strides; without these, to the last digit.
+    """
     count, free = len(parameter), along.shape[1] - 1
     found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
     last, wrong = np.full(count, np.inf), np.full(count, np.nan)
@@ -119,7 +122,7 @@ def reach(
         state = np.where(good[:, None], system.moved(state, motion), state)
         parameter = np.where(good, parameter + around.unit * step[:, -1], parameter)
         with np.errstate(all="ignore"):
-            enough = settled(last, size) if exact else size * (size / last) ** 2 <= ENOUGH
+            enough = settled(last, size) if stride is None else size * (size / last) ** 2 <= ENOUGH * stride
         done = good & enough
         found |= done
         active = good & ~done & (size <= np.maximum(CONTRACTION * last, 1e-9))

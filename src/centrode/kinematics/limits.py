@@ -41,7 +41,7 @@ def limits(around: Surroundings, lanes: Lanes, here: Places, there: Reached) -> 
         value = total(whole * powers[:, :, None])
         parameter = here.parameter + value[:, -1]
         state = around.blank(lanes).righted(value[:, :-1])
-        limit = reach(around, lanes, here, here.along, parameter, state, exact=True)
+        limit = reach(around, lanes, here, here.along, parameter, state)
         with np.errstate(all="ignore"):
             change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / there.arc
         share = share + np.where(np.isfinite(change), np.clip(change, -LONGEST, LONGEST), 0.0)

@@ -156,7 +156,8 @@ class System:
         """Greatest left side of the equations, in rad or in the greatest length: (k,)."""
         values = self.residual(ARRAYS, self.at(ARRAYS, self.known, state))
         units = [1.0 if c.angular else 1.0 / self.numbers.scale for c, _row in self.group.equations]
-        return np.max(np.abs(self.stacked([x * u for x, u in zip(values, units, strict=True)])), axis=1)
+        gaps = np.abs(self.stacked([x * u for x, u in zip(values, units, strict=True)]))
+        return np.asarray(np.max(gaps, axis=1), dtype=np.float64)
 
     def stacked(self, values: Sequence[Number]) -> Array:
         """Numbers as an array (k, numbers)."""

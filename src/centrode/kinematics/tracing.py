@@ -9,6 +9,7 @@ Where the parameter turns back is a limit.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -29,8 +30,8 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 FIRST, GREATEST, CAUTIOUS, LEAST = 0.02, 0.4, 0.005, 1e-9
 """Steps of the arc, in rad and in the greatest length: the first, the greatest, the one from which on a group may
 come near to being singular, and the one at which it is given up."""
-TARGET, TRUST = 1e-4, 3e-3
-"""By how much a foretold place should be wrong, and the most that it may."""
+TARGET, TRUST = 3e-4, 3e-2
+"""By how much of its step a foretold place should be wrong, and the most that it may."""
 STRAIGHT = 0.9
 """Cosine of the angle by which the curve may turn in a step."""
 SHRINKING = 0.3
@@ -58,7 +59,7 @@ class Walkers:
     trails: list[Trail]
     active: Mask
 
-    def stop(self, walker: int, lost: bool = False) -> None:
+    def stop(self, walker: np.intp, lost: bool = False) -> None:
         """The walker has arrived, or cannot follow any further."""
         self.active[walker] = False
         if lost:
@@ -125,19 +126,20 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     """One step of some walkers; returns the events on the way."""
     here = walkers.here.of(who)
     parameter, state = _foretold(around, walkers, who, here)
-    there = reach(around, walkers.lane[who], here, here.along, parameter, state)
     step = walkers.step[who]
+    there = reach(around, walkers.lane[who], here, here.along, parameter, state, step)
     with np.errstate(all="ignore"):
         cosine = total(there.places.along * here.along)
         left = np.abs(there.places.size / here.size)
-        good = there.found & (there.wrong <= TRUST) & (cosine >= STRAIGHT) & (there.arc > 0.0)
+        good = there.found & (there.wrong <= TRUST * step) & (cosine >= STRAIGHT) & (there.arc > 0.0)
         good &= (step <= CAUTIOUS) | (left >= SHRINKING)
         crossed = good & (np.sign(there.places.size) != np.sign(here.size))
         good &= ~crossed | (step <= CAUTIOUS)
     events: list[Event] = []
     passed = np.full(len(who), np.nan)
     for k in np.nonzero(crossed & good)[0]:
-        at = crossing(around, walkers.lane[who[[k]]], here.of([k]), there.of([k]))
+        one = np.array([k])
+        at = crossing(around, walkers.lane[who[one]], here.of(one), there.of(one))
         if at is None:
             good[k] = False  # the curves only come near each other
         else:
@@ -182,7 +184,7 @@ def _go_on(walkers: Walkers, who: Lanes, here: Places, there: Reached, passed: A
         trail, parts = walkers.trails[walker], [float(here.parameter[k]), float(there.places.parameter[k])]
         if np.isfinite(passed[k]):
             parts.insert(1, float(passed[k]))
-        for number, (first, last) in enumerate(zip(parts, parts[1:], strict=False)):
+        for number, (first, last) in enumerate(pairwise(parts)):
             sense = float(walkers.sense[walker] * walkers.forward[walker]) * (-1.0) ** number
             trail.pieces.append(Piece(pieces[k], float(here.parameter[k]), first, last, sense))
             if number == 0 and len(parts) == 3 and not smooth:
@@ -197,7 +199,7 @@ def _go_on(walkers: Walkers, who: Lanes, here: Places, there: Reached, passed: A
     walkers.passed[who, 1] = here.distance(there.places.first)
     walkers.here.put(who, there.places)
     with np.errstate(all="ignore"):
-        longer = np.clip((TARGET / there.wrong) ** (1.0 / 6.0), 0.3, 2.0)
+        longer = np.clip((TARGET * walkers.step[who] / there.wrong) ** (1.0 / 5.0), 0.3, 2.0)
     walkers.step[who] = np.minimum(walkers.step[who] * longer, GREATEST)
 
 

@@ -1,0 +1,109 @@
+"""Groups of higher class alone and together: the same bits, copies, batches, many turns."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from mechanisms import EPS, moved, parts_of, statuses
+from redriven import answer
+
+EXAMPLES = (
+    "third-class-triad", "fourth-class-group", "stephenson-driven-at-rocker", "watt-driven-second-loop"
+)  # fmt: skip
+ROD = {
+    "third-class-triad": "AB", "fourth-class-group": "BD", "stephenson-driven-at-rocker": "PR",
+    "watt-driven-second-loop": "PR",
+}  # fmt: skip
+NUMBERS = ("position", "velocity", "acceleration", "angle", "status")
+
+
+def asked(mechanism: ct.Mechanism, count: int, beyond: float = 0.0) -> np.ndarray:
+    study = mechanism.study
+    start = study.start if study.start is not None else 0.0
+    stop = study.stop if study.stop is not None else 2.0 * np.pi
+    return np.linspace(start - beyond, stop + beyond, count)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_same_bits_alone_and_together(name: str) -> None:
+    """Whatever else is asked for: one sample, many, more mechanisms, those beyond a chunk."""
+    mechanism = ct.example(name)
+    values = asked(mechanism, 9, beyond=0.1)
+    together = ct.motion(mechanism, at=values)
+    path = f"links.{ROD[name]}.length"
+    lengths = ct.value_at(mechanism, path) * np.linspace(0.99, 1.01, 151)
+    batch = ct.motion(mechanism, at=values, vary={path: lengths})
+    for k in (0, 4, 8):
+        alone = ct.motion(mechanism, at=values[[k]])
+        for number in NUMBERS:
+            assert np.array_equal(alone[number][0], together[number][k], equal_nan=True), number
+    for lane in (0, 75, 150):
+        alone = ct.motion(mechanism, at=values[[3]], vary={path: lengths[[lane]]})
+        for number in NUMBERS:
+            assert np.array_equal(alone[number][0, 0], batch[number][lane, 3], equal_nan=True), (number, lane)
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_a_batch_is_its_mechanisms(name: str) -> None:
+    mechanism = ct.example(name)
+    values, path = asked(mechanism, 7), f"links.{ROD[name]}.length"
+    lengths = ct.value_at(mechanism, path) * np.array([0.98, 1.0, 1.02])
+    batch = ct.motion(mechanism, at=values, vary={path: lengths})
+    for lane, length in enumerate(lengths):
+        single = ct.with_value(mechanism, path, float(length))
+        one = ct.motion(single, at=values)
+        allowed = 32 * EPS * answer(single, values)[0] * float(np.abs(one.position).max())
+        ok = (one.status == ct.Status.OK).to_numpy()
+        gap = np.abs(batch.position[lane] - one.position).max(dim=("point", "axis")).to_numpy()
+        assert np.array_equal(batch.status[lane], one.status)
+        assert np.all(gap[ok] <= allowed[ok])
+
+
+def test_mechanisms_that_do_not_close_are_absent_and_the_others_as_they_are() -> None:
+    """Rods from far too short to far too long: what has no initial position has no motion, and hurts nobody."""
+    mechanism = ct.example("third-class-triad")
+    lengths = np.linspace(2.0, 8.0, 61)
+    data = ct.motion(mechanism, samples=9, vary={"links.AB.length": lengths})
+    words = np.array([[ct.Status(code).word for code in row] for row in data.status.to_numpy()])
+    own = int(np.argmin(np.abs(lengths - 5.0)))
+    assert set(words[own]) == {"ok"}
+    alone = ct.motion(mechanism, samples=9, vary={"links.AB.length": [5.0]})
+    assert np.array_equal(data.position[own], alone.position[0])
+    assert (words[0] != "ok").all()
+    assert (words[-1] != "ok").all()
+    assert np.isnan(data.position.to_numpy()[words == "unconverged"][:, -3:]).all()
+    assert float(data.residual.max()) <= 1e-12
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize(
+    "change", [{"scale": 1e-6}, {"scale": 1e6}, {"turn": 1.0}, {"mirrored": True}, {"shift": (3.0, -5.0)}],
+    ids=lambda change: next(iter(change)) + str(next(iter(change.values()))),
+)  # fmt: skip
+def test_copies_move_alike(name: str, change: dict) -> None:
+    mechanism = ct.example(name)
+    values = asked(mechanism, 7)
+    parts = parts_of(mechanism)
+    parts.pop("study", None)
+    copy = ct.Mechanism(**moved(parts, **change))
+    sense = -1.0 if change.get("mirrored") else 1.0
+    turn = change.get("turn", 0.0)
+    shift = turn if mechanism.drives[0].relative_to == "frame" else 0.0
+    there = ct.motion(copy, at=sense * values + shift)
+    here = ct.motion(mechanism, at=values)
+    size = 1.0 + max(map(abs, change.get("shift", (0.0,))))
+    allowed = 32 * EPS * size * np.max(answer(mechanism, values)[0]) * 2.0 * np.pi
+    assert set(statuses(there)) == {"ok"}
+    assert np.max(np.abs(there.angle - sense * here.angle - turn)) <= allowed
+
+
+def test_many_turns_repeat_the_first() -> None:
+    mechanism = ct.example("third-class-triad")
+    first = ct.motion(mechanism, at=asked(mechanism, 5))
+    last = ct.motion(mechanism, at=asked(mechanism, 5) + 20 * np.pi)
+    # the drive's own value is rounded to a unit of the greater turn
+    allowed = (16 * EPS + 2 * np.spacing(22 * np.pi)) * answer(mechanism, asked(mechanism, 5))[0].max() * 10
+    assert np.max(np.abs(last.position - first.position)) <= allowed
+    assert np.max(np.abs(last.angle - first.angle).sel(link=["AB", "platform", "DC", "EF"])) <= allowed
