@@ -56,13 +56,17 @@ def run_console(example: Example) -> None:
 def read_toml(example: Example) -> None:
     """Read a TOML block: a whole mechanism (it has a drive) has to assemble, of any other each part is checked.
 
-    A block that begins with `# NAME.toml` is written to that file, for the blocks after it.
+    A block that begins with `# NAME.toml` is written to that file, for the blocks after it; a study of `sweep` may
+    stand there too.
     """
     text = str(example.parsed)
     named = FILE_NAME.match(text)
     if named:
         Path(named.group(1)).write_text(text, encoding="utf-8")
     tables = tomllib.loads(text)
+    if named and "mechanism" in tables:
+        ct.read_sweep(named.group(1))
+        return
     if not {"links", "drives"} <= tables.keys():
         Description(**{"links": {}, **tables})
         return

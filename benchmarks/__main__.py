@@ -11,8 +11,9 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import cold, machine, motions, peer  # noqa: E402
+from benchmarks import cold, kernels, machine, motions, peer  # noqa: E402
 from benchmarks.table import Row, print_section  # noqa: E402
+from centrode.algebra import machine_code  # noqa: E402
 
 Section = tuple[str, Callable[[], Iterator[Row]]]
 SECTIONS: Mapping[str, Section] = {
@@ -24,6 +25,9 @@ SECTIONS: Mapping[str, Section] = {
     ),
     "cold": (f"Whole processes, multiples of {cold.BASE}", cold.cold_starts),
     "machine": ("Bounds of the machine", machine.bounds),
+    "kernels": (
+        f"Machine code, {kernels.LANES} mechanisms of {kernels.SAMPLES} samples, a position", kernels.kernels,
+    ),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}
 
@@ -38,6 +42,9 @@ def main(wanted: list[str]) -> int:
         title, measure = SECTIONS[name]
         if name in NEED_PEER and not peer.PRESENT:
             print(f"\n{title}\n  left out: {peer.MISSING}")
+            continue
+        if name == "kernels" and not machine_code.PRESENT:
+            print(f"\n{title}\n  left out: {kernels.MISSING}")
             continue
         print_section(title, measure())
     return 0

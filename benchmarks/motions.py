@@ -40,7 +40,7 @@ def worked_mechanisms() -> Iterator[Row]:
         prepared = ready(mechanism)
         motion = ct.motion(mechanism, SAMPLES)
         try:
-            other = _peer(prepared, prepared.structure.dimensions, motion)
+            other = peer_of(prepared, prepared.structure.dimensions, motion)
         except peer.CannotBuild as reason:
             yield Row(name, note=f"pylinkage cannot: {reason}")
             continue
@@ -74,7 +74,7 @@ def batches() -> Iterator[Row]:
         batch = _batch(name, paths)
         motion = functools.partial(ct.motion, batch.mechanism, SAMPLES, vary=batch.vary)
         peers = [
-            _peer(batch.prepared, _lane(batch.numbers, lane), batch.motion.isel(mechanism=lane))
+            peer_of(batch.prepared, _lane(batch.numbers, lane), batch.motion.isel(mechanism=lane))
             for lane in range(BATCH)
         ]
         difference = max(
@@ -134,7 +134,8 @@ def _lane(numbers: Dimensions, lane: int) -> Dimensions:
     return numbers.mapped(lambda x: x if isinstance(x, float) else float(x[lane]))
 
 
-def _peer(prepared: Ready, numbers: Dimensions, motion: xr.Dataset) -> peer.Peer:
+def peer_of(prepared: Ready, numbers: Dimensions, motion: xr.Dataset) -> peer.Peer:
+    """The peer of one mechanism, where its motion begins."""
     places = motion["position"].isel(sample=0)
     names = [str(point) for point in places["point"].values]
     at = {name: (float(x), float(y)) for name, (x, y) in zip(names, places.values, strict=True)}
@@ -142,7 +143,7 @@ def _peer(prepared: Ready, numbers: Dimensions, motion: xr.Dataset) -> peer.Peer
 
 
 def _peer_from_nothing(prepared: Ready, motion: xr.Dataset) -> tuple[Array, Array, Array]:
-    return _peer(prepared, prepared.structure.dimensions, motion).motion(SAMPLES)
+    return peer_of(prepared, prepared.structure.dimensions, motion).motion(SAMPLES)
 
 
 def _difference(motion: xr.Dataset, other: peer.Peer, prepared: Ready) -> float:

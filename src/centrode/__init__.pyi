@@ -40,7 +40,15 @@ from .study.regions import region_rows as region_rows
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
+# Many mechanisms
+from .sweeps.sweeping import sweep as sweep
+from .sweeps.designs import grid as grid
+from .sweeps.drawing import sample as sample
+from .sweeps.files import read_sweep as read_sweep
+from .study.sweep_summary import sweep_rows as sweep_rows
+
 # Presentations
+from .present import sweep_csv as sweep_csv
 from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
 from .present import write_coefficients_csv as write_coefficients_csv

@@ -104,6 +104,8 @@ LIMITS_WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "held unknown": ({"drive": "OA", "held": {"OX": 1.0}}, "no drive OX"),
     "held in metres": ({"drive": "OA", "held": {"EC": "1 m"}}, "expected an angle"),
     "open": ({"drive": "OA", "held": {"EC": 0.0}, "about": np.pi}, "does not close there"),
+    "far": ({"drive": "OA", "about": 1e9}, "about: it reaches too far"),
+    "held far": ({"drive": "OA", "held": {"EC": 1e300}}, "hold EC: it reaches too far"),
     "not finite": ({"drive": "OA", "about": float("inf")}, "about"),
 }
 

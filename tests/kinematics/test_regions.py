@@ -162,6 +162,33 @@ def test_a_motor_between_two_moving_links_as_second_drive() -> None:
         assert min(abs(reached - 0.2), abs(reached - 1.2)) <= 8 * EPS * 4
 
 
+def trammel() -> ct.Mechanism:
+    """Two sliders on perpendicular guides, both driven, joined by two rods."""
+    return ct.Mechanism(
+        frame={"points": {"O": [0.0, 0.0]}},
+        links={"AC": {"length": 0.9}, "BC": {"length": 0.4}},
+        guides=[
+            {"point": "A", "on": "frame", "through": "O", "direction": [1.0, 0.0]},
+            {"point": "B", "on": "frame", "through": "O", "direction": [0.0, 1.0]},
+        ],
+        drives=[{"guide": "A", "start": 0.6, "speed": 0.1}, {"guide": "B", "start": 0.5, "speed": -0.1}],
+        assembly={"sides": {"C": "left"}},
+    )
+
+
+def test_two_displacements() -> None:
+    """A and B are reached in a ring: between the difference and the sum of the rods apart."""
+    region = ct.reachable_region(trammel(), samples=101)
+    x, y = grid_of(region)
+    between = np.hypot(x, y)
+    clear = np.minimum(np.abs(between - 0.5), np.abs(between - 1.3)) > 16 * EPS
+    closed = (between >= 0.5) & (between <= 1.3)
+    status = region["status"].to_numpy()
+    assert np.array_equal(closed[clear], (status == ct.Status.OK)[clear])
+    assert np.hypot(*region["border_value"].to_numpy().T).min() == pytest.approx(0.5, rel=8 * EPS)
+    assert np.hypot(*region["border_value"].to_numpy().T).max() == pytest.approx(1.3, rel=8 * EPS)
+
+
 def test_two_of_three_drives() -> None:
     """With the arm at its initial place the region is that of the five-bar."""
     three = ct.reachable_region(three_cranks(), ("OA", "EC"), samples=41)
@@ -195,6 +222,8 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "too many": ({"drives": ("OA", "EC"), "samples": 10**9}, "ask for 2 to"),
     "held and moving": ({"drives": ("OA", "EC"), "held": {"EC": 1.0}}, "the one that moves"),
     "held open": ({"drives": ("OA", "EC"), "held": {"HE": 0.0}}, "does not close there"),
+    "far": ({"drives": ("OA", "EC"), "ranges": {"OA": (0, 1e9)}}, "range OA: it reaches too far: .* 500"),
+    "wide": ({"drives": ("OA", "EC"), "ranges": {"OA": (0, 100)}}, "15.9 turns; ask for at most 10"),
     "not finite": ({"drives": ("OA", "EC"), "held": {"HE": float("nan")}}, "hold HE"),
 }
 

@@ -7,11 +7,13 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon
 
+import centrode
 from centrode import present
 from centrode.model.files import parse_mechanism
 from centrode.present.abscissa import part_of_pi, passings
 from centrode.present.labels import label_places
 from centrode.present.scene import corners
+from centrode.present.wheels import cylinders, straight_track
 
 
 def drawn(made, sample: int = 0):
@@ -139,3 +141,38 @@ def test_passings_of_a_value():
     assert passings(times, values, 1.0) == [0.5, 1.5, 2.5]
     assert passings(times, values, 0.0) == [0.0, 2.0]
     assert passings(times, values, 3.0) == []
+
+
+def run_of(name: str):
+    mechanism = centrode.example(name)
+    return mechanism, centrode.motion(mechanism, 13)
+
+
+def test_a_rolling_wheel_is_a_circle_at_its_centre_with_its_track():
+    scene, axes = drawn(run_of("planetary-hypocycloid"), 4)
+    assert circles(axes, 1.0) == {tuple(np.round(scene.at(4)["A"], 9))}  # rim and filling of the wheel
+    assert circles(axes, 3.0) == {(0.0, 0.0)}  # the ring
+    assert (scene.low <= -3.0).all() and (scene.high >= 3.0).all()
+
+
+def test_a_straight_track_runs_under_the_wheel_from_end_to_end():
+    mechanism, dataset = run_of("rolling-wheel-rod")
+    scene = present.scene_of(mechanism, dataset)
+    start, end = straight_track(scene, mechanism.rolling[0], 0)
+    contact = scene.factor * dataset["contact"].sel(rolling="wheel").to_numpy()
+    assert start[0] < contact[:, 0].min() and end[0] > contact[:, 0].max()
+    np.testing.assert_allclose([start[1], end[1]], contact[:2, 1], atol=1e-12 * scene.extent)
+
+
+def test_a_cylinder_keeps_its_barrel_and_ends_at_its_points():
+    mechanism, dataset = run_of("excavator-arm")
+    scene = present.scene_of(mechanism, dataset)
+    lengths = []
+    for sample in (0, 4, 9):
+        for drive, foot, mouth, end in cylinders(scene, sample):
+            places = scene.at(sample)
+            np.testing.assert_array_equal(foot, places[drive.distance[0]])
+            np.testing.assert_array_equal(end, places[drive.distance[1]])
+            lengths.append(np.hypot(*(mouth - foot)))
+            assert lengths[-1] < np.hypot(*(end - foot))
+    np.testing.assert_allclose(lengths[:3] * 2, lengths[3:], rtol=1e-12)

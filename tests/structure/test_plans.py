@@ -178,6 +178,26 @@ def test_group_of_class_four() -> None:
     assert (group.order, set(group.members)) == (2, {"plate", "BD", "CG", "lever"})
 
 
+def test_a_drive_of_what_is_held_is_refused() -> None:
+    """A triangle of the frame and two links stands still; the link DB beside it can move and has no drive."""
+    mechanism = bars({"O": O, "D": D, "F": F}, OA=1.0, AF=2.0, DB=1.0)
+    with pytest.raises(
+        ct.InputError, match="drive of link OA: it cannot move: the rest of the mechanism holds it"
+    ):
+        ct.check(mechanism)
+
+
+def test_a_slider_counts_in_the_class_of_its_group() -> None:
+    """A platform on two rods, a fixed pin in its slot: three inner joints (two hinges, one slide), class III."""
+    pin = {"name": "slot", "point": "F", "on": "K", "through": [0.0, 0.0], "direction": [1.0, 0.2]}
+    mechanism = bars(
+        {"O": O, "D": D, "F": F}, guides=[pin], OA=1.0, AP=2.0, K={"P": [0.0, 1.0], "B": [2.0, 0.5]}, DB=2.5
+    )
+    (group,) = [one for one in assur_groups(structure_of(mechanism)) if one.kind == "higher class"]
+    assert (group.roman, group.order) == ("III", 3)
+    assert set(group.members) == {"AP", "K", "DB", "slider slot"}
+
+
 def driven(links: list[str], **lengths: Any) -> ct.Mechanism:
     free = bars({"O": O, "D": D}, **lengths)
     return free.model_copy(

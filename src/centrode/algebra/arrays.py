@@ -31,6 +31,21 @@ class Arrays:
     sign = staticmethod(np.sign)
     min = staticmethod(np.minimum)
     max = staticmethod(np.maximum)
+    least = staticmethod(np.fmin)
+    greatest = staticmethod(np.fmax)
+    less = staticmethod(np.less)
+    less_equal = staticmethod(np.less_equal)
+    equal = staticmethod(np.equal)
+    not_equal = staticmethod(np.not_equal)
+    both = staticmethod(np.logical_and)
+    either = staticmethod(np.logical_or)
+    opposite = staticmethod(np.logical_not)
+    where = staticmethod(np.where)
+
+    @staticmethod
+    def is_number(x: Number) -> Number:
+        """Whether a value is there: not NaN."""
+        return np.equal(x, x)
 
 
 ARRAYS = Arrays()

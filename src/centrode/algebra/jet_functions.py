@@ -13,7 +13,7 @@ Namespace = Any
 class JetFunctions:
     """Namespace `m` for jets: the same formulas give derivatives of any order.
 
-    `abs`, `sign`, `min` and `max` take the derivatives of the side the value is on. Plain numbers pass
+    `abs`, `sign`, `min`, `max` and `where` take the derivatives of the side the value is on. Plain numbers pass
     through to the base namespace, so a formula may mix constants and jets.
     """
 
@@ -85,11 +85,40 @@ class JetFunctions:
     def max(self, x: Number, y: Number) -> Number:
         return 0.5 * (x + y + self.abs(x - y))
 
+    def less(self, x: Number, y: Number) -> Number:
+        return self.base.less(_value(x), _value(y))
+
+    def less_equal(self, x: Number, y: Number) -> Number:
+        return self.base.less_equal(_value(x), _value(y))
+
+    def is_number(self, x: Number) -> Number:
+        return self.base.is_number(_value(x))
+
+    def both(self, p: Number, q: Number) -> Number:
+        return self.base.both(p, q)
+
+    def either(self, p: Number, q: Number) -> Number:
+        return self.base.either(p, q)
+
+    def opposite(self, p: Number) -> Number:
+        return self.base.opposite(p)
+
+    def where(self, condition: Number, x: Number, y: Number) -> Number:
+        if not isinstance(x, Jet) and not isinstance(y, Jet):
+            return self.base.where(condition, x, y)
+        x, y = _as_jets(x, y)
+        pairs = zip(x.coefficients, y.coefficients, strict=True)
+        return Jet([self.base.where(condition, a, b) for a, b in pairs])
+
     def _from_derivative(self, value: Number, x: Jet, divisor: Jet) -> Jet:
         """The jet with the given value whose derivative is x' / divisor."""
         if not x.order:
             return Jet((value,))
         return jets.integral((x.slope() / divisor.lowered()).coefficients, value)
+
+
+def _value(x: Number) -> Number:
+    return x.value if isinstance(x, Jet) else x
 
 
 def _as_jets(y: Number, x: Number) -> tuple[Jet, Jet]:

@@ -49,11 +49,14 @@ class TextFormula:
         return self._body(m, values)
 
 
-def compile_formula(text: str, variables: tuple[str, ...], where: str) -> TextFormula:
+def compile_formula(
+    text: str, variables: tuple[str, ...], where: str, folds: frozenset[str] = frozenset()
+) -> TextFormula:
     """Read a formula from text.
 
     Known are + - * /, powers (`**` or `^`) with an integer or half-integer exponent, parentheses, the
-    variables, pi, e, and sin cos tan sqrt exp log abs sign min max atan2 asin acos atan.
+    variables, pi, e, and sin cos tan sqrt exp log abs sign min max atan2 asin acos atan. `folds` are functions
+    of one argument besides: the algebra's `fold(name, value)` makes one number of many.
 
     Raises
     ------
@@ -66,16 +69,17 @@ def compile_formula(text: str, variables: tuple[str, ...], where: str) -> TextFo
             most=TEXT_LENGTH, count=len(text)
         )
         raise InputError(where, what, _("shorten it"))
-    return _Reader(text, variables, where).formula()
+    return _Reader(text, variables, where, folds).formula()
 
 
 class _Reader:
     """Turns Python's syntax tree of one text into closures, refusing all that is not arithmetic."""
 
-    def __init__(self, text: str, variables: tuple[str, ...], where: str) -> None:
+    def __init__(self, text: str, variables: tuple[str, ...], where: str, folds: frozenset[str]) -> None:
         self.text = text
         self.variables = variables
         self.where = where
+        self.folds = folds
         self.used: set[str] = set()
         # A power is commonly written ^; `columns` leads from each character that Python reads to the user's.
         self.source, self.columns = "", [0]
@@ -214,18 +218,22 @@ class _Reader:
 
     def call(self, node: ast.Call, depth: int) -> Node:
         name = node.func.id if isinstance(node.func, ast.Name) else ""
-        if name not in FUNCTIONS:
+        known = FUNCTIONS | self.folds
+        if name not in known:
             what = (
                 _('unknown function "{name}"').format(name=name)
                 if name
                 else _("only known functions are allowed")
             )
-            raise self.at(node, what, _("known are: {names}").format(names=" ".join(sorted(FUNCTIONS))))
+            raise self.at(node, what, _("known are: {names}").format(names=" ".join(sorted(known))))
         count = len(node.args)
-        fits = count == 1 if name in ONE_ARGUMENT else count == 2 if name == "atan2" else count >= 2
+        folded = name in self.folds and (count == 1 or name not in FUNCTIONS)
+        fits = count == 1 if folded or name in ONE_ARGUMENT else count == 2 if name == "atan2" else count >= 2
         if not fits or node.keywords or any(isinstance(a, ast.Starred) for a in node.args):
             raise self.at(node, _("{name} got the wrong number of arguments").format(name=name))
         arguments = [self.node(argument, depth + 1) for argument in node.args]
+        if folded:
+            return lambda m, values: m.fold(name, arguments[0](m, values))
 
         def run(m: Any, values: Mapping[str, Number]) -> Number:
             first, *others = (argument(m, values) for argument in arguments)

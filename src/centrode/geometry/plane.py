@@ -112,8 +112,9 @@ def pose_by_two_points(first: Vector, second: Vector, at_first: Vector, at_secon
     """
     local = subtract(second, first)
     rotor = turned(reversed_rotor(local), subtract(at_second, at_first))
-    squared = dot(local, local)
-    return pose_with_point(first, at_first, (rotor[0] / squared, rotor[1] / squared))
+    # a link's own numbers do not move: one division serves all places, and all derivatives
+    inverse = 1.0 / dot(local, local)
+    return pose_with_point(first, at_first, (rotor[0] * inverse, rotor[1] * inverse))
 
 
 def moved_point(m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import degrees, radians, tau
+from math import degrees, radians
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
+from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
 from centrode.geometry.space import Space
-from centrode.kinematics.closure import shortfall
-from centrode.kinematics.evaluate import Choices, Hooks, Kinematics
+from centrode.kinematics.evaluate import Choices, Kinematics
 from centrode.kinematics.fitting import check_fit, check_touch
 from centrode.kinematics.groups import solve_group
 from centrode.kinematics.guesses import bound_higher, start_higher
@@ -30,6 +29,7 @@ from centrode.kinematics.sides import (
     stated_side,
     turned_apart,
 )
+from centrode.kinematics.starting import Bounding, OneSide, Starting, undetermined
 from centrode.locale import _
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet, Newton, TwoPointLink, links_of, points_of
@@ -74,7 +74,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
     )
     signs: dict[int, float] = {}
     check_sides(kinematics)
-    starting = _Starting(kinematics)
+    starting = Starting(kinematics)
     with np.errstate(all="ignore"):
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
@@ -89,13 +89,13 @@ def assemble(kinematics: Kinematics) -> Assembled:
                 else:
                     solve_group(group, ARRAYS, kinematics.numbers, at, Choices(starting, i))
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
-                raise _undetermined(group) from None
+                raise undetermined(group) from None
             _check_finite(group, at)
             _check_angles(kinematics, group, at)
             if isinstance(group, Newton):
                 continue
             kinematics.count(i, at, ARRAYS, starting)
-            bounding = _Bounding(kinematics, group, signs.get(i, 1.0))
+            bounding = Bounding(kinematics, group, signs.get(i, 1.0))
             solve_group(group, ROUNDED, kinematics.numbers, bounded, Choices(bounding, i))
             kinematics.count(i, bounded, ROUNDED, bounding)
     kinematics = with_phases(kinematics, phases_after(kinematics, at))
@@ -116,41 +116,9 @@ def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded:
 
 def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
     """Rounding error of a group's radicand, from positions with bounds known before it."""
-    bounding = _Bounding(kinematics, group, 1.0)
+    bounding = Bounding(kinematics, group, 1.0)
     solve_group(group, ROUNDED, kinematics.numbers, bounded.copied(), Choices(bounding, 0))
     return bounding.bound
-
-
-class _Starting(Hooks):
-    """Angles in the turn that the description names; of what is no link in (-pi, pi]."""
-
-    def __init__(self, kinematics: Kinematics) -> None:
-        self.links = kinematics.structure.mechanism.links
-
-    def continued(self, group: int, key: str, angle: Number) -> Number:
-        near = self.links[key].angle if key in self.links else None
-        value = float(angle.value if isinstance(angle, Rounded) else angle)
-        return angle if near is None else angle + tau * np.round((near - value) / tau)
-
-
-class _Bounding(_Starting):
-    """A group with rounding bounds: keeps that of its radicand, refuses a divisor that may be zero."""
-
-    def __init__(self, kinematics: Kinematics, group: Group, sign: float) -> None:
-        super().__init__(kinematics)
-        self.solved = group
-        self.sign = sign
-        self.bound = 0.0
-
-    def root(self, group: int, radicand: Number) -> Number:
-        self.bound = float(np.max(Rounded.of(radicand).bound))  # one place, as an array or not
-        return ROUNDED.sqrt(radicand) * self.sign
-
-    def divisor(self, group: int, divisor: Number) -> Number:
-        sine = Rounded.of(divisor)
-        if abs(sine.value) <= SAFETY * sine.bound:
-            raise _undetermined(self.solved)
-        return sine
 
 
 def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: float) -> float:
@@ -178,34 +146,9 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
 def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bound: float) -> Positions:
     trial = at.copied()
     solve_group(
-        group, ARRAYS, kinematics.numbers, trial, Choices(_OneSide(kinematics, group, at, sign, bound), 0)
+        group, ARRAYS, kinematics.numbers, trial, Choices(OneSide(kinematics, group, at, sign, bound), 0)
     )
     return trial
-
-
-class _OneSide(_Starting):
-    """One of a group's two assemblies; refused if it falls short of closing."""
-
-    def __init__(
-        self, kinematics: Kinematics, group: Group, known: Positions, sign: float, bound: float
-    ) -> None:
-        super().__init__(kinematics)
-        self.kinematics = kinematics
-        self.solved = group
-        self.known = known
-        self.sign = sign
-        self.bound = bound
-
-    def root(self, group: int, radicand: Number) -> Number:
-        if radicand < -SAFETY * self.bound:
-            raise InputError(
-                name_of(self.solved),
-                _("it does not close in the initial position: {by_how_much}").format(
-                    by_how_much=shortfall(self.solved, self.kinematics.numbers, self.known)
-                ),
-                _("change a length, or the initial position"),
-            )
-        return self.sign * np.sqrt(max(radicand, 0.0))
 
 
 def _distance(space: Space, group: Group, one: Positions, other: Positions) -> float:
@@ -257,17 +200,7 @@ def _check_finite(group: Group, at: Positions) -> None:
     values = [x for p in points_of(group) for x in at.points[p]]
     values += [x for link in links_of(group) for vector in at.poses[link] for x in vector]
     if not all(np.isfinite(float(x)) for x in values):
-        raise _undetermined(group)
-
-
-def _undetermined(group: Group) -> InputError:
-    return InputError(
-        name_of(group),
-        _(
-            "the initial position is undetermined there: two of its points coincide, or its lines are parallel"
-        ),
-        _("start the drive elsewhere, or change the dimensions"),
-    )
+        raise undetermined(group)
 
 
 def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:

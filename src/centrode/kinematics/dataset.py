@@ -16,12 +16,14 @@ from centrode import __version__
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import Status
 from centrode.kinematics.solve import Solved
+from centrode.kinematics.spans import Span
 from centrode.locale import speaking
 from centrode.model.files import mechanism_text
 from centrode.quantities import QUANTITIES
 from centrode.structure.steps import name_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Orders: TypeAlias = tuple[Array | None, Array, Array]
 Variable: TypeAlias = tuple[tuple[str, ...], Any, dict[str, Any]]
 
 BATCH = "mechanism"
@@ -71,17 +73,25 @@ def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     span, unit = solved.span, _length_unit(solved)
     found: dict[str, Variable] = {}
     for kind in kinds_of(solved):
-        along = (slice(None), *[None] * len(kind.dimensions))  # samples, then what stands behind them
-        for order, factor in ((0, None), (1, span.rate), (2, span.rate**2)):
-            by_parameter = kind.orders[order]
-            if by_parameter is None:
+        for order in range(3):
+            values = by_time(kind.orders, order, span)
+            if values is None:
                 continue
-            values = by_parameter if factor is None else by_parameter * factor[along]
-            if order == 2 and span.second_rate.any():
-                values += kind.orders[1] * span.second_rate[along]
             name, dimensions = kind.names[order], (*front, "sample", *kind.dimensions)
             found[name] = named(name, dimensions, _lanes(values, front), length_unit=unit)
     return found
+
+
+def by_time(orders: Orders, order: int, span: Span) -> Array | None:
+    """Values (order 0), or first or second derivatives by time (lanes, samples, ...); None where there are none."""
+    by_parameter = orders[order]
+    if order == 0 or by_parameter is None:
+        return by_parameter
+    along = (slice(None), *[None] * (by_parameter.ndim - 2))  # samples, then what stands behind them
+    values = by_parameter * (span.rate if order == 1 else span.rate**2)[along]
+    if order == 2 and span.second_rate.any():
+        values += orders[1] * span.second_rate[along]
+    return values
 
 
 @dataclass(frozen=True)
@@ -91,13 +101,13 @@ class Kind:
     names: tuple[str, str, str]
     prefix: str
     dimensions: tuple[str, ...]
-    orders: tuple[Array | None, Array, Array]
+    orders: Orders
 
 
 def kinds_of(solved: Solved) -> list[Kind]:
     """Everything of a motion that has derivatives."""
 
-    def orders(values: Array) -> tuple[Array | None, Array, Array]:
+    def orders(values: Array) -> Orders:
         return values[0], values[1], values[2]
 
     points = ("position", "velocity", "acceleration")

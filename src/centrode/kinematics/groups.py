@@ -17,15 +17,14 @@ from centrode.geometry.plane import (
     place,
     pose_with_point,
     reversed_rotor,
-    rotor_of,
     subtract,
     turned,
 )
 from centrode.geometry.space import Curve, Root
 from centrode.geometry.space import Pose as AnyPose
+from centrode.kinematics.turned import add_angle, difference_of, turn_link
 from centrode.kinematics.wheels import (
     beside_track,
-    followed,
     rolloff_line,
     solve_train,
     touched_circle,
@@ -49,7 +48,7 @@ from centrode.structure.groups import (
     TwoPointLink,
 )
 from centrode.structure.positions import Positions
-from centrode.structure.wheel_groups import Following, Rolloff, Touch, Train
+from centrode.structure.wheel_groups import Rolloff, Touch, Train
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
@@ -90,62 +89,21 @@ def solve_group(group: Group, m: Namespace, numbers: Dimensions, at: Positions, 
         choices.higher(m, at)
 
 
-def _difference(turning: Turning, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
-    """Rotor from the body that a turning is relative to, to its link."""
-    if turning.drive is not None:
-        return rotor_of(m, at.drives[turning.drive])
-    return numbers.turn[turning.guide or ""]
-
-
 def _turned_link(
     group: TurnedLink, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices
 ) -> AnyPose:
     turning = group.turning
     if not isinstance(turning, Turning):
         at_pivot = numbers.local[group.link][group.pivot], at.points[group.pivot]
-        return pose_with_point(*at_pivot, turn_link(turning, group.link, m, numbers, at, choices))
-    _add_angle(turning, group.link, at)
-    rotor, reference = _difference(turning, m, numbers, at), numbers.reference(turning.link)
+        return pose_with_point(*at_pivot, turn_link(turning, group.link, m, numbers, at, choices.continued))
+    add_angle(turning, group.link, at)
+    rotor, reference = difference_of(turning, m, numbers, at), numbers.reference(turning.link)
     base = turning.relative_to
     if group.link != turning.link:  # it is the base that is unknown
         rotor, base = reversed_rotor(rotor), turning.link
         reference = reference and reference[2:] + reference[:2]
     local = numbers.local[group.link][group.pivot]
     return numbers.space.turned_pose(m, at.poses[base], rotor, local, at.points[group.pivot], reference)
-
-
-def turn_link(
-    turning: Turning | Following,
-    link: str,
-    m: Namespace,
-    numbers: Dimensions,
-    at: Positions,
-    choices: Choices,
-) -> Vector:
-    """Rotor of a link whose angle follows, in the plane; the angle is added where it is known with its turns."""
-    if isinstance(turning, Turning):
-        _add_angle(turning, link, at)
-        return turning_rotor(turning, link, m, numbers, at)
-    rotor, angle = followed(turning, link, m, numbers, at, choices.continued)
-    if angle is not None:
-        at.angles[link] = angle
-    return rotor
-
-
-def _add_angle(turning: Turning, link: str, at: Positions) -> None:
-    """Add the angle of a driven link with its turns, if that of the other link is known."""
-    other = turning.relative_to if link == turning.link else turning.link
-    if turning.drive is not None and other in at.angles:
-        value = at.drives[turning.drive]
-        at.angles[link] = value + at.angles[other] if link == turning.link else at.angles[other] - value
-
-
-def turning_rotor(turning: Turning, link: str, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
-    """Rotor of a link whose angle a drive or a guide gives against a body that is known, in the plane."""
-    difference = _difference(turning, m, numbers, at)
-    if link == turning.link:
-        return turned(at.poses[turning.relative_to].rotor, difference)
-    return turned(at.poses[turning.link].rotor, reversed_rotor(difference))
 
 
 def _two_points(link: str, first: str, second: str, m: Namespace, numbers: Dimensions, at: Positions) -> None:
@@ -185,7 +143,7 @@ def _carriage_rotor(
 ) -> Vector | None:
     if group.carriage is None or group.turning is None:
         return None
-    rotor = turn_link(group.turning, group.carriage, m, numbers, at, choices)
+    rotor = turn_link(group.turning, group.carriage, m, numbers, at, choices.continued)
     rolls = [locus.rolling for locus in group.loci if isinstance(locus, Rolloff)]
     if group.carriage not in at.angles and any(group.carriage in (r.link, r.on) for r in rolls):
         at.angles[group.carriage] = choices.continued(group.carriage, m.atan2(rotor[1], rotor[0]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import remainder, tau
 from typing import Any, TypeAlias
 
@@ -13,6 +14,7 @@ from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
 from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.newton import System, newton
+from centrode.kinematics.seeking import closing, scattered
 from centrode.kinematics.sides import is_measured
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -36,12 +38,12 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
     Raises InputError where an initial angle is missing, where nothing closes near the angles given, and where
     the group is singular.
     """
-    guess = guessed(mechanism, numbers, group, at)
     system = System(group, numbers, at.copied(), 1)
+    start = _start(mechanism, system, at)
     with np.errstate(all="ignore"):
-        found = newton(system, system.state_of(guess), STEPS)
+        found = newton(system, start, STEPS)
         if not found.found[0]:
-            raise _does_not_close(system, found.sizes[0, 0], guess)
+            raise _does_not_close(system, start)
         closed = system.at(ARRAYS, at, found.state)
         values = np.linalg.svd(system.linear(closed).matrix[0], compute_uv=False)
     if values[-1] <= SINGULAR * values[0]:
@@ -84,19 +86,48 @@ def _single(x: Number) -> Number:
     return x if np.ndim(x) == 0 else x[0]
 
 
-def guessed(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> Positions:
-    """Where the initial angles put the group's links, link by link from what is known."""
-    guess = at.copied()
-    left = list(group.links)
-    while left:
-        ready = [link for link in left if _put(mechanism, numbers, link, guess)]
-        if not ready:
-            raise _missing(mechanism, group, left)
+def _start(mechanism: Mechanism, system: System, at: Positions) -> Array:
+    """The state from which Newton's method starts."""
+    starts = [system.state_of(guess) for guess in guesses(mechanism, system.numbers, system.group, at)]
+    if len(starts) == 1:
+        return starts[0]
+    states = closing(mechanism, system, starts, STEPS)
+    if len(states) > 1:
+        raise InputError(
+            name_of(system.group),
+            _("{n} positions that close lie near the initial angles").format(n=len(states)),
+            _("hinge a link of known angle to it, or start the drives elsewhere"),
+        )
+    return states[0] if states else starts[0]
+
+
+def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> list[Positions]:
+    """Where the initial angles put the group's links: in one way, or in many where they know angles and no place."""
+    guess, left = _chained(mechanism, numbers, group.links, at.copied())
+    if not left and all(point in guess.points for point in group.points):
+        return [guess]
+    adrift = next((link for link in left if mechanism.initial_angle(link) is not None), None)
+    if adrift is None:
+        raise _missing(mechanism, group, left or list(group.links))
+    found = []
+    for place in scattered(numbers, at):
+        trial = guess.copied()
+        trial.points[next(iter(numbers.local[adrift]))] = place
+        trial, rest = _chained(mechanism, numbers, left, trial)
+        if rest or any(point not in trial.points for point in group.points):
+            raise _missing(mechanism, group, rest or left)
+        found.append(trial)
+    return found
+
+
+def _chained(
+    mechanism: Mechanism, numbers: Dimensions, links: Sequence[str], guess: Positions
+) -> tuple[Positions, list[str]]:
+    """A guess with links put by their initial angles, link by link from what is known; and those left over."""
+    left = list(links)
+    while ready := [link for link in left if _put(mechanism, numbers, link, guess)]:
         left = [link for link in left if link not in ready]
-    for point in group.points:
-        if point not in guess.points:
-            raise _missing(mechanism, group, list(group.links))
-    return guess
+    return guess, left
 
 
 def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions) -> bool:
@@ -134,8 +165,8 @@ def _missing(mechanism: Mechanism, group: Newton, left: list[str]) -> InputError
     )
 
 
-def _does_not_close(system: System, first: float, guess: Positions) -> InputError:
-    gap = system.gap(system.state_of(guess))[0] * system.numbers.scale
+def _does_not_close(system: System, start: Array) -> InputError:
+    gap = system.gap(start)[0] * system.numbers.scale
     return InputError(
         name_of(system.group),
         _("no position that closes lies near the initial angles: they leave a gap of {gap}").format(

@@ -47,13 +47,21 @@ def named_drive(mechanism: Mechanism, name: str, where: str) -> Drive:
     return next(drive for drive in mechanism.drives if drive.id == name)
 
 
-def value_of(mechanism: Mechanism, drive: Drive, value: Value, where: str) -> float:
-    """Value of a drive [rad or m] of a number in SI, or of a text with a unit ("30 deg")."""
-    kind = "angle" if unit_of_value(mechanism, drive) == "rad" else "length"
+def value_of(ready: Ready, drive: Drive, value: Value, where: str) -> float:
+    """Value of a drive [rad or m] of a number in SI, or of a text with a unit ("30 deg"); not too far away."""
+    kind = "angle" if unit_of_value(ready.mechanism, drive) == "rad" else "length"
     try:
-        return to_si(value, kind)
+        found = to_si(value, kind)
     except InputError as error:
         raise InputError(where, error.what, error.repair) from None
+    way = abs(found - initial_values(ready)[drive.id]) / unit_of(drive, ready.kinematics.path.scale)
+    if way > tau * MAX_TURNS:
+        raise InputError(
+            where,
+            _("it reaches too far: {turns:.3g} turns").format(turns=way / tau),
+            _("ask for at most {most:g}").format(most=MAX_TURNS),
+        )
+    return found
 
 
 def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value] | None) -> dict[str, float]:
@@ -68,7 +76,7 @@ def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value]
                 _("drive {name} is the one that moves").format(name=name),
                 _("hold the others"),
             )
-        found[name] = value_of(mechanism, drive, value, f"hold {name}")
+        found[name] = value_of(ready, drive, value, f"hold {name}")
         if drive.kind == "distance" and found[name] <= 0.0:
             raise InputError(
                 f"hold {name}", _("a cylinder has a length above zero"), _("give the distance of its points")
@@ -137,12 +145,6 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
         DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id]) for one in old.driven
     )
     fastest = max(abs(ways[one.drive.id]) / unit_of(one.drive, old.scale) for one in driven)
-    if fastest > tau * MAX_TURNS:
-        raise InputError(
-            "hold",
-            _("it reaches too far: {turns:.3g} turns").format(turns=fastest / tau),
-            _("ask for at most {most:g}").format(most=MAX_TURNS),
-        )
     pace = Pace.of(lambda times: np.full(len(times), fastest))
     path = Path(driven, 0.0, 1.0, pace.unit_at(0.0), old.scale, pace)
     kinematics = replace(ready.kinematics, path=path)

@@ -16,8 +16,8 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import Choices, Kinematics
-from centrode.kinematics.groups import turn_link
-from centrode.kinematics.guesses import guessed
+from centrode.kinematics.guesses import guesses
+from centrode.kinematics.turned import turn_link
 from centrode.kinematics.wheels import equation_at
 from centrode.locale import _
 from centrode.structure.constraints import Constraint
@@ -94,7 +94,7 @@ def standing_links(kinematics: Kinematics, group: Newton, at: Positions) -> Newt
         Entity("link", name) for name in group.links
     ]
     first, width = columns_of(entities)
-    guess = guessed(kinematics.structure.mechanism, kinematics.numbers, group, at)
+    guess = guesses(kinematics.structure.mechanism, kinematics.numbers, group, at)[0]
     kept = [equation for equation in group.equations if not isinstance(equation[0], Meshing)]
 
     def row(equation: tuple[Constraint, int]) -> Array:
@@ -129,7 +129,7 @@ def _turn_at_start(
     trial = at.copied()
     link = group.carriage
     if link is not None and group.turning is not None:
-        rotor = turn_link(group.turning, link, ARRAYS, kinematics.numbers, trial, choices)
+        rotor = turn_link(group.turning, link, ARRAYS, kinematics.numbers, trial, choices.continued)
         if link not in trial.angles:
             trial.angles[link] = choices.continued(link, np.arctan2(rotor[1], rotor[0]))
     return float(trial.angles[rolling.link] - trial.angles[rolling.on])

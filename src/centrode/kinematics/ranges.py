@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import tau
 from typing import TypeAlias
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy.typing as npt
 
 from centrode.errors import InputError
 from centrode.kinematics.holding import Value, initial_values, named_drive, value_of
+from centrode.kinematics.paths import unit_of
 from centrode.kinematics.reach import limits_about
 from centrode.kinematics.ready import Ready
 from centrode.locale import _
@@ -19,6 +21,7 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Ranges: TypeAlias = Mapping[str, tuple[Value, Value]]
 
 MOST_NODES = 1001
+MOST_TURNS = 10.0
 SAME = 1e-9
 """Share of a range below which two values are one grid line."""
 BESIDE = 0.1
@@ -46,7 +49,7 @@ def grid_nodes(
     mechanism, start = prepared.mechanism, initial_values(prepared)
     drive = named_drive(mechanism, name, "ranges")
     if ranges is not None and name in ranges:
-        low, high = sorted(value_of(mechanism, drive, value, f"range {name}") for value in ranges[name])
+        low, high = sorted(value_of(prepared, drive, value, f"range {name}") for value in ranges[name])
     elif drive.kind == "angle":
         low, high = start[name] - np.pi, start[name] + np.pi
     else:
@@ -60,6 +63,13 @@ def grid_nodes(
             f"range {name}",
             _("it has to hold the initial value, {value:.6g}").format(value=start[name]),
             _("ask for a range about it"),
+        )
+    turns = (high - low) / (tau * unit_of(drive, prepared.kinematics.path.scale))
+    if turns > MOST_TURNS * (1.0 + SAME):
+        raise InputError(
+            f"range {name}",
+            _("it reaches too far: {turns:.3g} turns").format(turns=turns),
+            _("ask for at most {most:g}").format(most=MOST_TURNS),
         )
     nodes = np.linspace(low, high, samples)
     nearest = node_of(nodes, start[name])

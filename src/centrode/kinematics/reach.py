@@ -117,7 +117,7 @@ def limits(
     others = held_values(prepared, (moving,), held)
     chosen = named_drive(mechanism, moving, "drive")
     start = initial_values(prepared)[moving]
-    start = start if about is None else value_of(mechanism, chosen, about, "about")
+    start = start if about is None else value_of(prepared, chosen, about, "about")
     return limits_about(prepared, moving, others, start)
 
 

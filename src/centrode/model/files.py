@@ -52,7 +52,7 @@ def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> M
     if len(text) > limits.FILE_SIZE:
         what = _("the text has {size} characters, at most {most} are allowed")
         raise InputError(where, what.format(size=len(text), most=limits.FILE_SIZE))
-    return mechanism_from(_tables(text, where), where, folder)
+    return mechanism_from(toml_tables(text, where), where, folder)
 
 
 def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = None) -> Mechanism:
@@ -75,7 +75,8 @@ def _in_one_line(match: re.Match[str]) -> str:
     return "[" + ", ".join(line.strip().removesuffix(",") for line in match.group(1).splitlines()) + "]"
 
 
-def _tables(text: str, where: str) -> dict[str, Any]:
+def toml_tables(text: str, where: str) -> dict[str, Any]:
+    """Tables of a text of TOML; raises InputError where it is none, or nests too deeply."""
     repair = _("tables and lists lie at most {most} inside each other").format(most=limits.NESTING)
     nested = InputError(where, _("the text nests too deeply"), repair)
     if _DOTTED.search(text):

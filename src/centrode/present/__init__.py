@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
+    from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "region_figure",
     "save_figures",
     "scene_of",
+    "sweep_csv",
     "write_coefficients_csv",
     "write_motion_csv",
     "write_motion_netcdf",
@@ -45,6 +47,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],
+        "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
     },
 )

@@ -127,4 +127,7 @@ def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
                     names.append(slider_of(guide))
             if isinstance(locus, Stroke):
                 names.append(_("cylinder {drive}").format(drive=locus.drive))
+    if isinstance(group, Newton):
+        bare = [guide for guide in mechanism.guides if is_bare(guide)]
+        names += [slider_of(g) for g in bare if g.point in group.points or g.on in group.links]
     return tuple(dict.fromkeys(names))

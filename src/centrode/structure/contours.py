@@ -54,6 +54,10 @@ def contours_of(mechanism: Mechanism, group: Newton) -> Contours:
         if guide.link is None and guide.point in group.points:
             found.joints.setdefault(("hinge", guide.point), []).append(slider)
             inside.append(slider)
+        elif guide.link is None and guide.on in group.links:
+            # a slider between the link and a known point belongs to the group as well
+            inside.append(slider)
+            found.outer += 1
         if len(inside) == 2:
             found.joints[("guide", guide.id)] = inside
         elif inside:

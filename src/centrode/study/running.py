@@ -106,8 +106,8 @@ def _at_instants(prepared: Ready) -> xr.Dataset | None:
     return dataset_of(solve(prepared, span))
 
 
-def range_value(mechanism: Mechanism, text: str, where: str) -> float:
-    """Value of the drive, or time, that a text with a unit names: an end of the range of a motion [rad, m or s].
+def range_value(mechanism: Mechanism, text: float | str, where: str) -> float:
+    """Value of the drive, or time, that a number or a text with a unit names: an end of a motion's range [rad, m or s].
 
     Raises InputError for a unit of another kind.
     """

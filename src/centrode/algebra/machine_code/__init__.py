@@ -1,0 +1,12 @@
+"""Scans as machine code, through llvmlite (the extra `fast`). Without it everything runs on NumPy.
+
+In the order of the work: `relaxing` (what may be rounded otherwise), `operating` and `trigonometry` (operations
+in LLVM's `language`), `loops` (the whole function), `target`, `compiling`, `cache`, `kernels` (what is called).
+"""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+PRESENT = find_spec("llvmlite") is not None
+"""Whether llvmlite is installed; it is not imported to find out."""

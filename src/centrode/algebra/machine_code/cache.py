@@ -1,0 +1,96 @@
+"""Compiled kernels on disk: a saving, never a need. Whatever is wrong with an entry, it is as if it were not there."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+FOLDER = "CENTRODE_CACHE"
+"""Environment variable that names another folder; if it is empty, nothing is kept on disk."""
+MARK = b"centrode kernel 1\n"
+GREATEST = 1 << 24
+"""Bytes of an entry that is read; the code of a large mechanism has some 2^16."""
+ENTRIES = 512
+"""The newest are kept."""
+SUFFIX = ".kernel"
+
+
+def folder() -> Path | None:
+    """Where kernels are kept; None if nowhere."""
+    named = os.environ.get(FOLDER)
+    if named is not None:
+        return Path(named) if named else None
+    try:
+        home = Path.home()
+    except RuntimeError:  # a process without a home
+        return None
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local") / "centrode" / "kernels"
+    if sys.platform == "darwin":
+        return home / "Library" / "Caches" / "centrode" / "kernels"
+    return Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache") / "centrode" / "kernels"
+
+
+def name_of(*parts: str) -> str:
+    """Name of the entry that depends on some texts, and on nothing else."""
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(f"{len(part)}:{part}".encode())
+    return digest.hexdigest()
+
+
+def read(name: str) -> bytes | None:
+    """What is kept under a name; None if there is nothing, or nothing that can be trusted."""
+    place = folder()
+    if place is None:
+        return None
+    try:
+        with (place / f"{name}{SUFFIX}").open("rb") as file:
+            if not _is_own(os.fstat(file.fileno())):
+                return None
+            content = file.read(GREATEST + 1)
+    except OSError:
+        return None
+    head = len(MARK) + hashlib.sha256().digest_size
+    kept, payload = content[:head], content[head:]
+    return payload if kept == MARK + _digest(name, payload) else None
+
+
+def write(name: str, payload: bytes) -> None:
+    """Keep something under a name; in one stroke, so that other processes see all of it or nothing."""
+    place = folder()
+    if place is None or len(payload) > GREATEST // 2:
+        return
+    try:
+        place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=place)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(MARK + _digest(name, payload) + payload)
+            Path(temporary).replace(place / f"{name}{SUFFIX}")
+        except OSError:
+            Path(temporary).unlink(missing_ok=True)
+        _leave_the_newest(place)
+    except OSError:
+        return  # a full disk, a folder that cannot be written: nothing is kept
+
+
+def _digest(name: str, payload: bytes) -> bytes:
+    return hashlib.sha256(name.encode() + payload).digest()
+
+
+def _is_own(found: os.stat_result) -> bool:
+    """Whether a file is the user's own: code that someone else put there is not run."""
+    return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
+
+
+def _leave_the_newest(place: Path) -> None:
+    entries = list(place.glob(f"*{SUFFIX}"))
+    if len(entries) <= ENTRIES:
+        return
+    entries.sort(key=lambda entry: entry.stat().st_mtime)
+    for entry in entries[:-ENTRIES]:
+        entry.unlink(missing_ok=True)

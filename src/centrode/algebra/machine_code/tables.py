@@ -1,0 +1,81 @@
+"""What is computed before a kernel runs, on NumPy: expressions that all lanes, or all steps, have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from centrode.algebra.graph_arrays import evaluate
+from centrode.algebra.graphs import Graph, split
+from centrode.algebra.scans import Array, Call, Scan
+
+FUNCTIONS = frozenset({"sin", "cos", "atan2", "exp", "log", "power"})
+"""Operations that are not rounded alike everywhere."""
+KEPT = 1 << 20
+"""Bytes of the arrays whose table is kept for the next call."""
+
+
+class Table:
+    """Expressions of some variables alone, computed for arrays of these.
+
+    Calls in turn often have the same samples: the last table is kept.
+    """
+
+    def __init__(self, names: tuple[str, ...], graph: Graph) -> None:
+        self.names = names
+        self.graph = graph
+        self._last: tuple[bytes, Array] | None = None
+
+    def below(self, rows: Array) -> Array:
+        """The rows of the variables, (variables, n), with those of the expressions below them."""
+        if not self.graph.outputs:
+            return rows
+        if rows.nbytes > KEPT:
+            return self._computed(rows)
+        key, last = rows.tobytes() + rows.dtype.char.encode(), self._last
+        if last is None or last[0] != key:
+            self._last = last = key, self._computed(rows)
+        return last[1]
+
+    def _computed(self, rows: Array) -> Array:
+        whole = np.empty((len(rows) + len(self.graph.outputs), rows.shape[1]), rows.dtype)
+        whole[: len(rows)] = rows
+        found = evaluate(self.graph, dict(zip(self.names, rows, strict=True)), rows.dtype)
+        for i, values in enumerate(found.values(), len(rows)):
+            whole[i] = values
+        return whole
+
+
+@dataclass(frozen=True)
+class Tables:
+    """A scan with what is computed beforehand taken out of it.
+
+    What depends on the inner loop's variables alone would be computed again at every turn of the outer loop.
+    Functions of the inputs alone are taken out in any case: so the drive's sine and cosine, and the statuses
+    that hang on them, are NumPy's whichever loop is inside.
+
+    Attributes
+    ----------
+    of_steps, of_lanes : what is computed from inputs alone, and from parameters alone
+    rest : the scan with that as further inputs and parameters
+    """
+
+    of_steps: Table
+    of_lanes: Table
+    rest: Scan
+
+    @classmethod
+    def of(cls, scan: Scan, lanes_inside: bool) -> Tables:
+        """The tables of a scan."""
+        only = FUNCTIONS if lanes_inside else None
+        steps, graph = split(scan.graph, scan.inputs, "of step", only)
+        lanes, graph = split(graph, scan.parameters if lanes_inside else (), "of lane")
+        rest = scan.with_graph(graph, (*scan.parameters, *lanes.outputs), (*scan.inputs, *steps.outputs))
+        return cls(Table(scan.inputs, steps), Table(scan.parameters, lanes), rest)
+
+    def added(self, call: Call) -> Call:
+        """The arrays of a call of the scan as those of the rest."""
+        return replace(
+            call, inputs=self.of_steps.below(call.inputs), parameters=self.of_lanes.below(call.parameters)
+        )

@@ -1,0 +1,105 @@
+"""`centrode sweep`: many mechanisms of one structure, from a file that says what varies."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.progress import Progress
+from centrode.errors import InputError, MotionError
+from centrode.locale import _, mark
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from centrode.sweeps.files import SweepStudy
+
+TABLE, STORE = ".csv", ".zarr"
+
+
+@click.command(help=mark("Compute many mechanisms of one structure, from a study."))
+@click.argument("study", metavar=mark("STUDY"), help=mark("A TOML file: mechanism, what varies, outputs."))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("OUT"),
+    help=mark("A folder .zarr (a run that was cut short goes on), or a table .csv of a reduced sweep."),
+)
+@click.option("--force", is_flag=True, help=mark("Replace the table where it exists."))
+def sweep(study: str, out: Path | None, force: bool) -> None:
+    """Compute and write; exit code 3 if no mechanism moves anywhere (the results are written)."""
+    asked = ct.read_sweep(study)
+    target = out if out is not None else Path(Path(study).stem + STORE)
+    if target.suffix == TABLE:
+        data = _as_table(asked, study, target, force)
+    elif target.suffix == STORE:
+        data = _as_store(asked, study, target)
+    else:
+        raise InputError(
+            str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
+        )
+    click.echo(output.table(ct.sweep_rows(data)))
+    click.echo("\n" + _("wrote {file}").format(file=target))
+    if data.attrs["mechanisms_none"] == data.attrs["mechanisms"]:
+        raise MotionError(
+            study, _("no mechanism is ok at any sample"), _("ask for another range, or change what varies")
+        )
+
+
+def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Dataset:
+    if asked.reduce is None:
+        raise InputError(
+            str(target), _("a table holds reduced results only"), _("give reduce, or write .zarr")
+        )
+    if target.exists() and not force:
+        raise InputError(str(target), _("exists already"), _("say --force to replace it"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # an interruption is told in the command's own words
+        data = _computed(asked, study, None)
+    if data.attrs["mechanisms"] < data["samples_ok"].size:
+        raise KeyboardInterrupt  # a part of a table looks like a whole one
+    output.write_file(target, ct.sweep_csv(data), force=force)
+    return data
+
+
+def _as_store(asked: SweepStudy, study: str, target: Path) -> xr.Dataset:
+    try:
+        data = _computed(asked, study, target)
+    except KeyboardInterrupt:
+        note = _("what is finished stays in {folder}; the same command goes on from there")
+        click.echo(note.format(folder=target), err=True)
+        raise
+    found = data.attrs["mechanisms_found"]
+    if found:
+        click.echo(_("{found} mechanisms were there from an earlier run").format(found=found), err=True)
+    return data
+
+
+def _computed(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
+    with about(study), Progress() as progress:
+        start, stop = (
+            None if end is None else ct.range_value(asked.mechanism, end, key)
+            for key, end in (("from", asked.start), ("to", asked.stop))
+        )
+
+        def tell(done: int, of: int) -> None:
+            progress.say(_("computing mechanisms"), done, of)
+
+        return ct.sweep(
+            asked.mechanism,
+            asked.vary,
+            asked.outputs,
+            samples=asked.samples,
+            start=start,
+            stop=stop,
+            reduce=asked.reduce,
+            executor=asked.executor,
+            store=store,
+            progress=tell,
+        )

@@ -1,0 +1,33 @@
+"""What a sweep may take of memory and ask for at most; named here, told in docs/sweeps.md."""
+
+from __future__ import annotations
+
+WORKING_SET = 256_000_000
+"""Bytes that the mechanisms solved together may take, results aside (one mechanism alone may take more)."""
+
+BLOCK_POSITIONS = 2_000_000
+"""Positions of one block, the unit that is stored and marked as done: a few seconds of work."""
+
+BLOCK_BYTES = 32_000_000
+"""Bytes of one block's results."""
+
+IN_MEMORY = 2_000_000_000
+"""Bytes of a result that is kept in memory; a greater one needs a store."""
+
+IN_STORE = 1_000_000_000_000
+"""Bytes of a result in a store."""
+
+MECHANISMS = 10_000_000_000
+"""Mechanisms of one sweep."""
+
+DRAWN = 20_000_000
+"""Numbers of a sample (mechanisms times paths): they are drawn at once."""
+
+LISTED = 20_000_000
+"""Values given one by one."""
+
+PATHS = 100
+"""Paths that vary together."""
+
+OUTPUTS = 200
+"""Outputs, or formulas, of one sweep."""

@@ -1,0 +1,53 @@
+"""A lock on a folder that one process holds; when the process ends, however it ends, the lock is free."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from centrode.errors import InputError
+from centrode.locale import _
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
+
+@contextmanager
+def locked(file: Path, what: str) -> Iterator[None]:
+    """Hold the lock in `file` while the block runs.
+
+    Raises InputError about `what` where another process holds it. A lock left by a process that was killed does
+    not hold: it belongs to the open file, not to the file's being there.
+    """
+    try:
+        stream = file.open("a+b")
+    except OSError as refusal:
+        raise _refused(what, refusal) from refusal
+    with stream:
+        try:
+            _take(stream.fileno())
+        except (BlockingIOError, PermissionError) as refusal:
+            busy = _("another run is writing into it")
+            raise InputError(what, busy, _("wait until it ends, or name another place")) from refusal
+        except OSError as refusal:
+            raise _refused(what, refusal) from refusal
+        yield
+
+
+def _refused(what: str, refusal: OSError) -> InputError:
+    """A file system that cannot lock, or lets nobody write."""
+    reason = refusal.strerror or str(refusal)
+    return InputError(what, _("cannot be locked: {reason}").format(reason=reason), _("name another place"))
+
+
+def _take(handle: int) -> None:
+    if sys.platform == "win32":
+        os.lseek(handle, 0, os.SEEK_SET)
+        msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+    else:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
