@@ -1,4 +1,4 @@
-"""Groups of higher class at any places: from their anchors, with derivatives or bounds as the algebra wants."""
+"""Groups of higher class at any places: from their tracks, with derivatives or bounds as the algebra wants."""
 
 from __future__ import annotations
 
