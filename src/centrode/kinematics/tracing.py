@@ -29,8 +29,9 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 FIRST, GREATEST, CAUTIOUS, LEAST = 0.02, 0.4, 0.005, 1e-9
 """Steps of the arc, in rad and in the greatest length: the first, the greatest, the one from which on a group may
 come near to being singular, and the one at which it is given up."""
-TARGET, TRUST = 1e-4, 3e-3
-"""By how much a foretold place should be wrong, and the most that it may."""
+TARGET, TRUST, PART = 1e-4, 3e-3, 0.1
+"""By how much a foretold place should be wrong, the most that it may, and the most that it may of a step: on a
+curve that bends sharply a place wrong by a whole step lies elsewhere."""
 STRAIGHT = 0.9
 """Cosine of the angle by which the curve may turn in a step."""
 SHRINKING = 0.3
@@ -113,7 +114,8 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     with np.errstate(all="ignore"):
         cosine = total(there.places.along * here.along)
         left = np.abs(there.places.size / here.size)
-        good = there.found & (there.wrong <= TRUST) & (cosine >= STRAIGHT) & (there.arc > 0.0)
+        good = there.found & (there.wrong <= np.minimum(TRUST, PART * step))
+        good &= (cosine >= STRAIGHT) & (there.arc > 0.0)
         good &= (step <= CAUTIOUS) | (left >= SHRINKING)
         crossed = good & (np.sign(there.places.size) != np.sign(here.size))
         good &= ~crossed | (step <= CAUTIOUS)
@@ -189,13 +191,14 @@ def _turn_back(
 ) -> list[Event]:
     """Limits between places and those found beyond them; the walkers stop there."""
     limit = limits(around, walkers.lane[who], here, there)
+    _shorten(walkers, who[~limit.reached.found])
     pieces = quintic(here, limit.reached)
     events = []
     for k, walker in enumerate(who):
         trail, at = walkers.trails[walker], float(limit.reached.places.parameter[k])
-        walkers.stop(walker, lost=not limit.reached.found[k])
         if not limit.reached.found[k]:
             continue
+        walkers.stop(walker)
         sense = float(walkers.sense[walker] * walkers.forward[walker])
         start = float(here.parameter[k])
         trail.pieces.append(Piece(pieces[k], start, start, at, sense))
