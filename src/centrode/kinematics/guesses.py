@@ -16,9 +16,10 @@ from centrode.kinematics.newton import System, newton
 from centrode.kinematics.sides import is_measured
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.structure.constraints import DisplacementDrive, PointInLink, PointOnGuide
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Positions
+from centrode.structure.positions import Entity, Positions
 from centrode.structure.steps import name_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -91,7 +92,9 @@ def guessed(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
     while left:
         ready = [link for link in left if _put(mechanism, numbers, link, guess)]
         if not ready:
-            raise _missing(mechanism, group, left)
+            if not _put_on_guides(mechanism, numbers, group, left, guess):
+                raise _missing(mechanism, group, left)
+            break
         left = [link for link in left if link not in ready]
     for point in group.points:
         if point not in guess.points:
@@ -122,6 +125,42 @@ def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions)
     for point, at_rest in local.items():
         if point not in guess.points:
             guess.points[point] = space.place(ARRAYS, pose, at_rest)
+    return True
+
+
+def _put_on_guides(
+    mechanism: Mechanism, numbers: Dimensions, group: Newton, left: list[str], guess: Positions
+) -> bool:
+    """Put links of known angles that are hinged to nothing known where their guides leave the least gaps.
+
+    With angles given everything left is linear in the places: links are put anywhere, then all are moved together.
+    """
+    if len(numbers.space.axes) > 2 or any(mechanism.initial_angle(link) is None for link in left):
+        return False
+    points = [point for point in group.points if point not in guess.points]
+    for link in left:
+        near = next((point for point in numbers.local[link] if point in guess.points), None)
+        if near is None:
+            near = next(iter(numbers.local[link]))
+            guess.points[near] = (0.0, 0.0)
+        _put(mechanism, numbers, link, guess)
+    for point in points:
+        guess.points.setdefault(point, (0.0, 0.0))
+    moving = [Entity("point", point) for point in points] + [Entity("link", link) for link in left]
+    rows, gaps = [], []
+    for constraint, number in group.equations:
+        if isinstance(constraint, (PointInLink, PointOnGuide, DisplacementDrive)):
+            row = constraint.rows(numbers, guess)[number]
+            rows.append([x for entity in moving for x in list(row.get(entity, (0.0,) * 3))[:2]])
+            gaps.append(constraint.residual(ARRAYS, numbers, guess)[number])
+    shifts = np.linalg.lstsq(np.array(rows, dtype=float), -np.array(gaps, dtype=float), rcond=None)[0]
+    for entity, (x, y) in zip(moving, shifts.reshape(-1, 2), strict=True):
+        if entity.kind == "point":
+            place = guess.points[entity.name]
+            guess.points[entity.name] = (place[0] + x, place[1] + y)
+        else:
+            pose = guess.poses[entity.name]
+            guess.poses[entity.name] = type(pose)((pose[0][0] + x, pose[0][1] + y), *pose[1:])
     return True
 
 
