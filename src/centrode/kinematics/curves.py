@@ -30,6 +30,8 @@ STEPS = 7
 """Newton steps onto a plane."""
 ENOUGH = 1e-9
 """What part of a step along the curve the next Newton step onto a plane may be."""
+FAR = 3e-4
+"""The first step counts as one after a step this great: the curve may bend so sharply that only a second one tells."""
 CONTRACTION = 0.2
 """By how much every Newton step must be smaller than the one before, but for rounding."""
 
@@ -109,7 +111,7 @@ def reach(
     """
     count, free = len(parameter), along.shape[1] - 1
     found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
-    last, wrong = np.full(count, np.inf), np.full(count, np.nan)
+    last, wrong = np.full(count, FAR), np.full(count, np.nan)
     for k in range(STEPS):
         system, linear, moved, rest, follow, matrix = bordered(around, lanes, parameter, state, along)
         right = np.concatenate([rest, np.zeros((count, 1))], axis=1)
@@ -125,7 +127,7 @@ def reach(
             enough = settled(last, size) if stride is None else size * (size / last) ** 2 <= ENOUGH * stride
         done = good & enough
         found |= done
-        active = good & ~done & (size <= np.maximum(CONTRACTION * last, 1e-9))
+        active = good & ~done & ((k == 0) | (size <= np.maximum(CONTRACTION * last, 1e-9)))
         last = size
         if not active.any():
             break

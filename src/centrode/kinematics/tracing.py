@@ -208,13 +208,14 @@ def _turn_back(
 ) -> list[Event]:
     """Limits between places and those found beyond them; the walkers stop there."""
     limit = limits(around, walkers.lane[who], here, there)
+    _shorten(walkers, who[~limit.reached.found])
     pieces = quintic(here, limit.reached)
     events = []
     for k, walker in enumerate(who):
         trail, at = walkers.trails[walker], float(limit.reached.places.parameter[k])
-        walkers.stop(walker, lost=not limit.reached.found[k])
         if not limit.reached.found[k]:
             continue
+        walkers.stop(walker)
         sense = float(walkers.sense[walker] * walkers.forward[walker])
         start = float(here.parameter[k])
         trail.pieces.append(Piece(pieces[k], start, start, at, sense))
