@@ -145,6 +145,12 @@ def _check_drives(
     numbers = drives_against_mobility(drives, mobility)
     if repeated:
         raise InputError("[[drives]]", numbers, _("take away: {drives}").format(drives="; ".join(repeated)))
+    if sum(kept) < width and drives >= mobility:
+        raise InputError(
+            "[[drives]]",
+            _("a drive acts on what the rest holds fast, and something else moves freely"),
+            _("drive what moves freely instead"),
+        )
     if sum(kept) < width:
         raise InputError("[[drives]]", numbers, _("add drives, or constrain what moves freely"))
 
