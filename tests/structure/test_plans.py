@@ -228,3 +228,16 @@ def test_special_dimensions_move_though_the_count_says_no() -> None:
     wrong = ct.with_value(parts, "links.FE.length", 1.001)
     with pytest.raises(ct.InputError, match=r"length of link FE: .* this constraint is off by 0\.001 m"):
         ct.check(wrong)
+
+
+def test_a_drive_of_what_is_held_fast_is_told() -> None:
+    """As many drives as the mobility, but on the wrong link: not that there are too few."""
+    held = ct.Mechanism(
+        frame={"points": {"O": [0, 0], "E": [2, 0], "F": [1, 1]}},
+        links={"OA": {"length": 1}, "arch": {"points": {"E": [0, 0], "F": [2**0.5, 0]}}},
+        drives=[{"link": "arch", "start": "135 deg", "speed": 1}],
+    )
+    with pytest.raises(
+        ct.InputError, match="drive of link arch: it cannot move: .* holds it; drive what can move"
+    ):
+        ct.check(held)

@@ -42,7 +42,8 @@ class Places:
 
     `numbers` (k, width + 1) are state and parameter, `first` their derivatives by the curve's arc; `along` is the
     curve's unit vector (k, free + 1), `size` the determinant of the equations bordered by it. `second` are second
-    Taylor coefficients by the distance of `numbers` along `first`, which to begin with is the arc.
+    Taylor coefficients by the distance of `numbers` along `first`, which to begin with is the arc. Distances count
+    every number in its own measure, `weight` (k, width + 1): they are the same in metres and in millimetres.
     """
 
     numbers: Array
@@ -50,6 +51,7 @@ class Places:
     second: Array
     along: Array
     size: Array
+    weight: Array
 
     @property
     def state(self) -> Array:
@@ -70,7 +72,8 @@ class Places:
 
     def distance(self, numbers: Array) -> Array:
         """Distance of numbers (k, width + 1) along the curve's direction here."""
-        return total(self.first * numbers) / total(self.first**2)
+        own = self.first * self.weight**2
+        return total(own * numbers) / total(own * self.first)
 
 
 @dataclass(frozen=True)
@@ -141,7 +144,7 @@ def reach(
         length = np.sqrt(total(slope * slope))
         # the determinant bordered by the curve's own direction is that by the plane's, times their cosine
         size = np.linalg.det(matrix) * length
-        places = Places(numbers, first / length[:, None], second, slope / length[:, None], size)
+        places = Places(numbers, first / length[:, None], second, slope / length[:, None], size, base.weight)
         _rate, places.second = _by_distance(places, first, second)
         inward = _by_distance(base, first, second)
     found &= np.isfinite(inward[1]).all(axis=1)

@@ -116,6 +116,14 @@ class System:
         numbers += [x for name in self.group.links for part in at.poses[name] for x in part]
         return numbers + [at.angles[name] for name in self._turns]
 
+    def weights(self) -> Array:
+        """What makes the numbers of a state comparable, (k, width): lengths count in the greatest length."""
+        length = 1.0 / self.numbers.scale
+        weights = [length for _name in self.group.points for _axis in self.numbers.space.axes]
+        rest = self.numbers.space.at_rest
+        parts = [length if name == "origin" else 1.0 for name, part in rest._asdict().items() for _x in part]
+        return self.stacked([*weights, *parts * len(self.group.links), *[1.0] * len(self._turns)])
+
     def state_of(self, at: Positions) -> Array:
         """The state in which positions are: (k, width)."""
         return self.stacked(self.numbers_of(at))

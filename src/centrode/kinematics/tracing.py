@@ -108,7 +108,9 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
     direction = np.zeros(numbers.shape)
     direction[:, -1] = forward
-    base = Places(numbers, direction, direction, along, forward)
+    weight = np.full(numbers.shape, 1.0 / around.unit)
+    weight[:, :-1] = around.blank(both).weights()
+    base = Places(numbers, direction, direction, along, forward, weight)
     found = reach(around, both, base, along, parameter, state)
     here = found.places
     width = start.shape[1] + 1

@@ -142,7 +142,7 @@ def _check_drives(
     if sum(kept) == matrix.shape[1]:
         return
     locked = _locked_drives(matrix, owners)
-    if locked:
+    if locked and drives == mobility:
         raise InputError(
             "; ".join(locked),
             _("it cannot move: the rest of the mechanism holds it"),
