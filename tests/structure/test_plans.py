@@ -238,6 +238,6 @@ def test_a_drive_of_what_is_held_fast_is_told() -> None:
         drives=[{"link": "arch", "start": "135 deg", "speed": 1}],
     )
     with pytest.raises(
-        ct.InputError, match="drive of link arch: it cannot move: .* holds it; drive what can move"
+        ct.InputError, match=r"drive of link arch: it cannot move: .* holds it; drive what can move"
     ):
         ct.check(held)
