@@ -13,7 +13,8 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.kinematics.evaluate import Hooks
-from centrode.kinematics.newton import Motion, System, newton
+from centrode.kinematics.higher_class.newton import newton
+from centrode.kinematics.higher_class.system import Motion, System
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready, ready
 from centrode.structure.groups import Newton

@@ -15,10 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.kinematics.newton import Motion, System, settled, size_of, total
+from centrode.kinematics.higher_class.newton import settled, size_of
+from centrode.kinematics.higher_class.reduction import Linear, Shift, solved
+from centrode.kinematics.higher_class.surroundings import Surroundings
+from centrode.kinematics.higher_class.system import Motion, System, total
 from centrode.kinematics.paths import JETS
-from centrode.kinematics.reduction import Linear, Shift, solved
-from centrode.kinematics.surroundings import Surroundings
 from centrode.structure.positions import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]

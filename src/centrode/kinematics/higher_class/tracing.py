@@ -16,12 +16,12 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.branches import Event
-from centrode.kinematics.crossings import crossing
-from centrode.kinematics.curves import Places, Reached, quintic, reach
-from centrode.kinematics.limits import limits
-from centrode.kinematics.newton import total
-from centrode.kinematics.surroundings import Surroundings
-from centrode.kinematics.tracks import Piece, Tracks, Trail
+from centrode.kinematics.higher_class.crossings import crossing
+from centrode.kinematics.higher_class.curves import Places, Reached, quintic, reach
+from centrode.kinematics.higher_class.limits import limits
+from centrode.kinematics.higher_class.surroundings import Surroundings
+from centrode.kinematics.higher_class.system import total
+from centrode.kinematics.higher_class.tracks import Piece, Tracks, Trail
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
-from centrode.kinematics.curves import Places, Reached, bordered, quintic, reach
-from centrode.kinematics.newton import total
-from centrode.kinematics.surroundings import Surroundings
+from centrode.kinematics.higher_class.curves import Places, Reached, bordered, quintic, reach
+from centrode.kinematics.higher_class.surroundings import Surroundings
+from centrode.kinematics.higher_class.system import total
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
