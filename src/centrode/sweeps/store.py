@@ -24,9 +24,10 @@ import xarray as xr
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.sweeps.arrays import Task
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import described
-from centrode.sweeps.executors import Task
+from centrode.sweeps.executors import bare
 from centrode.sweeps.locking import locked
 from centrode.sweeps.results import Frame
 from centrode.sweeps.tallies import Tally
@@ -167,7 +168,7 @@ def _study(frame: Frame, task: Task) -> dict[str, Any]:
         "samples": [len(parameter), float(parameter[0]), float(parameter[-1])],
         "outputs": [output.name for output in asked.outputs],
         "reduce": {formula.name: formula.text.text for formula in asked.formulas} or asked.reduction,
-        "executor": told["executor"],
+        "executor": bare(told["executor"]),
     }
 
 
