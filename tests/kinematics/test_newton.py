@@ -97,7 +97,8 @@ def test_matrix_is_the_derivative_of_the_residual(prepared: Ready) -> None:
         free = [1.0 if i == j else 0.0 for i in range(system.free)]
         motion = linear.whole(still, free)
         jets = Motion(
-            {e: tuple(Jet((0.0, x)) for x in shift) for e, shift in motion.items()}, [Jet((0.0, x)) for x in free]
+            {e: tuple(Jet((0.0, x)) for x in shift) for e, shift in motion.items()},
+            [Jet((0.0, x)) for x in free],
         )
         values = system.residual(JETS, system.at(JETS, system.known, state, jets))
         for i, k in enumerate(linear.pattern.kept):

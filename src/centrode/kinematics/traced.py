@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Operand, variable
+from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
@@ -62,13 +62,18 @@ class Traced:
     ----------
     solved : arrays of nodes and floats, of one lane and one sample
     radicands, divisors : group -> jet of first order, or what does not move with the drive: events are their zeros
-    turning : link -> cosine and sine of its angle where its turns have to be found: `turns` stand in its angle
+    turning : link -> cosine and sine of its angle where its turns have to be found
+    turns : link -> the turns that stand in its angle: a whole number
     """
 
     solved: Solved
     radicands: Mapping[int, Number]
     divisors: Mapping[int, Number]
     turning: Mapping[str, tuple[Operand, Operand]]
+
+    @property
+    def turns(self) -> dict[str, Node]:
+        return {link: as_node(turns_of(link, *rotor)) for link, rotor in self.turning.items()}
 
 
 class _Signs(Hooks):
@@ -141,9 +146,8 @@ def _columns(numbers: Sequence[Number]) -> Nodes:
 
 
 def _derivative(x: Number, order: int) -> Operand:
-    if isinstance(x, Jet):
-        return x.derivative(order)
-    return x if order == 0 else 0.0
+    found: Operand = x.derivative(order) if isinstance(x, Jet) else x if order == 0 else 0.0
+    return found
 
 
 def _angles(
@@ -162,7 +166,7 @@ def _angles(
             found[0, k] = _standing(cosine[0], sine[0], start[link])
             continue
         turning[link] = cosine[0], sine[0]
-        found[0, k] = with_turns(link, cosine[0], sine[0])
+        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns_of(link, cosine[0], sine[0])
         for order in (1, 2):
             found[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
     return found, turning
@@ -174,12 +178,10 @@ def _standing(cosine: float, sine: float, start: float) -> float:
     return angle + TURN * round((start - angle) / TURN)
 
 
-def with_turns(link: str, cosine: Operand, sine: Operand) -> Operand:
-    """An angle with its turns: within half a turn of a centre that runs on with the drive."""
-    angle = EXPRESSIONS.atan2(sine, cosine)
+def turns_of(link: str, cosine: Operand, sine: Operand) -> Operand:
+    """The turns that bring an angle within half a turn of a centre that runs on with the drive."""
     centre = variable(centre_of(link)) + variable(winding_of(link)) * variable(PARAMETER)
-    turns = ((centre - angle) * (1.0 / TURN) + WHOLE) - WHOLE
-    return angle + TURN * turns
+    return ((centre - EXPRESSIONS.atan2(sine, cosine)) * (1.0 / TURN) + WHOLE) - WHOLE
 
 
 def centre_of(link: str) -> str:

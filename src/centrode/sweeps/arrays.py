@@ -73,5 +73,7 @@ class ArraysExecutor:
         # copied at once: what is asked for may be a view of everything that was computed
         for name, part in task.asked.results(solved, values, ok).items():
             results[name][...] = part
+        for name in task.asked.slopes.values():
+            results[name][...] = np.nan
         results["samples_ok"][...] = ok.sum(axis=1, dtype=np.int32)
         results["worst_residual"][...] = np.fmax.reduce(solved.residual, axis=1)

@@ -9,7 +9,7 @@ import math
 from typing import Protocol
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.executors import AUTO, MACHINE_CODE
+from centrode.algebra.executors import AUTO, MACHINE_CODE, chosen
 from centrode.errors import InputError
 from centrode.kinematics.traced import Untraceable
 from centrode.locale import _
@@ -57,19 +57,35 @@ def executor_of(name: str, task: Task, design: Design, threads: int = 1) -> tupl
     Raises InputError where machine code is asked for and cannot.
     """
     arrays = ArraysExecutor()
+    if task.asked.slopes:
+        return _with_slopes(name, task, design, threads)
     positions = math.prod(design.shape) * task.places
     if name == arrays.name or (name == AUTO and positions < limits.WORTH_COMPILING):
         return arrays, arrays.name
-    values = design.rows(0, 1)
     try:
-        found = MachineCodeExecutor.of(
-            task, dimensions_of(task.ready.mechanism, values, ARRAYS), values, threads
-        )
+        found = _traced(task, design, threads, MACHINE_CODE)
     except Untraceable as why:
         if name == AUTO:
             return arrays, f"{arrays.name} ({why.reason})"
         what = _("machine code cannot compute this: {reason}").format(reason=_(why.reason))
         raise InputError("executor", what, _('say executor = "auto" or "arrays"')) from None
+    return found, found.name
+
+
+def _traced(task: Task, design: Design, threads: int, kernels: str) -> MachineCodeExecutor:
+    values = design.rows(0, 1)
+    numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
+    return MachineCodeExecutor.of(task, numbers, values, threads, kernels)
+
+
+def _with_slopes(name: str, task: Task, design: Design, threads: int) -> tuple[Executor, str]:
+    """Derivatives are those of expressions: on arrays these are computed by NumPy."""
+    kernels = chosen(name) if name == AUTO else name
+    try:
+        found = _traced(task, design, threads, kernels)
+    except Untraceable as why:
+        what = _("derivatives cannot be computed here: {reason}").format(reason=_(why.reason))
+        raise InputError("gradient", what, _("leave gradient out")) from None
     return found, found.name
 
 

@@ -28,7 +28,7 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 
 VALUE = "value"
 """Name of the result of a formula that has none of its own."""
-RESERVED = frozenset({"samples_ok", "worst_residual", "status", "progress", "sample", MECHANISM})
+RESERVED = frozenset({"samples_ok", "worst_residual", "status", "progress", "sample", "path", MECHANISM})
 
 _WORD = re.compile(r"(?<![\w.])[^\W\d]\w*")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")

@@ -33,6 +33,7 @@ from centrode.sweeps import limits
 from centrode.sweeps.arrays import ArraysExecutor, Task
 from centrode.sweeps.designs import Rows
 from centrode.sweeps.folds import Folds
+from centrode.sweeps.slopes import Slopes
 
 Array: TypeAlias = npt.NDArray[np.float64]
 AnyArray: TypeAlias = npt.NDArray[Any]
@@ -62,22 +63,28 @@ class MachineCodeExecutor:
     traced: Traced
     threads: int = 1
     kernels: str = MACHINE_CODE
-    name = MACHINE_CODE
     blocks = limits.BLOCKS_OF_KERNELS
     arrays = ArraysExecutor()
 
+    @property
+    def name(self) -> str:
+        return self.kernels
+
     @classmethod
-    def of(cls, task: Task, numbers: Dimensions, values: Rows, threads: int = 1) -> MachineCodeExecutor:
+    def of(
+        cls, task: Task, numbers: Dimensions, values: Rows, threads: int = 1, kernels: str = MACHINE_CODE
+    ) -> MachineCodeExecutor:
         """The executor of a task; the numbers of one mechanism or more say what varies.
 
         Raises Untraceable, with a reason that is told.
         """
-        if not machine_code.PRESENT:
+        if kernels == MACHINE_CODE and not machine_code.PRESENT:
             raise Untraceable(mark("llvmlite is not installed"))
-        if not task.asked.columns:
-            raise Untraceable(mark("nothing is asked for"))
         varied = varied_of(numbers, values)
-        return cls(task, varied, traced(task.ready, task.span, varied), threads)
+        found = cls(task, varied, traced(task.ready, task.span, varied), threads, kernels)
+        if task.asked.slopes:
+            found._slopes  # noqa: B018 - what cannot be differentiated is told before anything is computed
+        return found
 
     def lanes(self, task: Task) -> int:
         """How many mechanisms are computed together."""
@@ -138,6 +145,18 @@ class MachineCodeExecutor:
         }
 
     @cached_property
+    def _slopes(self) -> Slopes:
+        return Slopes.of(self.task.paths, self.varied, self.traced, self._folds)
+
+    @cached_property
+    def _final(self) -> dict[str, list[Node]]:
+        """Reduced columns, and those of derivatives, from the folds."""
+        found = dict(self._columns)
+        for name, slope in self.task.asked.slopes.items():
+            found[slope] = [x for node in found[name] for x in self._slopes.of_node(node).values()]
+        return found
+
+    @cached_property
     def _judging(self) -> Judging:
         residual = as_node(self.traced.solved.residual[0, 0])
         nodes = [node for column in self._columns.values() for node in column]
@@ -164,7 +183,7 @@ class MachineCodeExecutor:
         """Fill in what is reduced for the mechanisms at some places; returns which of them stay clear."""
         lanes = len(next(iter(rows.values())))
         rows = dict(rows)
-        columns = self._columns
+        columns = self._final
         for depth in range(self._folds.passes):
             rows |= self._passed(depth, rows, lanes)
         graph = Graph(
@@ -180,6 +199,8 @@ class MachineCodeExecutor:
     def _passed(self, depth: int, rows: Values, lanes: int) -> Values:
         """The states after a pass over the samples."""
         parts = [fold.state for fold in self._folds.at_depth(depth)]
+        if self.task.asked.slopes:
+            parts += [self._slopes.of_fold(fold) for fold in self._folds.at_depth(depth)]
         if depth == 0:
             parts.append(_judging_states(self._judges))
         reduction = together(*parts)

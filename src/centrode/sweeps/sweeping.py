@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import numpy as np
 import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
@@ -20,7 +19,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.structure.dimensions import dimensions_of
 from centrode.sweeps import limits
 from centrode.sweeps.arrays import Task
-from centrode.sweeps.asked import Reduce, asked_of
+from centrode.sweeps.asked import Reduce, asked_of, with_slopes
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import Grid, design_of
 from centrode.sweeps.drawing import Sample
@@ -41,6 +40,7 @@ def sweep(
     start: float | None = None,
     stop: float | None = None,
     reduce: Reduce = None,
+    gradient: bool = False,
     executor: str = "auto",
     store: str | Path | None = None,
     progress: Progress | None = None,
@@ -59,6 +59,9 @@ def sweep(
         As those of `motion`.
     reduce : None, "min", "max", "range", "mean", a formula, or name -> formula
         One number of the samples that are ok; a formula names the numbers of the motion itself (docs: sweeps).
+    gradient : bool
+        Also the derivatives of every reduced output by each of the values that vary; NaN for mechanisms that
+        are not ok everywhere.
     executor : "auto", "arrays" or "machine code"
         What computes; the one used stands in the attributes.
     store : a folder for a result too great for memory
@@ -84,7 +87,9 @@ def sweep(
     prepared = ready(mechanism)
     span = asked_span(prepared, samples, start, stop)
     motion = dataset_of(solve(prepared, span))
-    task = Task(prepared, span, asked_of(motion, design, outputs, reduce), tuple(design.coordinates))
+    paths = tuple(design.coordinates)
+    asked = asked_of(motion, design, outputs, reduce)
+    task = Task(prepared, span, with_slopes(asked, len(paths)) if gradient else asked, paths)
     chosen, told_of_it = executor_of(name, task, design, threads)
     units = {path: unit_of(mechanism, path) for path in design.coordinates}
     frame = frame_of(motion, design, units, task.asked, told_of_it)
@@ -137,10 +142,7 @@ def _compute(frame: Frame, kept: Kept, task: Task, executor: Executor, progress:
             continue
         first, stop = kept.blocks.mechanisms(block)
         before = kept.tally.mechanisms
-        results = {
-            column.name: np.empty((stop - first, *column.shape), dtype=column.kind)
-            for column in task.asked.columns
-        }
+        results = kept.room(block)
         for low in range(first, stop, lanes):
             high = min(low + lanes, stop)
             values = frame.design.rows(low, high)
