@@ -56,7 +56,8 @@ def run_console(example: Example) -> None:
 def read_toml(example: Example) -> None:
     """Read a TOML block: a whole mechanism (it has a drive) has to assemble, of any other each part is checked.
 
-    A block that begins with `# NAME.toml` is written to that file, for the blocks after it; it may be a study of `sweep`.
+    A block that begins with `# NAME.toml` is written to that file, for the blocks after it; a study of `sweep` may
+    stand there too.
     """
     text = str(example.parsed)
     named = FILE_NAME.match(text)

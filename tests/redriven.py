@@ -12,7 +12,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import solve
+from centrode.kinematics.solve import Solved, solve
 from centrode.kinematics.spans import span_at
 from mechanisms import STEP, Parts, nudged, parts_of
 
@@ -129,11 +129,18 @@ def answer(mechanism: ct.Mechanism, values: Array, tries: int = 4) -> Array:
     prepared = ready(mechanism)
     numbers, path = prepared.kinematics.numbers, prepared.kinematics.path
     random = np.random.default_rng(11)
-    exact = solve(prepared, span_at(path, values)).points[:, 0]
+    exact = _columns(solve(prepared, span_at(path, values)))
     found = np.zeros((3, len(values)))
     for _ in range(tries):
         changed = nudged(numbers, random).mapped(lambda x: np.array([x]))
         step = STEP * random.choice([-1.0, 1.0]) * np.maximum(np.abs(values), path.unit)
-        near = solve(prepared, span_at(path, values + step), changed, 1).points[:, 0]
-        found = np.fmax(found, np.max(np.abs(near - exact), axis=(2, 3)) / STEP / float(numbers.scale))
+        near = _columns(solve(prepared, span_at(path, values + step), changed, 1))
+        found = np.fmax(found, np.max(np.abs(near - exact), axis=2) / STEP)
     return np.maximum(found, 1.0)
+
+
+def _columns(solved: Solved) -> Array:
+    """Places in the greatest length, and angles: (3, samples, columns)."""
+    scale = float(np.max(solved.ready.kinematics.numbers.scale))
+    places = solved.points[:, 0].reshape(3, len(solved.span.parameter), -1) / scale
+    return np.concatenate([places, solved.angles[:, 0]], axis=2)

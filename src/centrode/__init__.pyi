@@ -28,10 +28,10 @@ from .model.classics import slider_crank as slider_crank
 # Structure and motion
 from .study.checking import check as check
 from .kinematics.motion import motion as motion
-from .kinematics.coefficients import kinematic_coefficients as kinematic_coefficients
-from .kinematics.reach import limits as limits
-from .kinematics.reach import Limits as Limits
-from .kinematics.region import reachable_region as reachable_region
+from .kinematics.several_drives.coefficients import kinematic_coefficients as kinematic_coefficients
+from .kinematics.several_drives.reach import limits as limits
+from .kinematics.several_drives.reach import Limits as Limits
+from .kinematics.several_drives.region import reachable_region as reachable_region
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.limiting import limits_rows as limits_rows

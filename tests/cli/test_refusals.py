@@ -281,7 +281,7 @@ def test_a_flat_triangle_without_a_side(refused: Refused, four_bar: str) -> None
     )
 
 
-def test_a_group_of_class_three(refused: Refused) -> None:
+def test_a_group_of_higher_class_without_initial_angles(refused: Refused) -> None:
     told = refused("""
         [frame.points]
         O = [0, 0]
@@ -303,8 +303,8 @@ def test_a_group_of_class_three(refused: Refused) -> None:
         speed = 1
         """)
     assert told.startswith("press.toml, group ")
-    assert "plate" in told
-    assert "higher class, which is not computed yet" in told
+    assert "it is of higher class: its initial angles say which of its positions is meant" in told
+    assert told.endswith("; give the initial angle of plate, AB, DC, EF")
 
 
 def test_hundreds_of_links(refused: Refused, four_bar: str) -> None:

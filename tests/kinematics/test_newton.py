@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -11,7 +13,8 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.kinematics.evaluate import Hooks
-from centrode.kinematics.newton import Motion, System, newton
+from centrode.kinematics.higher_class.newton import newton
+from centrode.kinematics.higher_class.system import Motion, System
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready, ready
 from centrode.structure.groups import Newton
@@ -64,7 +67,7 @@ def test_convergence_is_quadratic(prepared: Ready) -> None:
         assert found.found.all()
         steps = found.sizes[:, 0][np.isfinite(found.sizes[:, 0])]
         curvature = 20.0 / np.min(np.linalg.svd(linear.matrix[0], compute_uv=False))
-        for before, after in zip(steps, steps[1:], strict=False):
+        for before, after in pairwise(steps):
             assert after <= curvature * before**2 + 100 * EPS * curvature
         assert len(steps) <= 6
 

@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 
 import centrode as ct
 from centrode.algebra.jets import Jet
-from centrode.geometry.plane import Pose, subtract, turned
+from centrode.geometry.plane import Pose
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Solved
@@ -17,6 +17,7 @@ from centrode.structure.constraints import is_drive
 from centrode.structure.positions import Entity, Positions
 from centrode.structure.rank import jacobian
 from growing import descriptions, mechanism_of
+from jetted import jet_positions
 from mechanisms import EPS, conditioning, on_branch, solve_evenly
 
 WIDTH = 0.3
@@ -34,25 +35,6 @@ def motion_about_the_start(parts: dict[str, Any]) -> tuple[Solved, list[int], An
     good = [k for k in range(SAMPLES) if solved.status[0, k] == ct.Status.OK and condition[0, k] < WORTH]
     assume(good)
     return solved, good, 16 * EPS * condition
-
-
-def jet_positions(solved: Solved, sample: int) -> Positions:
-    """Everything at a sample as jets of second order along the drive, from the motion's values and derivatives."""
-    kinematics = solved.ready.kinematics
-    at = Positions.of_frame(
-        kinematics.numbers, {"link0": Jet((solved.span.parameter[sample], 1.0, 0.0))}, JETS
-    )
-    for k, name in enumerate(solved.layout.points):
-        x, y = (solved.points[:, 0, sample, k, axis] for axis in (0, 1))
-        at.points[name] = (Jet((x[0], x[1], x[2] / 2)), Jet((y[0], y[1], y[2] / 2)))
-    for k, name in enumerate(solved.layout.links):
-        a = solved.angles[:, 0, sample, k]
-        angle = Jet((a[0], a[1], a[2] / 2))
-        rotor = (JETS.cos(angle), JETS.sin(angle))
-        point, local = next(iter(kinematics.numbers.local[name].items()))
-        at.angles[name] = angle
-        at.poses[name] = Pose(subtract(at.points[point], turned(local, rotor)), rotor)
-    return at
 
 
 @settings(max_examples=60)

@@ -178,6 +178,15 @@ def test_group_of_class_four() -> None:
     assert (group.order, set(group.members)) == (2, {"plate", "BD", "CG", "lever"})
 
 
+def test_a_drive_of_what_is_held_is_refused() -> None:
+    """A triangle of the frame and two links stands still; the link DB beside it can move and has no drive."""
+    mechanism = bars({"O": O, "D": D, "F": F}, OA=1.0, AF=2.0, DB=1.0)
+    with pytest.raises(
+        ct.InputError, match="drive of link OA: it cannot move: the rest of the mechanism holds it"
+    ):
+        ct.check(mechanism)
+
+
 def test_a_slider_counts_in_the_class_of_its_group() -> None:
     """A platform on two rods, a fixed pin in its slot: three inner joints (two hinges, one slide), class III."""
     pin = {"name": "slot", "point": "F", "on": "K", "through": [0.0, 0.0], "direction": [1.0, 0.2]}
@@ -219,3 +228,16 @@ def test_special_dimensions_move_though_the_count_says_no() -> None:
     wrong = ct.with_value(parts, "links.FE.length", 1.001)
     with pytest.raises(ct.InputError, match=r"length of link FE: .* this constraint is off by 0\.001 m"):
         ct.check(wrong)
+
+
+def test_a_drive_of_what_is_held_fast_is_told() -> None:
+    """As many drives as the mobility, but on the wrong link: not that there are too few."""
+    held = ct.Mechanism(
+        frame={"points": {"O": [0, 0], "E": [2, 0], "F": [1, 1]}},
+        links={"OA": {"length": 1}, "arch": {"points": {"E": [0, 0], "F": [2**0.5, 0]}}},
+        drives=[{"link": "arch", "start": "135 deg", "speed": 1}],
+    )
+    with pytest.raises(
+        ct.InputError, match=r"drive of link arch: it cannot move: .* holds it; drive what can move"
+    ):
+        ct.check(held)

@@ -15,8 +15,8 @@ from centrode.geometry.space import Space
 from centrode.kinematics.evaluate import Choices, Kinematics
 from centrode.kinematics.fitting import check_fit, check_touch
 from centrode.kinematics.groups import solve_group
-from centrode.kinematics.guesses import bound_higher, start_higher
-from centrode.kinematics.newton import System
+from centrode.kinematics.higher_class.guesses import bound_higher, start_higher
+from centrode.kinematics.higher_class.system import System
 from centrode.kinematics.phases import phases_after, phases_before, phases_in, standing_links, with_phases
 from centrode.kinematics.sides import (
     DEGENERATE,

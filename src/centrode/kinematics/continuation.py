@@ -16,23 +16,34 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
+from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.kinematics.branches import Branches
 from centrode.kinematics.evaluate import Hooks, Kinematics
-from centrode.kinematics.higher import Judged, close, starts
+from centrode.kinematics.higher_class.places import Judged, close, starts
+from centrode.kinematics.higher_class.surroundings import Surroundings
+from centrode.kinematics.higher_class.tracing import trace
+from centrode.kinematics.higher_class.tracks import Tracks
+from centrode.kinematics.mending import (
+    NODES,
+    WEIGHTS,
+    Index,
+    Window,
+    inside,
+    mended,
+    numbers_of,
+    of_window,
+    set_numbers,
+    value_of,
+)
 from centrode.kinematics.paths import JETS
-from centrode.kinematics.surroundings import Surroundings
-from centrode.kinematics.tracing import trace
-from centrode.kinematics.tracks import Tracks
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Newton, links_of, points_of
-from centrode.structure.positions import Positions, mapped_pose
+from centrode.structure.groups import Newton
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
-Index: TypeAlias = tuple[Any, ...]
 
 WINDOW = 0.04
 """Half width of the mended stretch, in the path's units (rad for an angle)."""
@@ -42,19 +53,6 @@ CLEAR_OF_HIGHER = 10.0
 """The same for a group of higher class, which loses fewer digits: as much as one of its distance, not of its square."""
 REACH = 2.0 * WINDOW + CLEAR * WINDOW
 """How far beyond a sample events matter to it."""
-SIDE = 1.5 - 0.5 * np.cos((np.arange(6) + 0.5) * np.pi / 6)
-NODES = np.concatenate([-SIDE[::-1], SIDE])
-"""Chebyshev nodes on each side, between one and two half widths away."""
-WEIGHTS = np.array([1.0 / np.prod(node - np.delete(NODES, k)) for k, node in enumerate(NODES)])
-
-
-@dataclass(frozen=True)
-class Window:
-    """The stretch about a change point of one mechanism of a batch."""
-
-    lane: int
-    centre: float
-    half: float
 
 
 @dataclass
@@ -105,14 +103,14 @@ class Continuation:
             return []
         shape = (self.branches.lanes, parameter.shape[-1]) if lanes is None else parameter.shape
         along = np.broadcast_to(parameter, shape)
-        mended = []
+        places = []
         for number, window in enumerate(windows):
-            index = _inside(window, along, lanes)
+            index = inside(window, along, lanes)
             if index is not None:
                 offsets = (along[index] - window.centre) / window.half
                 if self._replace(group, at, shape, number, index, offsets):
-                    mended.append(index)
-        return mended
+                    places.append(index)
+        return places
 
     def _windows_of(self, group: int) -> list[Window]:
         if not self.branches.smooth:
@@ -143,13 +141,13 @@ class Continuation:
     ) -> bool:
         basis = WEIGHTS / (offsets[:, None] - NODES)
         basis /= basis.sum(axis=1, keepdims=True)
-        numbers = _numbers(self.kinematics, group, at)
+        numbers = numbers_of(self.kinematics, group, at)
         bounded = any(isinstance(number, Rounded) for number in numbers)
-        known = [_of_window(number, window) for number in self._at_nodes(group, bounded)]
-        if not all(np.isfinite(_value(number)).all() for number in known):
+        known = [of_window(number, window) for number in self._at_nodes(group, bounded)]
+        if not all(np.isfinite(value_of(number)).all() for number in known):
             return False  # another event lies inside: the closed form has to do
-        mended = [_mended(old, node, shape, index, basis) for old, node in zip(numbers, known, strict=True)]
-        _set_numbers(self.kinematics, group, at, mended)
+        smooth = [mended(old, node, shape, index, basis) for old, node in zip(numbers, known, strict=True)]
+        set_numbers(self.kinematics, group, at, smooth)
         return True
 
     def _at_nodes(self, group: int, bounded: bool) -> list[Number]:
@@ -165,7 +163,7 @@ class Continuation:
             at = used.frame(m, lifted)
             with np.errstate(all="ignore"):
                 used.advance(at, range(group + 1), m, self.hooks(m, nodes, lanes))
-            self._known[key] = _numbers(self.kinematics, group, at)
+            self._known[key] = numbers_of(self.kinematics, group, at)
         return self._known[key]
 
 
@@ -203,86 +201,3 @@ class Rough(Smooth):
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         self.judge(group, self.continuation.close(group, m, at, self.parameter, self.lanes, rough=True))
-
-
-def _inside(window: Window, along: Array, lanes: Lanes | None) -> Index | None:
-    """Index of the parameters inside a window; None if there are none."""
-    if lanes is None:
-        found = np.nonzero(np.abs(along[window.lane] - window.centre) < window.half)[0]
-        return (window.lane, found) if len(found) else None
-    found = np.nonzero((lanes == window.lane) & (np.abs(along - window.centre) < window.half))[0]
-    return (found,) if len(found) else None
-
-
-def _numbers(kinematics: Kinematics, group: int, at: Positions) -> list[Number]:
-    """Everything a group gives, number by number."""
-    which = kinematics.structure.groups[group]
-    numbers = [x for point in points_of(which) for x in at.points[point]]
-    for link in links_of(which):
-        numbers += [x for vector in at.poses[link] for x in vector]
-    return numbers + [at.angles[link] for link in links_of(which) if link in at.angles]
-
-
-def _set_numbers(kinematics: Kinematics, group: int, at: Positions, numbers: list[Number]) -> None:
-    which = kinematics.structure.groups[group]
-    rest = iter(numbers)
-    for point in points_of(which):
-        at.points[point] = tuple(next(rest) for _old in at.points[point])
-    for link in links_of(which):
-        at.poses[link] = mapped_pose(at.poses[link], lambda _old: next(rest))
-    for link in links_of(which):
-        if link in at.angles:
-            at.angles[link] = next(rest)
-
-
-def _of_window(number: Number, window: int) -> Number:
-    """The nodes of one window."""
-    part = slice(window * len(NODES), (window + 1) * len(NODES))
-    if isinstance(number, Jet):
-        return Jet([_cut(c, part) for c in number.coefficients])
-    if isinstance(number, Rounded):
-        return Rounded(_cut(number.value, part), _cut(number.bound, part))
-    return np.full(len(NODES), number)
-
-
-def _cut(x: Number, part: slice) -> Array:
-    return np.full(len(NODES), x) if np.ndim(x) == 0 else x[part]
-
-
-def _value(number: Number) -> Array:
-    """What must be finite for a node to be of use."""
-    if isinstance(number, Jet):
-        return np.asarray(sum(number.coefficients))
-    return np.asarray(number.value + number.bound if isinstance(number, Rounded) else number)
-
-
-def _mended(old: Number, node: Number, shape: tuple[int, ...], index: Index, basis: Array) -> Number:
-    """A number with the entries at `index` interpolated from those at the nodes."""
-    if isinstance(old, Rounded):
-        known = Rounded.of(node)
-        value = _interpolated(known.value, basis)
-        bound = _interpolated(known.bound + UNIT_ROUNDOFF * np.abs(known.value), np.abs(basis))
-        return Rounded(_put(old.value, shape, index, value), _put(old.bound, shape, index, bound))
-    nodes = node.coefficients if isinstance(node, Jet) else (node, 0.0 * node, 0.0 * node)
-    if isinstance(old, Jet):
-        return Jet(
-            [
-                _put(c, shape, index, _interpolated(k, basis))
-                for c, k in zip(old.coefficients, nodes, strict=False)
-            ]
-        )
-    return _put(old, shape, index, _interpolated(nodes[0], basis))
-
-
-def _interpolated(at_nodes: Array, basis: Array) -> Array:
-    # node by node: a matrix product rounds differently for different numbers of samples
-    total = np.zeros(basis.shape[0])
-    for k in range(basis.shape[1]):
-        total += at_nodes[k] * basis[:, k]
-    return total
-
-
-def _put(old: Number, shape: tuple[int, ...], index: Index, values: Array) -> Array:
-    whole = np.array(np.broadcast_to(old, shape), dtype=np.float64)
-    whole[index] = values
-    return whole

@@ -19,10 +19,10 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.continuation import REACH, Continuation, Rough
+from centrode.kinematics.continuation import Continuation, Rough
 from centrode.kinematics.evaluate import Kinematics, Reached
-from centrode.kinematics.pace import OFF_GRID
-from centrode.kinematics.paths import JETS, Path
+from centrode.kinematics.mesh import largest_of, low_minima, sign_changes
+from centrode.kinematics.paths import JETS
 from centrode.kinematics.roots import bracketed_roots
 from centrode.kinematics.turns import counted
 from centrode.structure.groups import Aim, Meet
@@ -32,22 +32,6 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
-
-LOW = 0.25
-"""A minimum is looked into if the tangents on both sides meet below this fraction of the values there."""
-
-
-def mesh_of(path: Path, parameter: Array) -> Array:
-    """Nodes on which events are looked for: they belong to the mechanism, only their extent to the samples."""
-    low = min(path.initial, float(np.min(parameter)))
-    high = max(path.initial, float(np.max(parameter)))
-    if path.pace is not None:
-        return path.pace.nodes(*path.pace.beyond(low, high, REACH))
-    beyond = int(np.ceil(REACH * path.unit / path.step)) + 2
-    first = int(np.floor((low - path.initial) / path.step)) - beyond
-    last = int(np.ceil((high - path.initial) / path.step)) + beyond
-    nodes = np.arange(first, last + 1, dtype=np.float64)
-    return path.initial + (nodes + OFF_GRID) * path.step
 
 
 @dataclass(frozen=True)
@@ -87,13 +71,13 @@ class Scan:
     def find(self, group: int, radicand: Jet) -> None:
         """Record where a group's radicand is zero."""
         value, slope = self._on_mesh(radicand)
-        self.branches.largest[group] = _largest(value)
+        self.branches.largest[group] = largest_of(value)
         self.branches.add(group, self._events(group, value, slope))
 
     def find_poles(self, group: int, divisor: Jet) -> None:
         """Record where a group goes to infinity."""
         value, _slope = self._on_mesh(divisor)
-        lanes, cells = _sign_changes(value)
+        lanes, cells = sign_changes(value)
         found = self._roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
         limits = [Event("limit", group, int(k), float(x)) for k, x in zip(lanes, found, strict=True)]
         self.branches.add(group, limits)
@@ -107,7 +91,7 @@ class Scan:
     def _events(self, group: int, value: Array, slope: Array) -> list[Event]:
         found: list[Event] = []
         settled = np.zeros((value.shape[0], value.shape[1] - 1), dtype=bool)
-        lanes, cells = _low_minima(self.mesh, value, slope)
+        lanes, cells = low_minima(self.mesh, value, slope)
         if len(lanes):
             at = self._minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
             least, bound = self.with_bound(group, lanes, at)
@@ -124,7 +108,7 @@ class Scan:
                 roots = self._roots(group, lanes[chosen], first[chosen], last[chosen])
                 found += self._limits(group, lanes[chosen], roots)
             settled[lanes[dips], cells[dips]] = True
-        lanes, cells = _sign_changes(value)
+        lanes, cells = sign_changes(value)
         rest = ~settled[lanes, cells]
         roots = self._roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
         return found + self._limits(group, lanes[rest], roots)
@@ -223,36 +207,3 @@ def guard_with_bound(continuation: Continuation, group: int, lanes: Lanes, at: A
         used = continuation.kinematics.taken(lanes)
         guard = Rounded.of(used.guard(ROUNDED, Rounded.of(at), group, hooks))
     return np.broadcast_to(guard.value, at.shape), np.broadcast_to(guard.bound, at.shape)
-
-
-def _largest(value: Array) -> Array:
-    """Greatest finite magnitude of each row."""
-    largest: Array = np.max(np.abs(value), axis=1)
-    if np.isfinite(largest).all():
-        return largest
-    return np.asarray(np.max(np.abs(np.where(np.isfinite(value), value, 0.0)), axis=1))
-
-
-def _low_minima(mesh: Array, value: Array, slope: Array) -> tuple[Lanes, Lanes]:
-    """Cells with a minimum that may reach zero."""
-    lanes, cells = np.nonzero((slope[:, :-1] < 0.0) & (slope[:, 1:] >= 0.0))
-    left, right = value[lanes, cells], value[lanes, cells + 1]
-    falls, rises = slope[lanes, cells], slope[lanes, cells + 1]
-    with np.errstate(all="ignore"):
-        step = mesh[cells + 1] - mesh[cells]
-        meeting = (right - left - rises * step) / (falls - rises)
-        lowest = left + falls * meeting
-        low = lowest <= LOW * np.minimum(left, right)
-    return lanes[low], cells[low]
-
-
-def _sign_changes(value: Array) -> tuple[Lanes, Lanes]:
-    """Cells between finite values of opposite signs."""
-    # most mechanisms of a batch have none, and their least value says so
-    rows = np.nonzero(~((np.min(value, axis=1) > 0.0) | (np.max(value, axis=1) < 0.0)))[0]
-    some = value[rows]
-    with np.errstate(all="ignore"):
-        found, cells = np.nonzero(
-            np.sign(np.where(np.isfinite(some), some, np.nan))[:, :-1] * np.sign(some[:, 1:]) < 0.0
-        )
-    return rows[found], cells

@@ -23,7 +23,7 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.jets import Jet
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
-from centrode.kinematics.events import LOW, mesh_of
+from centrode.kinematics.mesh import LOW, mesh_of
 from centrode.kinematics.sampling import SUSPECT
 from centrode.kinematics.traced import TURN, WHOLE, Traced, centre_of, winding_of
 from centrode.kinematics.variables import PARAMETER

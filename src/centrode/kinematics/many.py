@@ -20,7 +20,7 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.scans import Scan
 from centrode.errors import Status
 from centrode.kinematics.branches import Branches, branches_at_start
-from centrode.kinematics.events import mesh_of
+from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.judging import Judged, Judging
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED, Kept

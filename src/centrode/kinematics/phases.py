@@ -16,7 +16,7 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import Choices, Kinematics
-from centrode.kinematics.guesses import guesses
+from centrode.kinematics.higher_class.guesses import guesses
 from centrode.kinematics.turned import turn_link
 from centrode.kinematics.wheels import equation_at
 from centrode.locale import _

@@ -14,8 +14,9 @@ from centrode.kinematics.assembly import Assembled, assemble
 from centrode.kinematics.branches import branches_at_start
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.events import Scan, mesh_of
+from centrode.kinematics.events import Scan
 from centrode.kinematics.fitting import RESIDUAL_TOLERANCE, length_misfits
+from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.paths import path_of
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

@@ -15,8 +15,9 @@ from centrode.kinematics.branches import Branches, Event, branches_at_start
 from centrode.kinematics.contacts import contacts_at
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.events import Scan, mesh_of
+from centrode.kinematics.events import Scan
 from centrode.kinematics.layout import Layout, layout_of, positions_from
+from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.phases import with_phases
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals

@@ -83,7 +83,7 @@ def structure_of(mechanism: Mechanism) -> Structure:
     # with all rows independent, so are those without the drives
     free_rank = len(kept) - drive_rows if all(kept) else int(independent_rows(matrix[drive_rows:]).sum())
     mobility = matrix.shape[1] - free_rank
-    _check_drives(mechanism, constraints, unknowns, kept, owners, mobility)
+    _check_drives(mechanism, matrix, kept, owners, mobility)
     groups = _groups(mechanism, dimensions.space, unknowns, kept, owners)
     redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
     return Structure(mechanism, dimensions, constraints, redundant, unknowns, groups, mobility)
@@ -127,16 +127,10 @@ def _refuse_what_the_space_lacks(mechanism: Mechanism, space: Space) -> None:
 
 
 def _check_drives(
-    mechanism: Mechanism,
-    constraints: Sequence[Constraint],
-    unknowns: Sequence[Entity],
-    kept: Sequence[bool],
-    owners: Sequence[Constraint],
-    mobility: int,
+    mechanism: Mechanism, matrix: Matrix, kept: Sequence[bool], owners: Sequence[Constraint], mobility: int
 ) -> None:
-    """Refuse drives that repeat each other or leave something loose."""
+    """Refuse drives that repeat each other, drive what is locked, or leave something loose."""
     drives = len(mechanism.drives)
-    width = sum(entity.unknowns for entity in unknowns)
     if drives == 0:
         raise InputError(
             "[[drives]]", _("the mechanism has no drive"), _("give one drive per degree of freedom")
@@ -145,8 +139,24 @@ def _check_drives(
     numbers = drives_against_mobility(drives, mobility)
     if repeated:
         raise InputError("[[drives]]", numbers, _("take away: {drives}").format(drives="; ".join(repeated)))
-    if sum(kept) < width:
-        raise InputError("[[drives]]", numbers, _("add drives, or constrain what moves freely"))
+    if sum(kept) == matrix.shape[1]:
+        return
+    locked = _locked_drives(matrix, owners)
+    if locked and drives == mobility:
+        raise InputError(
+            "; ".join(locked),
+            _("it cannot move: the rest of the mechanism holds it"),
+            _("drive what can move, or take constraints away"),
+        )
+    raise InputError("[[drives]]", numbers, _("add drives, or constrain what moves freely"))
+
+
+def _locked_drives(matrix: Matrix, owners: Sequence[Constraint]) -> list[str]:
+    """Drives of what the other constraints hold already."""
+    rows = [row for row, owner in enumerate(owners) if not is_drive(owner)]
+    drives = [row for row, owner in enumerate(owners) if is_drive(owner)]
+    free = independent_rows(matrix[rows + drives])[len(rows) :]
+    return [owners[row].label for row, moves in zip(drives, free, strict=True) if not moves]
 
 
 def drives_against_mobility(drives: int, mobility: int) -> str:

@@ -8,8 +8,8 @@ import json
 from typing import TypeAlias
 
 from centrode.errors import InputError
-from centrode.kinematics.holding import named_drive, unit_of_value
-from centrode.kinematics.reach import End, Limits
+from centrode.kinematics.several_drives.holding import named_drive, unit_of_value
+from centrode.kinematics.several_drives.reach import End, Limits
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.study.wording import value_text

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from centrode.errors import InputError, Status
-from centrode.kinematics.coefficients import coefficients_of, most_samples
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.several_drives.coefficients import coefficients_of, most_samples
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.kinematics.spans import is_uniform, span_at
 from centrode.locale import _, ngettext

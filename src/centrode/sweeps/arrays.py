@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.events import mesh_of
+from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.layout import layout_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.solve import solve

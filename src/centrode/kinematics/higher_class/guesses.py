@@ -12,9 +12,10 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
+from centrode.kinematics.higher_class.newton import newton
+from centrode.kinematics.higher_class.seeking import closing, scattered
+from centrode.kinematics.higher_class.system import System
 from centrode.kinematics.layout import rotor_of_angle
-from centrode.kinematics.newton import System, newton
-from centrode.kinematics.seeking import closing, scattered
 from centrode.kinematics.sides import is_measured
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

@@ -15,10 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.kinematics.newton import Motion, System, settled, size_of, total
+from centrode.kinematics.higher_class.newton import settled, size_of
+from centrode.kinematics.higher_class.reduction import Linear, Shift, solved
+from centrode.kinematics.higher_class.surroundings import Surroundings
+from centrode.kinematics.higher_class.system import Motion, System, total
 from centrode.kinematics.paths import JETS
-from centrode.kinematics.reduction import Linear, Shift, solved
-from centrode.kinematics.surroundings import Surroundings
 from centrode.structure.positions import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -30,6 +31,8 @@ STEPS = 7
 """Newton steps onto a plane."""
 ENOUGH = 1e-9
 """What part of a step along the curve the next Newton step onto a plane may be."""
+FAR = 3e-4
+"""The first step counts as one after a step this great: the curve may bend so sharply that only a second one tells."""
 CONTRACTION = 0.2
 """By how much every Newton step must be smaller than the one before, but for rounding."""
 
@@ -40,7 +43,8 @@ class Places:
 
     `numbers` (k, width + 1) are state and parameter, `first` their derivatives by the curve's arc; `along` is the
     curve's unit vector (k, free + 1), `size` the determinant of the equations bordered by it. `second` are second
-    Taylor coefficients by the distance of `numbers` along `first`, which to begin with is the arc.
+    Taylor coefficients by the distance of `numbers` along `first`, which to begin with is the arc. Distances count
+    every number in its own measure, `weight` (k, width + 1): they are the same in metres and in millimetres.
     """
 
     numbers: Array
@@ -48,6 +52,7 @@ class Places:
     second: Array
     along: Array
     size: Array
+    weight: Array
 
     @property
     def state(self) -> Array:
@@ -68,7 +73,8 @@ class Places:
 
     def distance(self, numbers: Array) -> Array:
         """Distance of numbers (k, width + 1) along the curve's direction here."""
-        return total(self.first * numbers) / total(self.first**2)
+        own = self.first * self.weight**2
+        return total(own * numbers) / total(own * self.first)
 
 
 @dataclass(frozen=True)
@@ -109,7 +115,7 @@ def reach(
     """
     count, free = len(parameter), along.shape[1] - 1
     found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
-    last, wrong = np.full(count, np.inf), np.full(count, np.nan)
+    last, wrong = np.full(count, FAR), np.full(count, np.nan)
     for k in range(STEPS):
         system, linear, moved, rest, follow, matrix = bordered(around, lanes, parameter, state, along)
         right = np.concatenate([rest, np.zeros((count, 1))], axis=1)
@@ -125,7 +131,7 @@ def reach(
             enough = settled(last, size) if stride is None else size * (size / last) ** 2 <= ENOUGH * stride
         done = good & enough
         found |= done
-        active = good & ~done & (size <= np.maximum(CONTRACTION * last, 1e-9))
+        active = good & ~done & ((k == 0) | (size <= np.maximum(CONTRACTION * last, 1e-9)))
         last = size
         if not active.any():
             break
@@ -139,7 +145,7 @@ def reach(
         length = np.sqrt(total(slope * slope))
         # the determinant bordered by the curve's own direction is that by the plane's, times their cosine
         size = np.linalg.det(matrix) * length
-        places = Places(numbers, first / length[:, None], second, slope / length[:, None], size)
+        places = Places(numbers, first / length[:, None], second, slope / length[:, None], size, base.weight)
         _rate, places.second = _by_distance(places, first, second)
         inward = _by_distance(base, first, second)
     found &= np.isfinite(inward[1]).all(axis=1)

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
-from centrode.kinematics.holding import Value, initial_values, named_drive, value_of
 from centrode.kinematics.paths import unit_of
-from centrode.kinematics.reach import limits_about
 from centrode.kinematics.ready import Ready
+from centrode.kinematics.several_drives.holding import Value, initial_values, named_drive, value_of
+from centrode.kinematics.several_drives.reach import limits_about
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 

@@ -13,16 +13,16 @@ import xarray as xr
 from centrode import __version__
 from centrode.errors import InputError, NotComputedYet, Status
 from centrode.kinematics.dataset import labels_of
-from centrode.kinematics.grids import Lines, cells_of, lines_along, reached_from
-from centrode.kinematics.holding import (
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.several_drives.grids import Lines, cells_of, lines_along, reached_from
+from centrode.kinematics.several_drives.holding import (
     Value,
     held_values,
     initial_values,
     named_drive,
     unit_of_value,
 )
-from centrode.kinematics.ranges import Ranges, comes_round, grid_nodes, node_of
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.several_drives.ranges import Ranges, comes_round, grid_nodes, node_of
 from centrode.locale import _, speaking
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism

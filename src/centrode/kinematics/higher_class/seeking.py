@@ -14,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.kinematics.newton import System, newton
+from centrode.kinematics.higher_class.newton import newton
+from centrode.kinematics.higher_class.system import System
 from centrode.model.mechanism import Mechanism
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import Positions

@@ -12,12 +12,13 @@ import numpy.typing as npt
 from centrode.algebra.jets import Jet
 from centrode.kinematics.branches import Event, branches_at_start
 from centrode.kinematics.continuation import Continuation
-from centrode.kinematics.events import Scan, mesh_of
-from centrode.kinematics.holding import held_path
+from centrode.kinematics.events import Scan
 from centrode.kinematics.layout import Layout, layout_of
+from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.sampling import ORDERS, Judging, fill_columns
+from centrode.kinematics.several_drives.holding import held_path
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]

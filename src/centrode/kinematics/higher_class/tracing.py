@@ -16,12 +16,12 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.branches import Event
-from centrode.kinematics.crossings import crossing
-from centrode.kinematics.curves import Places, Reached, quintic, reach
-from centrode.kinematics.limits import limits
-from centrode.kinematics.newton import total
-from centrode.kinematics.surroundings import Surroundings
-from centrode.kinematics.tracks import Piece, Tracks, Trail
+from centrode.kinematics.higher_class.crossings import crossing
+from centrode.kinematics.higher_class.curves import Places, Reached, quintic, reach
+from centrode.kinematics.higher_class.limits import limits
+from centrode.kinematics.higher_class.surroundings import Surroundings
+from centrode.kinematics.higher_class.system import total
+from centrode.kinematics.higher_class.tracks import Piece, Tracks, Trail
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -108,7 +108,9 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
     direction = np.zeros(numbers.shape)
     direction[:, -1] = forward
-    base = Places(numbers, direction, direction, along, forward)
+    weight = np.full(numbers.shape, 1.0 / around.unit)
+    weight[:, :-1] = around.blank(both).weights()
+    base = Places(numbers, direction, direction, along, forward, weight)
     found = reach(around, both, base, along, parameter, state)
     here = found.places
     width = start.shape[1] + 1
@@ -208,13 +210,14 @@ def _turn_back(
 ) -> list[Event]:
     """Limits between places and those found beyond them; the walkers stop there."""
     limit = limits(around, walkers.lane[who], here, there)
+    _shorten(walkers, who[~limit.reached.found])
     pieces = quintic(here, limit.reached)
     events = []
     for k, walker in enumerate(who):
         trail, at = walkers.trails[walker], float(limit.reached.places.parameter[k])
-        walkers.stop(walker, lost=not limit.reached.found[k])
         if not limit.reached.found[k]:
             continue
+        walkers.stop(walker)
         sense = float(walkers.sense[walker] * walkers.forward[walker])
         start = float(here.parameter[k])
         trail.pieces.append(Piece(pieces[k], start, start, at, sense))

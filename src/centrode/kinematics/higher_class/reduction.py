@@ -124,7 +124,9 @@ class Linear:
         if by is None:
             if entity.kind == "point":
                 return {follow.first: (self.numbers.scale, 0.0), follow.first + 1: (0.0, self.numbers.scale)}
-            pivot = at.points[next(iter(self.numbers.local[entity.name]))]
+            # the link's first point may only ride on it, and be solved after the group
+            place = next(iter(self.numbers.local[entity.name].values()))
+            pivot = space.place(ARRAYS, at.poses[entity.name], place)
             shifts = space.shifts(ARRAYS, pivot, self.numbers.scale)
             return {follow.first + k: shift for k, shift in enumerate(shifts)}
         one, other = self._pair(by)

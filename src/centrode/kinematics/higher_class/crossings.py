@@ -16,10 +16,10 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
-from centrode.kinematics.curves import Places, Reached, bordered, motion_along, quintic
-from centrode.kinematics.newton import Motion, total
+from centrode.kinematics.higher_class.curves import Places, Reached, bordered, motion_along, quintic
+from centrode.kinematics.higher_class.surroundings import Surroundings
+from centrode.kinematics.higher_class.system import Motion, total
 from centrode.kinematics.paths import JETS
-from centrode.kinematics.surroundings import Surroundings
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -20,7 +20,8 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.continuation import Continuation
-from centrode.kinematics.events import Scan, mesh_of
+from centrode.kinematics.events import Scan
+from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.paths import JETS, unit_of
 from centrode.kinematics.sampling import ORDERS, Judging, fill_columns, fill_number
 from centrode.kinematics.solve import Solved, fit_for, start_of

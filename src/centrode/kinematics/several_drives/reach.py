@@ -11,8 +11,10 @@ import numpy as np
 
 from centrode.errors import InputError
 from centrode.kinematics.branches import Event
-from centrode.kinematics.events import Scan, mesh_of
-from centrode.kinematics.holding import (
+from centrode.kinematics.events import Scan
+from centrode.kinematics.mesh import mesh_of
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.several_drives.holding import (
     Value,
     check_closed,
     held_path,
@@ -23,7 +25,6 @@ from centrode.kinematics.holding import (
     unit_of_value,
     value_of,
 )
-from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import SEARCH
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

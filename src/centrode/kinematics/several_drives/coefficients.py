@@ -21,8 +21,8 @@ from centrode.kinematics.dataset import (
     named,
     units_of_drives,
 )
-from centrode.kinematics.partials import Partials, partials
 from centrode.kinematics.ready import ready
+from centrode.kinematics.several_drives.partials import Partials, partials
 from centrode.kinematics.solve import GREATEST_RESULT, Solved, asked_span, solve
 from centrode.kinematics.spans import span_at
 from centrode.locale import _

@@ -1,4 +1,4 @@
-"""Groups of higher class at any places: from their anchors, with derivatives or bounds as the algebra wants."""
+"""Groups of higher class at any places: from their tracks, with derivatives or bounds as the algebra wants."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import RoundedFunctions
-from centrode.kinematics.newton import System, newton, step_at
-from centrode.kinematics.reduction import Linear
-from centrode.kinematics.surroundings import Surroundings, flattened, needed, plain, shaped
-from centrode.kinematics.tracks import Tracks
+from centrode.kinematics.higher_class.newton import newton, step_at
+from centrode.kinematics.higher_class.reduction import Linear
+from centrode.kinematics.higher_class.surroundings import Surroundings, flattened, needed, plain, shaped
+from centrode.kinematics.higher_class.system import System
+from centrode.kinematics.higher_class.tracks import Tracks
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import Positions
 

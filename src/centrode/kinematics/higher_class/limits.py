@@ -9,15 +9,17 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
-from centrode.kinematics.curves import Places, Reached, bordered, quintic, reach
-from centrode.kinematics.newton import total
-from centrode.kinematics.surroundings import Surroundings
+from centrode.kinematics.higher_class.curves import Places, Reached, bordered, quintic, reach
+from centrode.kinematics.higher_class.surroundings import Surroundings
+from centrode.kinematics.higher_class.system import total
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
 
-STEPS = 5
-"""Newton steps along the curve to a limit, from where the polynomial between two places turns back."""
+STEPS = 30
+"""Most Newton steps along the curve to a limit, from where the polynomial between two places turns back."""
+SMALL = 1e-8
+"""After a step this small, in the arc between the two places, the next is below rounding."""
 LONGEST = 0.1
 """Greatest such step, in the arc between the two places."""
 LEAST_MARGIN = 8.0
@@ -36,6 +38,7 @@ def limits(around: Surroundings, lanes: Lanes, here: Places, there: Reached) -> 
     """Limits between places and those reached beyond them."""
     whole = quintic(here, there)
     share = _first_turn(whole[:, :, -1])
+    arrived = np.zeros(len(share), dtype=bool)
     for _step in range(STEPS):
         powers = share[:, None] ** np.arange(6)
         value = total(whole * powers[:, :, None])
@@ -44,7 +47,12 @@ def limits(around: Surroundings, lanes: Lanes, here: Places, there: Reached) -> 
         limit = reach(around, lanes, here, here.along, parameter, state)
         with np.errstate(all="ignore"):
             change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / there.arc
-        share = share + np.where(np.isfinite(change), np.clip(change, -LONGEST, LONGEST), 0.0)
+            change = np.where(np.isfinite(change), np.clip(change, -LONGEST, LONGEST), np.inf)
+        if arrived.all():
+            break
+        share = np.where(arrived | np.isinf(change), share, share + change)
+        arrived |= np.abs(change) <= SMALL
+    limit.found[:] &= arrived
     return Limits(limit, _margin(around, lanes, limit.places))
 
 

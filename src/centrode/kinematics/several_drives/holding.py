@@ -15,8 +15,9 @@ from centrode.errors import InputError
 from centrode.kinematics.assembly import Assembled
 from centrode.kinematics.branches import branches_at_start
 from centrode.kinematics.continuation import Continuation, Smooth
-from centrode.kinematics.events import Scan, mesh_of
+from centrode.kinematics.events import Scan
 from centrode.kinematics.layout import layout_of
+from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.pace import Pace
 from centrode.kinematics.paths import DrivenBy, Path, unit_of
 from centrode.kinematics.ready import Ready

@@ -12,7 +12,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.kinematics.evaluate import Hooks, Kinematics
-from centrode.kinematics.newton import System
+from centrode.kinematics.higher_class.system import System
 from centrode.kinematics.paths import JETS
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton

@@ -1,0 +1,92 @@
+"""Newton's method on the constraints of a group of higher class, at all places at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.rounding import UNIT_ROUNDOFF
+from centrode.kinematics.higher_class.reduction import Linear, Shift, solved
+from centrode.kinematics.higher_class.system import Motion, System
+from centrode.structure.positions import Entity
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+
+STEPS = 12
+"""Newton steps before a place counts as not converged."""
+COARSE = 1e-6
+"""Greatest step of rounding alone, next to a limit."""
+SMALL = 1e-9
+"""After a step this small (in rad, or in the greatest length) the next is below rounding: convergence is quadratic."""
+
+
+@dataclass(frozen=True)
+class Converged:
+    """What Newton's method came to: states, where it converged, sizes of all steps (steps, k)."""
+
+    state: Array
+    found: Mask
+    sizes: Array
+
+
+def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
+    """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
+    state = start.copy()
+    going = np.nonzero(np.isfinite(start).all(axis=1))[0]
+    found = np.zeros(len(start), dtype=bool)
+    sizes = np.full((steps, len(start)), np.nan)
+    last = np.full(len(start), np.inf)
+    for k in range(steps):
+        if not len(going):
+            break
+        part = system if len(going) == len(start) else system.taken(going)
+        motion, size = step_at(part, state[going])
+        sizes[k, going] = size
+        good = np.isfinite(size) & (size < 1.0e3)
+        state[going[good]] = part.moved(state[going], motion)[good]
+        # next to a limit rounding makes steps that are not small; they do not shrink any more
+        done = good & (
+            settled(last[going], size) | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
+        )
+        last[going] = size
+        found[going[done]] = True
+        going = going[good & ~done]
+    return Converged(state, found, sizes)
+
+
+def step_at(system: System, state: Array, linear: Linear | None = None) -> tuple[Motion, Array]:
+    """A Newton step from a state, and its size."""
+    at = system.at(ARRAYS, system.known, state)
+    linear = system.linear(at) if linear is None else linear
+    moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
+    free = solved(linear.matrix, system.stacked(rest)[:, :, None])[:, :, 0]
+    return Motion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
+
+
+def size_of(system: System, moved: Mapping[Entity, Shift], free: Array) -> Array:
+    """Size of a step, in rad or in the greatest length."""
+    size: Array = np.max(np.abs(free), axis=1)
+    scale = 1.0 / system.numbers.scale
+    for shift in moved.values():
+        for x in shift:
+            size = np.maximum(size, np.abs(x) * scale)
+    return size
+
+
+def settled(last: Array, size: Array) -> Mask:
+    """Where a step of some size after one of a last size is followed by nothing but rounding.
+
+    Either the next step, quadratically smaller, is below it, or both are so small already that the matrix
+    cannot give more digits.
+    """
+    with np.errstate(all="ignore"):
+        next_size = size * (size / last) ** 2
+        return np.asarray((size <= SMALL) & ((last <= SMALL) | (next_size <= UNIT_ROUNDOFF)))
