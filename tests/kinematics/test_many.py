@@ -8,7 +8,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.algebra import machine_code
-from centrode.kinematics import many
+from centrode.kinematics.compiled import many
 
 pytestmark = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
 

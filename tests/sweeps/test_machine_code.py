@@ -12,7 +12,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.algebra import machine_code
-from centrode.kinematics.judging import Judging
+from centrode.kinematics.compiled.judging import Judging
 from centrode.quantities import QUANTITIES
 from centrode.sweeps import limits
 from centrode.sweeps.arrays import ArraysExecutor

@@ -11,8 +11,8 @@ import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
+from centrode.kinematics.compiled.many import solve_many
 from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.many import solve_many
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Progress, asked_span
 from centrode.kinematics.spans import span_at

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.layout import layout_of
+from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.solve import solve
 from centrode.kinematics.spans import Span

@@ -23,10 +23,10 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
 from centrode.errors import Status
-from centrode.kinematics.judging import Judging, scan_of
+from centrode.kinematics.compiled.judging import Judging, scan_of
+from centrode.kinematics.compiled.traced import Traced, Untraceable, centre_of, traced
+from centrode.kinematics.compiled.variables import PARAMETER, SCALE, Varied, boxed, inputs_of, varied_of
 from centrode.kinematics.residuals import CLOSED
-from centrode.kinematics.traced import Traced, Untraceable, centre_of, traced
-from centrode.kinematics.variables import PARAMETER, SCALE, Varied, boxed, inputs_of, varied_of
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
 from centrode.sweeps import limits

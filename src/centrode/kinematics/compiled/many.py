@@ -20,14 +20,22 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.scans import Scan
 from centrode.errors import Status
 from centrode.kinematics.branches import Branches, branches_at_start
+from centrode.kinematics.compiled.judging import Judged, Judging
+from centrode.kinematics.compiled.traced import (
+    TURN,
+    WHOLE,
+    Traced,
+    Untraceable,
+    centre_of,
+    traced,
+    winding_of,
+)
+from centrode.kinematics.compiled.variables import PARAMETER, SCALE, Varied, boxed, inputs_of, varied_of
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.judging import Judged, Judging
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED, Kept
 from centrode.kinematics.solve import CHUNK, Progress, Solved, check_size, solve
 from centrode.kinematics.spans import Span
-from centrode.kinematics.traced import TURN, WHOLE, Traced, Untraceable, centre_of, traced, winding_of
-from centrode.kinematics.variables import PARAMETER, SCALE, Varied, boxed, inputs_of, varied_of
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -21,6 +21,7 @@ from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.branches import branches_at_start
+from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, span_of_variables
 from centrode.kinematics.evaluate import Hooks, Kinematics
 from centrode.kinematics.layout import Layout, layout_of, positions_from
 from centrode.kinematics.phases import with_phases
@@ -30,7 +31,6 @@ from centrode.kinematics.sampling import ORDERS
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import Span
 from centrode.kinematics.spins import spins_of
-from centrode.kinematics.variables import PARAMETER, Varied, boxed, span_of_variables
 from centrode.locale import mark
 from centrode.structure.groups import Newton
 from centrode.structure.positions import Positions

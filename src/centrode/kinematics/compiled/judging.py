@@ -23,10 +23,10 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.jets import Jet
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
+from centrode.kinematics.compiled.traced import TURN, WHOLE, Traced, centre_of, winding_of
+from centrode.kinematics.compiled.variables import PARAMETER
 from centrode.kinematics.mesh import LOW, mesh_of
 from centrode.kinematics.sampling import SUSPECT
-from centrode.kinematics.traced import TURN, WHOLE, Traced, centre_of, winding_of
-from centrode.kinematics.variables import PARAMETER
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
