@@ -125,7 +125,7 @@ WRONG = [
     (STUDY.replace(", count = 3", ""), "count is missing"),
     (STUDY.replace("3800 mm", "3000 mm"), "does not rise"),
     (STUDY.replace("links.AB", "links.AX"), "there is no"),
-    (STUDY.replace("[grid]", 'executor = "machine code"\n[grid]'), "machine code is not available yet"),
+    (STUDY.replace("[grid]", 'executor = "machine codes"\n[grid]'), 'did you mean "machine code"'),
     (STUDY.replace("[grid]", "executor = 3\n[grid]"), "executor: expected a text"),
     (STUDY.replace("[grid]", "[[grid]]"), "expected a table"),
     (STUDY + "[", "not TOML"),

@@ -99,6 +99,7 @@ def _computed(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:
             start=start,
             stop=stop,
             reduce=asked.reduce,
+            gradient=asked.gradient,
             executor=asked.executor,
             store=store,
             progress=tell,

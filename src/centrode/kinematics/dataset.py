@@ -89,7 +89,7 @@ def by_time(orders: Orders, order: int, span: Span) -> Array | None:
         return by_parameter
     along = (slice(None), *[None] * (by_parameter.ndim - 2))  # samples, then what stands behind them
     values = by_parameter * (span.rate if order == 1 else span.rate**2)[along]
-    if order == 2 and span.second_rate.any():
+    if order == 2 and span.accelerates:
         values += orders[1] * span.second_rate[along]
     return values
 

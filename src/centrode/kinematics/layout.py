@@ -116,17 +116,22 @@ def slide_of(m: Namespace, numbers: Dimensions, at: Positions, guide: str, point
 
 
 def positions_from(
-    kinematics: Kinematics, layout: Layout, values: Array, angles: Array, parameter: Array
+    kinematics: Kinematics,
+    layout: Layout,
+    values: Array,
+    angles: Array,
+    parameter: Number,
+    m: Namespace = ARRAYS,
 ) -> Positions:
-    """Positions as plain arrays from the values of columns and angles (columns first), to evaluate constraints on."""
+    """Positions as plain values of the columns and angles (columns first), to evaluate constraints on."""
     numbers, size = kinematics.numbers, layout.attitude
-    at = Positions.of_frame(numbers, kinematics.path.drive_values(ARRAYS, parameter), ARRAYS)
+    at = Positions.of_frame(numbers, kinematics.path.drive_values(m, parameter), m)
     for k, point in enumerate(layout.points):
         at.points[point] = tuple(values[layout.axes * k : layout.axes * (k + 1)])
     for k, link in enumerate(layout.links):
         column = layout.first_attitude + size * k
         point, local = next(iter(numbers.local[link].items()))
         attitude = values[column : column + size]
-        at.poses[link] = numbers.space.pose_of(ARRAYS, tuple(attitude), local, at.points[point])
+        at.poses[link] = numbers.space.pose_of(m, tuple(attitude), local, at.points[point])
     at.angles.update(zip(layout.angles, angles, strict=True))
     return at

@@ -11,9 +11,10 @@ import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
+from centrode.kinematics.compiled.many import solve_many
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import Progress, asked_span, solve
+from centrode.kinematics.solve import Progress, asked_span
 from centrode.kinematics.spans import span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -66,7 +67,7 @@ def motion(
         span = asked_span(prepared, samples, start, stop)
     else:
         span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
-    return dataset_of(solve(prepared, span, numbers, lanes, progress), vary)
+    return dataset_of(solve_many(prepared, span, numbers, lanes, progress), vary)
 
 
 def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None, int]:

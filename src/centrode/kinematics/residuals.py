@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,8 @@ from centrode.structure.constraints import Constraint
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
 
 
 CLOSED = 1e-7
@@ -48,7 +50,7 @@ def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[
     worst = np.zeros(samples.status.shape)
     greatest: dict[Kept, float] = {}
     with np.errstate(all="ignore"):
-        for kept, found in _each(kinematics, at):
+        for kept, found in each_residual(kinematics, ARRAYS, at, kinematics.numbers.scale):
             worst = np.maximum(worst, found)
             greatest[kept] = float(np.nanmax(found, initial=0.0))
     if samples.status.any():
@@ -56,16 +58,18 @@ def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[
     return worst, max(greatest, key=greatest.__getitem__)
 
 
-def _each(kinematics: Kinematics, at: Positions) -> Iterator[tuple[Kept, Array]]:
-    """Every constraint, drives included, with the size of its residual."""
-    scale, space = kinematics.numbers.scale, kinematics.numbers.space
+def each_residual(
+    kinematics: Kinematics, m: Namespace, at: Positions, scale: Number
+) -> Iterator[tuple[Kept, Number]]:
+    """Every constraint, drives included, with the size of its residual, over any algebra."""
+    numbers, space = kinematics.numbers, kinematics.numbers.space
     for constraint in kinematics.structure.constraints:
         unit = 1.0 if constraint.angular else scale
-        size = [np.abs(r) for r in constraint.residual(ARRAYS, kinematics.numbers, at)]
-        yield constraint, functools.reduce(np.maximum, size) / unit
+        size = [m.abs(r) for r in constraint.residual(m, numbers, at)]
+        yield constraint, functools.reduce(m.max, size) / unit
     for link in kinematics.structure.mechanism.links:
-        stretch = [np.abs(x) for x in space.stretch(space.attitude(at.poses[link]))]
-        yield UnitLength(link), functools.reduce(np.maximum, stretch)
+        stretch = [m.abs(x) for x in space.stretch(space.attitude(at.poses[link]))]
+        yield UnitLength(link), functools.reduce(m.max, stretch)
 
 
 def open_what_does_not_close(samples: Samples, residual: Array) -> None:

@@ -99,7 +99,7 @@ def solve(
     samples = len(span.parameter)
     layout = layout_of(kinematics)
     axes, fixed = layout.axes, layout.axes * len(kinematics.numbers.frame)
-    _check_size(layout, lanes, samples)
+    check_size(layout, lanes, samples)
     size = max(1, CHUNK // max(samples, len(mesh_of(kinematics.path, span.parameter))))
     # one room for everything that depends on the samples: what is big is written once
     room = np.empty((ORDERS, fixed + layout.width, lanes, samples))
@@ -131,7 +131,7 @@ def solve(
     )
 
 
-def _check_size(layout: Layout, lanes: int, samples: int) -> None:
+def check_size(layout: Layout, lanes: int, samples: int) -> None:
     """Refuse a result that would not fit into the memory of an ordinary machine."""
     most = GREATEST_RESULT // max(layout.width, 1)
     if lanes * samples > most:

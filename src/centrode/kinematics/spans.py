@@ -30,6 +30,11 @@ class Span:
     rate: Array
     second_rate: Array
 
+    @property
+    def accelerates(self) -> bool:
+        """Whether the parameter has a second derivative by time anywhere."""
+        return bool(self.second_rate.any())
+
 
 def is_uniform(path: Path) -> bool:
     """Whether the only drive has a constant speed, so that samples are evenly spaced in its value."""

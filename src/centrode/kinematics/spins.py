@@ -20,7 +20,7 @@ def spins_of(layout: Layout, columns: Array) -> Array | None:
     if layout.runs_on:
         return None
     lanes, samples = columns.shape[2:]
-    spins = np.empty((2, lanes, samples, len(layout.links), 3))
+    spins = np.empty((2, lanes, samples, len(layout.links), 3), columns.dtype)
     for k in range(len(layout.links)):
         first = layout.first_attitude + 9 * k
         axes = columns[:, first : first + 9].reshape(3, 3, 3, lanes, samples)

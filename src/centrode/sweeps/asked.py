@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -21,6 +21,9 @@ from centrode.sweeps.reductions import REDUCTIONS, folded
 
 AnyArray: TypeAlias = npt.NDArray[Any]
 Reduce: TypeAlias = str | Mapping[str, str] | None
+
+PATH = "path"
+"""Dimension of derivatives: one for each path that varies."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,12 @@ class Asked:
     columns: tuple[Column, ...] = field(compare=False)
 
     @property
+    def slopes(self) -> dict[str, str]:
+        """Column -> the column of its derivatives, where these are asked for."""
+        names = {column.name for column in self.columns}
+        return {name: slope_of(name) for name in names if slope_of(name) in names}
+
+    @property
     def reduced(self) -> bool:
         """Whether a mechanism has one number of its samples."""
         return bool(self.reduction or self.formulas)
@@ -71,6 +80,34 @@ class Asked:
         if self.reduction is not None:
             return {output.name: folded(self.reduction, output.of(solved), ok) for output in self.outputs}
         return {"status": solved.status} | {output.name: output.of(solved) for output in self.outputs}
+
+
+def slope_of(name: str) -> str:
+    """Name of the derivatives of a reduced column."""
+    return f"gradient.{name}"
+
+
+def with_slopes(asked: Asked, paths: int) -> Asked:
+    """The same with the derivatives of every reduced column by the values that vary.
+
+    Raises InputError where nothing is reduced.
+    """
+    if not asked.reduced:
+        what = _("derivatives are those of reduced outputs")
+        raise InputError("gradient", what, _("say how to reduce them"))
+    reduced = [column for column in asked.columns if column not in JUDGED]
+    words = "derivatives by the varied values [SI]; NaN for mechanisms that are not ok everywhere or meet an event"
+    slopes = [
+        Column(
+            slope_of(column.name),
+            (*column.dimensions, PATH),
+            (*column.shape, paths),
+            np.float64,
+            {"long_name": f"derivatives of {column.name}", "comment": words},
+        )
+        for column in reduced
+    ]
+    return replace(asked, columns=(*reduced, *slopes, *JUDGED))
 
 
 def asked_of(

@@ -20,7 +20,7 @@ from centrode.sweeps.designs import Grid, grid
 from centrode.sweeps.drawing import METHODS, Sample, sample
 
 WAYS = ("vary", "grid", "sample")
-KEYS = ("mechanism", *WAYS, "outputs", "samples", "from", "to", "reduce", "executor")
+KEYS = ("mechanism", *WAYS, "outputs", "samples", "from", "to", "reduce", "gradient", "executor")
 RANGE = ("from", "to", "count")
 SAMPLE = ("count", "method", "seed", "ranges")
 
@@ -43,6 +43,7 @@ class SweepStudy:
     start: float | str | None
     stop: float | str | None
     reduce: Reduce
+    gradient: bool
     executor: str
 
 
@@ -80,8 +81,15 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
         _end("from", tables.get("from")),
         _end("to", tables.get("to")),
         _reduce(tables.get("reduce")),
+        _switch("gradient", tables.get("gradient", False)),
         _text("executor", tables.get("executor", "auto")),
     )
+
+
+def _switch(key: str, value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise InputError(key, _("expected true or false, got {value}").format(value=shown(value)))
+    return value
 
 
 def _refuse_unknown(where: str, table: Mapping[str, Any], known: tuple[str, ...]) -> None:

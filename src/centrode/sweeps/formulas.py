@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -28,7 +28,7 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 
 VALUE = "value"
 """Name of the result of a formula that has none of its own."""
-RESERVED = frozenset({"samples_ok", "worst_residual", "status", "progress", "sample", MECHANISM})
+RESERVED = frozenset({"samples_ok", "worst_residual", "status", "progress", "sample", "path", MECHANISM})
 
 _WORD = re.compile(r"(?<![\w.])[^\W\d]\w*")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
@@ -70,6 +70,11 @@ class Formula:
             found = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
         flat = np.broadcast_to(found, (len(ok), 1))[:, 0]
         return np.where(ok.any(axis=1), flat, np.nan)
+
+    def traced(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
+        """Its value where numbers are expressions: `solved` is of one sample, `m` folds."""
+        given = {name: variable.of(solved, values).item() for name, variable in self.variables.items()}
+        return self.text(m, **given)
 
 
 def formulas_of(motion: xr.Dataset, design: Design, asked: Mapping[str, str] | str) -> tuple[Formula, ...]:

@@ -8,6 +8,18 @@ WORKING_SET = 256_000_000
 BLOCK_POSITIONS = 2_000_000
 """Positions of one block, the unit that is stored and marked as done: a few seconds of work."""
 
+BLOCKS_OF_KERNELS = 32
+"""How many times as many positions stand in a block that machine code computes."""
+
+WORTH_COMPILING = 200_000
+"""Positions (nodes of the mesh, if they are more) from which on "auto" takes machine code."""
+
+KERNEL_LANES = 1 << 16
+"""Mechanisms that machine code computes at once."""
+
+KERNEL_BUFFER = 2_000_000
+"""Bytes of the buffer that machine code writes samples to: it should stay in the cache."""
+
 BLOCK_BYTES = 32_000_000
 """Bytes of one block's results."""
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.sweeps.asked import Asked
+from centrode.sweeps.asked import PATH, Asked
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import Design
 from centrode.sweeps.tallies import Tally
@@ -28,8 +28,11 @@ class Kept(Protocol):
     def has(self, block: int) -> bool:
         """Whether a block is there already."""
 
+    def room(self, block: int) -> dict[str, AnyArray]:
+        """Arrays that the results of a block are written to, before it is put."""
+
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
-        """Keep a block: all of it, or nothing."""
+        """Keep what stands in the room of a block: all of it, or nothing."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,13 @@ class Frame:
         """What the columns take."""
         return self.mechanisms * sum(column.bytes for column in self.asked.columns)
 
+    def room(self, mechanisms: int) -> dict[str, AnyArray]:
+        """Arrays for the columns of some mechanisms, as memory has them."""
+        return {
+            column.name: np.empty((mechanisms, *column.shape), dtype=column.kind)
+            for column in self.asked.columns
+        }
+
 
 def frame_of(
     motion: xr.Dataset, design: Design, units: Mapping[str, str], asked: Asked, executor: str
@@ -64,6 +74,8 @@ def frame_of(
             "drive": motion["drive"],
             "drive_value": motion["drive_value"],
         }
+    if PATH in used:
+        coordinates[PATH] = (PATH, list(design.coordinates))
     for path, (dimension, values) in design.coordinates.items():
         coordinates[path] = ((dimension,), values, {"units": units[path]})
     told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
@@ -83,19 +95,17 @@ class InMemory:
         self.frame = frame
         self.blocks = blocks
         self.tally = Tally()
-        self.arrays = {
-            column.name: np.full((frame.mechanisms, *column.shape), column.empty, dtype=column.kind)
-            for column in frame.asked.columns
-        }
+        self.arrays = frame.room(frame.mechanisms)
 
     def has(self, block: int) -> bool:
         return False
 
-    def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
+    def room(self, block: int) -> dict[str, AnyArray]:
         first, stop = self.blocks.mechanisms(block)
-        for name, array in results.items():
-            self.arrays[name][first:stop] = array
-        self.tally.add(tally)
+        return {name: array[first:stop] for name, array in self.arrays.items()}
+
+    def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
+        self.tally.add(tally)  # the results stand where they belong
 
     def leave_the_rest_empty(self) -> None:
         """Leave no part of a block that was being put when an interruption came."""

@@ -24,9 +24,10 @@ import xarray as xr
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.sweeps.arrays import Task
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import described
-from centrode.sweeps.executors import Task
+from centrode.sweeps.executors import bare
 from centrode.sweeps.locking import locked
 from centrode.sweeps.results import Frame
 from centrode.sweeps.tallies import Tally
@@ -54,12 +55,20 @@ class Store:
         self.arrays = {column.name: root[column.name] for column in frame.asked.columns}
         self.tally = Tally()
         self.done: set[int] = set()
+        self._room: dict[str, AnyArray] = {}
+        self._roomy = 0
         for block, tally in _marked(self.markers):
             self.done.add(block)
             self.tally.add(tally)
 
     def has(self, block: int) -> bool:
         return block in self.done
+
+    def room(self, block: int) -> dict[str, AnyArray]:
+        first, stop = self.blocks.mechanisms(block)
+        if stop - first > self._roomy:
+            self._room, self._roomy = self.frame.room(stop - first), stop - first
+        return {name: array[: stop - first] for name, array in self._room.items()}
 
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
         region = self.blocks.region(block)
@@ -167,7 +176,8 @@ def _study(frame: Frame, task: Task) -> dict[str, Any]:
         "samples": [len(parameter), float(parameter[0]), float(parameter[-1])],
         "outputs": [output.name for output in asked.outputs],
         "reduce": {formula.name: formula.text.text for formula in asked.formulas} or asked.reduction,
-        "executor": told["executor"],
+        "gradient": bool(asked.slopes),
+        "executor": bare(told["executor"]),
     }
 
 

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
-import numpy as np
 import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
@@ -19,11 +18,12 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.dimensions import dimensions_of
 from centrode.sweeps import limits
-from centrode.sweeps.asked import Reduce, asked_of
+from centrode.sweeps.arrays import Task
+from centrode.sweeps.asked import Reduce, asked_of, with_slopes
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import Grid, design_of
 from centrode.sweeps.drawing import Sample
-from centrode.sweeps.executors import Executor, Results, Task, executor_of
+from centrode.sweeps.executors import Executor, check_executor, executor_of
 from centrode.sweeps.results import Frame, InMemory, Kept, frame_of, told
 from centrode.sweeps.store import opened, read
 from centrode.sweeps.tallies import tally_of
@@ -40,9 +40,11 @@ def sweep(
     start: float | None = None,
     stop: float | None = None,
     reduce: Reduce = None,
+    gradient: bool = False,
     executor: str = "auto",
     store: str | Path | None = None,
     progress: Progress | None = None,
+    threads: int = 1,
 ) -> xr.Dataset:
     """Motions of many mechanisms of one structure, or one number of each motion, in bounded memory.
 
@@ -57,11 +59,15 @@ def sweep(
         As those of `motion`.
     reduce : None, "min", "max", "range", "mean", a formula, or name -> formula
         One number of the samples that are ok; a formula names the numbers of the motion itself (docs: sweeps).
+    gradient : bool
+        Also the derivatives of every reduced output by each of the values that vary; NaN for mechanisms that
+        are not ok everywhere.
     executor : "auto", "arrays" or "machine code"
         What computes; the one used stands in the attributes.
     store : a folder for a result too great for memory
         It goes on where an earlier run of the same sweep ended.
     progress : called with (mechanisms done, mechanisms in all)
+    threads : that machine code shares the mechanisms among
 
     Returns
     -------
@@ -73,19 +79,21 @@ def sweep(
     Raises
     ------
     InputError
-        Anything asked for that there is not, a result too great, a store of another sweep.
-    NotComputedYet
-        Machine code.
+        Anything asked for that there is not, a result too great, a store of another sweep, machine code for
+        what it cannot compute.
     """
-    chosen = executor_of(executor)
+    name = check_executor(executor)
     design = design_of(mechanism, vary)
     prepared = ready(mechanism)
     span = asked_span(prepared, samples, start, stop)
     motion = dataset_of(solve(prepared, span))
-    task = Task(prepared, span, asked_of(motion, design, outputs, reduce))
+    paths = tuple(design.coordinates)
+    asked = asked_of(motion, design, outputs, reduce)
+    task = Task(prepared, span, with_slopes(asked, len(paths)) if gradient else asked, paths)
+    chosen, told_of_it = executor_of(name, task, design, threads)
     units = {path: unit_of(mechanism, path) for path in design.coordinates}
-    frame = frame_of(motion, design, units, task.asked, chosen.name)
-    blocks = _blocks(frame, task)
+    frame = frame_of(motion, design, units, task.asked, told_of_it)
+    blocks = _blocks(frame, task, chosen)
     if store is None:
         return _in_memory(frame, blocks, task, chosen, progress)
     _check_size(frame, limits.IN_STORE, _("reduce it, or ask for fewer"))
@@ -102,9 +110,9 @@ def _check_size(frame: Frame, most: int, repair: str) -> None:
         raise InputError("", what, repair)
 
 
-def _blocks(frame: Frame, task: Task) -> Blocks:
+def _blocks(frame: Frame, task: Task, executor: Executor) -> Blocks:
     each = max(1, sum(column.bytes for column in task.asked.columns))
-    most = min(limits.BLOCK_POSITIONS // task.places, limits.BLOCK_BYTES // each)
+    most = min(executor.blocks * limits.BLOCK_POSITIONS // task.places, limits.BLOCK_BYTES // each)
     return Blocks.of(frame.design.shape, max(1, most))
 
 
@@ -134,17 +142,14 @@ def _compute(frame: Frame, kept: Kept, task: Task, executor: Executor, progress:
             continue
         first, stop = kept.blocks.mechanisms(block)
         before = kept.tally.mechanisms
-        results: Results = {
-            column.name: np.empty((stop - first, *column.shape), dtype=column.kind)
-            for column in task.asked.columns
-        }
+        results = kept.room(block)
         for low in range(first, stop, lanes):
             high = min(low + lanes, stop)
             values = frame.design.rows(low, high)
             numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
-            # copied at once: what the executor returns may be a view of everything it computed
-            for name, part in executor.run(task, numbers, values).items():
-                results[name][low - first : high - first] = part
+            executor.run(
+                task, numbers, values, {k: x[low - first : high - first] for k, x in results.items()}
+            )
             if progress is not None:
                 progress(before + high - first, frame.mechanisms)
         kept.put(block, results, tally_of(task.asked, len(task.span.parameter), results))

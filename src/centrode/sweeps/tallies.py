@@ -83,7 +83,7 @@ def tally_of(asked: Asked, samples: int, results: Mapping[str, npt.NDArray[Any]]
     extremes: Extremes = {}
     if asked.reduced:
         for column in asked.columns:
-            if column.name not in ("samples_ok", "worst_residual"):
+            if column.name not in ("samples_ok", "worst_residual", *asked.slopes.values()):
                 flat = results[column.name].reshape(len(ok), math.prod(column.shape))
                 extremes[column.name] = [_extremes(flat[:, k]) for k in range(flat.shape[1])]
     return Tally(len(ok), int(np.sum(ok == samples)), int(np.sum(ok == 0)), worst, extremes)

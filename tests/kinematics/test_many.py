@@ -1,0 +1,53 @@
+"""Motions of many mechanisms as machine code: the bits of the arrays, events and statuses included."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import centrode as ct
+from centrode.algebra import machine_code
+from centrode.kinematics.compiled import many
+
+pytestmark = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
+
+
+def both(mechanism: ct.Mechanism, path: str, share: float, samples: int) -> tuple[xr.Dataset, xr.Dataset]:
+    """The motions with machine code, and by arrays alone."""
+    vary = {path: ct.value_at(mechanism, path) * np.linspace(1.0 - share, 1.0 + share, 23)}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(many, "WORTH_COMPILING", 1)
+        found = ct.motion(mechanism, samples, vary=vary)
+        patch.setattr(machine_code, "PRESENT", False)
+        return found, ct.motion(mechanism, samples, vary=vary)
+
+
+@pytest.mark.parametrize("share", [0.002, 0.3])
+@pytest.mark.parametrize("name", ct.example_names())
+def test_the_bits_of_the_arrays(name: str, share: float) -> None:
+    mechanism = ct.example(name)
+    lengths = [link for link in mechanism.links if mechanism.links[link].length is not None]
+    if not lengths:
+        pytest.skip("no length to vary")
+    found, expected = both(mechanism, f"links.{lengths[-1]}.length", share, 25)
+    xr.testing.assert_identical(found, expected)
+
+
+def test_machine_code_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    lanes: list[int] = []
+    solve = many.solve
+    monkeypatch.setattr(many, "solve", lambda *args, **more: lanes.append(args[3]) or solve(*args, **more))
+    both(ct.example("six-bar-press"), "links.OA.length", 0.01, 37)
+    # a few for the name of the worst constraint, then all by arrays
+    assert lanes[-1] == 23
+    assert sum(lanes[:-1]) < 23
+
+
+def test_progress_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(many, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(many, "AT_ONCE", 2)
+    calls: list[tuple[int, int]] = []
+    vary = {"links.AB.length": np.linspace(3.4, 3.6, 7)}
+    ct.motion(ct.example("crank-rocker"), 7, vary=vary, progress=lambda done, of: calls.append((done, of)))
+    assert calls == [(2, 7), (4, 7), (6, 7), (7, 7)]

@@ -1,0 +1,131 @@
+"""Derivatives of reduced outputs: those of 50-digit differences of an independent formula, absent beside events."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.algebra import machine_code
+from mechanisms import EPS, four_bar
+
+EXECUTORS = ["arrays", pytest.param("machine code", marks=pytest.mark.skipif(
+    not machine_code.PRESENT, reason="machine code needs the extra fast"))]  # fmt: skip
+SAMPLES = 25
+LENGTHS = {"links.OA.length": 1.0, "links.AB.length": 3.5, "links.DB.length": 3.0, "frame.points.D.x": 4.0}
+FORMULAS = {
+    "error": "mean((position_B_x - 2)^2 + (position_B_y - mean(position_B_y))^2)",
+    "swing": "range(angle_DB)",
+    "turn": "mean(angle_AB) * links_AB_length",
+    "far": "max(sqrt(position_B_x^2 + position_B_y^2))",
+    "slope": "min(velocity_B_x)",
+}
+
+
+def reduced(a: Any, b: Any, c: Any, d: Any) -> dict[str, Any]:
+    """The formulas for the four-bar linkage O-A-B-D, in mpmath: law of cosines, implicit derivative."""
+    count = SAMPLES
+    step = (mp.mpf(float(np.pi)) * 2) / (count - 1)
+    xs, ys, bars, couplers, rates = [], [], [], [], []
+    for k in range(count):
+        crank = step * k
+        x, y = a * mp.cos(crank), a * mp.sin(crank)
+        apart = mp.hypot(d - x, y)
+        rise = mp.acos((b**2 + apart**2 - c**2) / (2 * b * apart))
+        coupler = mp.atan2(-y, d - x) + rise  # B on the left of A -> D
+        bx, by = x + b * mp.cos(coupler), y + b * mp.sin(coupler)
+        bar = mp.atan2(by, bx - d)
+        turning = a * mp.sin(crank - bar) / (b * mp.sin(bar - coupler))
+        xs.append(bx)
+        ys.append(by)
+        bars.append(bar)
+        couplers.append(coupler)
+        rates.append(-a * mp.sin(crank) - b * turning * mp.sin(coupler))
+    middle = mp.fsum(ys) / count
+    return {
+        "error": mp.fsum((x - 2) ** 2 + (y - middle) ** 2 for x, y in zip(xs, ys, strict=True)) / count,
+        "swing": max(bars) - min(bars),
+        "turn": mp.fsum(couplers) / count * b,
+        "far": max(mp.hypot(x, y) for x, y in zip(xs, ys, strict=True)),
+        "slope": min(rates),
+    }
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_against_differences_of_50_digits(executor: str) -> None:
+    found = ct.sweep(
+        four_bar(*LENGTHS.values()),
+        {path: [length] for path, length in LENGTHS.items()},
+        samples=SAMPLES,
+        start=0.0,
+        stop=2.0 * np.pi,
+        reduce=FORMULAS,
+        gradient=True,
+        executor=executor,
+    )
+    assert found.attrs["executor"] == executor
+    assert found["path"].values.tolist() == list(LENGTHS)
+    with mp.workdps(50):
+        lengths, step = [mp.mpf(length) for length in LENGTHS.values()], mp.mpf(10) ** -16
+        for name, value in reduced(*lengths).items():
+            assert abs(float(found[name][0]) - value) <= 10 * SAMPLES * EPS
+        for k in range(len(lengths)):
+            ends = [[x + sense * step * (i == k) for i, x in enumerate(lengths)] for sense in (1, -1)]
+            above, below = reduced(*ends[0]), reduced(*ends[1])
+            for name in FORMULAS:
+                expected = (above[name] - below[name]) / (2 * step)
+                # sums of some tens of numbers of size 10, divided by the sine of a transmission angle above 0.3
+                assert abs(float(found[f"gradient.{name}"][0, k]) - expected) <= 100 * SAMPLES * EPS, name
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_of_outputs_with_axes_and_of_directions(executor: str) -> None:
+    mechanism = ct.example("slider-crank-offset")
+    vary: dict[str, Any] = {"links.AB.length": [2.5, 2.6], "guides.B.direction": [0.02, 0.03]}
+    vary = {path: np.array(values) for path, values in vary.items()}
+    vary["links.AB.length"] = ct.value_at(mechanism, "links.AB.length") * np.array([1.0, 1.05])
+    outputs = ["position.B", "slide.B"]
+    found = ct.sweep(mechanism, vary, outputs, 73, reduce="mean", gradient=True, executor=executor)
+    assert found["gradient.position.B"].dims == ("mechanism", "axis", "path")
+    assert found["gradient.slide.B"].dims == ("mechanism", "path")
+    step = 1e-4
+    for k, path in enumerate(vary):
+        ends = [
+            ct.sweep(mechanism, {**vary, path: vary[path] + sense * step}, outputs, 73, reduce="mean")
+            for sense in (1.0, -1.0)
+        ]
+        for name in outputs:
+            slope = (ends[0][name] - ends[1][name]).to_numpy() / (2 * step)
+            # differences err by the third derivative, of the size of the numbers themselves
+            np.testing.assert_allclose(found[f"gradient.{name}"][..., k], slope, rtol=0.0, atol=100 * step**2)
+
+
+def test_absent_beside_events() -> None:
+    mechanism = four_bar(1.0, 3.0, 3.0, 4.0)
+    vary = {"links.AB.length": [1.5, 3.0, 20.0]}
+    found = ct.sweep(mechanism, vary, "position.B", 19, reduce="max", gradient=True)
+    assert np.isnan(found["gradient.position.B"]).values.all(axis=(1, 2)).tolist() == [True, False, True]
+    assert np.isfinite(found["gradient.position.B"].values[1]).all()
+    assert np.isfinite(found["position.B"].values[0]).all(), "the extreme of its ok samples"
+
+
+def test_what_has_no_derivatives_is_refused(tmp_path: Path) -> None:
+    mechanism = ct.example("crank-rocker")
+    with pytest.raises(ct.InputError, match="derivatives are those of reduced outputs"):
+        ct.sweep(mechanism, {"links.AB.length": [3.5]}, "angle", 7, gradient=True)
+    triad = ct.example("third-class-triad")
+    link = next(iter(triad.links))
+    path = f"links.{link}.length"
+    with pytest.raises(ct.InputError, match="groups of higher class"):
+        ct.sweep(triad, {path: [ct.value_at(triad, path)]}, "angle", 7, reduce="max", gradient=True)
+    study = tmp_path / "study.toml"
+    study.write_text(
+        'mechanism = "kite"\nreduce = "max"\ngradient = "yes"\n[vary]\nlinks.OA.length = [1]\n',
+        encoding="utf-8",
+    )
+    with pytest.raises(ct.InputError, match="expected true or false"):
+        ct.read_sweep(study)
