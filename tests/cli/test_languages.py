@@ -16,7 +16,8 @@ Centrode = Callable[..., Any]
 LANGUAGES = ("ru", "uk")
 NOT_WORDS = {
     "centrode", "rad", "deg", "mm", "m", "s", "I", "II", "III", "IV", "RRR", "RRP", "RPR", "PRP", "RPP",
-    "loads", "machine", "instants", "motion", "coefficients", "csv", "nc", "summary", "json", "toml", "TOML", "NAME", "run", "examples",
+    "loads", "machine", "instants", "motion", "coefficients", "csv", "nc", "summary", "json", "toml", "TOML", "NAME",
+    "run", "examples",
     "from", "to", "samples", "out", "study", "drives", "frame", "e", "r",
 }  # fmt: skip
 EXAMPLES = (
