@@ -11,7 +11,7 @@ BLOCK_POSITIONS = 2_000_000
 BLOCKS_OF_KERNELS = 32
 """How many times as many positions stand in a block that machine code computes."""
 
-WORTH_COMPILING = 200_000
+WORTH_COMPILING = 100_000
 """Positions (nodes of the mesh, if they are more) from which on "auto" takes machine code."""
 
 KERNEL_LANES = 1 << 16
