@@ -14,6 +14,9 @@ BLOCKS_OF_KERNELS = 32
 WORTH_COMPILING = 100_000
 """Positions (nodes of the mesh, if they are more) from which on "auto" takes machine code."""
 
+THREADS = 256
+"""Threads of one sweep."""
+
 KERNEL_LANES = 1 << 16
 """Mechanisms that machine code computes at once."""
 
