@@ -15,9 +15,10 @@ from centrode.cli import output
 Centrode = Callable[..., Any]
 LANGUAGES = ("ru", "uk")
 NOT_WORDS = {
-    "centrode", "rad", "deg", "mm", "m", "s", "I", "II", "III", "RRR", "RRP", "RPR", "PRP", "RPP",
-    "loads", "machine", "instants", "motion", "csv", "nc", "summary", "json", "toml", "TOML", "NAME", "run", "examples",
-    "from", "to", "samples", "out", "study", "drives", "e", "r",
+    "centrode", "rad", "deg", "mm", "m", "s", "I", "II", "III", "IV", "RRR", "RRP", "RPR", "PRP", "RPP",
+    "loads", "machine", "instants", "motion", "coefficients", "csv", "nc", "summary", "json", "toml", "TOML", "NAME",
+    "run", "examples",
+    "from", "to", "samples", "out", "study", "drives", "frame", "e", "r",
 }  # fmt: skip
 EXAMPLES = (
     "slider-between-cranks",
@@ -26,6 +27,11 @@ EXAMPLES = (
     "two-link-arm",
     "three-crank-parallelogram",
     "wiper",
+    "third-class-triad",
+    "planetary-gear-train",
+    "rolling-wheel-rod",
+    "scissor-lift-cylinder",
+    "spherical-crank-guide",
 )
 
 

@@ -117,7 +117,7 @@ REFUSED = {
     ("region", "arm.toml", "--range", "XY=0:1"): "XY is not one of the two drives",
     ("region", "arm.toml", "--drive", "OA"): "a region needs two different drives; 1 are given",
     ("region", "arm.toml", "--samples", "1"): "1 samples were asked for",
-    ("region", "crank-rocker"): "a region needs two different drives",
+    ("region", "crank-rocker"): "a region needs two drives, the mechanism has one",
     ("region", "excavator-arm"): "3 are given; name two of: K-A, C-E, S-N",
 }
 

@@ -216,7 +216,7 @@ WRONG: dict[str, tuple[dict[str, Any], str]] = {
     "which": ({}, "two different drives; 3 are given; name two of: OA, HE, EC"),
     "range of another": ({"drives": ("OA", "EC"), "ranges": {"HE": (0, 1)}}, "not one of the two"),
     "range elsewhere": ({"drives": ("OA", "EC"), "ranges": {"OA": (2, 3)}}, "hold the initial value, 1"),
-    "range of nothing": ({"drives": ("OA", "EC"), "ranges": {"OA": (1, 1)}}, "hold the initial value"),
+    "range of nothing": ({"drives": ("OA", "EC"), "ranges": {"OA": (1, 1)}}, "range OA: it is empty"),
     "range in metres": ({"drives": ("OA", "EC"), "ranges": {"OA": ("0 m", "2 m")}}, "expected an angle"),
     "no samples": ({"drives": ("OA", "EC"), "samples": 1}, "ask for 2 to"),
     "too many": ({"drives": ("OA", "EC"), "samples": 10**9}, "ask for 2 to"),

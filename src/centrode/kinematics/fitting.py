@@ -26,7 +26,7 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
     label = max(residuals, key=lambda name: residuals[name][0])
     value, angular = residuals[label]
     if value > RESIDUAL_TOLERANCE:
-        if structure.drives > max(structure.generic_mobility, 1):
+        if 1 <= structure.generic_mobility < structure.drives:
             # the drives contradict each other: that is what is wrong, not a length
             raise InputError(
                 "[[drives]]",
@@ -40,12 +40,18 @@ def check_fit(kinematics: Kinematics, at: Positions) -> float:
             _("the initial position does not assemble: this constraint is off by {off:.3g} {unit}").format(
                 off=off, unit=unit
             ),
-            _(
-                "it repeats other constraints, so its dimensions must fit theirs: correct them or take it"
-                " away"
-            ),
+            _repair_of_misfit(structure.drives),
         )
     return value
+
+
+def _repair_of_misfit(drives: int) -> str:
+    if drives > 1:
+        # special dimensions move though the count says no: a drive may be one too many all the same
+        return _(
+            "it repeats other constraints, so its dimensions must fit theirs: correct them, or take it or a drive away"
+        )
+    return _("it repeats other constraints, so its dimensions must fit theirs: correct them or take it away")
 
 
 def check_touch(kinematics: Kinematics, at: Positions) -> None:

@@ -58,7 +58,9 @@ def grid_nodes(
         raise InputError(
             f"range {name}", _("a cylinder has a length above zero"), _("give the distance of its points")
         )
-    if not low <= start[name] <= high or low == high:
+    if low == high:
+        raise InputError(f"range {name}", _("it is empty"), _("ask for a range about the initial value"))
+    if not low <= start[name] <= high:
         raise InputError(
             f"range {name}",
             _("it has to hold the initial value, {value:.6g}").format(value=start[name]),

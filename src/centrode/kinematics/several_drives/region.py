@@ -119,6 +119,12 @@ def _refuse_what_is_not_computed(prepared: Ready) -> None:
 
 def _two_drives(mechanism: Mechanism, drives: Sequence[str] | None) -> tuple[str, str]:
     names = [drive.id for drive in mechanism.drives]
+    if len(names) < 2:
+        raise InputError(
+            "[[drives]]",
+            _("a region needs two drives, the mechanism has one"),
+            _("ask for the limits of its drive"),
+        )
     chosen = names if drives is None else [named_drive(mechanism, name, "drives").id for name in drives]
     if len(chosen) != 2 or chosen[0] == chosen[1]:
         raise InputError(
