@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from statistics import median
 
 import numpy as np
@@ -74,7 +74,7 @@ def _reduced(name: str, paths: tuple[str, ...], point: str) -> Iterator[Row]:
         )
 
 
-def _two_threads(run: functools.partial[object], many: dict[str, Array]) -> float:
+def _two_threads(run: Callable[..., object], many: dict[str, Array]) -> float:
     """Elapsed time of one thread over that of two, median of paired runs."""
     ratios = []
     for _round in range(ROUNDS):
