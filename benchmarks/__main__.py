@@ -11,7 +11,7 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import cold, kernels, machine, motions, peer  # noqa: E402
+from benchmarks import cold, kernels, machine, motions, peer, sweeps  # noqa: E402
 from benchmarks.table import Row, print_section  # noqa: E402
 from centrode.algebra import machine_code  # noqa: E402
 
@@ -28,8 +28,10 @@ SECTIONS: Mapping[str, Section] = {
     "kernels": (
         f"Machine code, {kernels.LANES} mechanisms of {kernels.SAMPLES} samples, a position", kernels.kernels,
     ),
+    "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}
+NEED_COMPILER = {"kernels", "sweeps"}
 
 
 def main(wanted: list[str]) -> int:
@@ -43,7 +45,7 @@ def main(wanted: list[str]) -> int:
         if name in NEED_PEER and not peer.PRESENT:
             print(f"\n{title}\n  left out: {peer.MISSING}")
             continue
-        if name == "kernels" and not machine_code.PRESENT:
+        if name in NEED_COMPILER and not machine_code.PRESENT:
             print(f"\n{title}\n  left out: {kernels.MISSING}")
             continue
         print_section(title, measure())

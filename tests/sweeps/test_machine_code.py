@@ -252,6 +252,13 @@ def test_bits_do_not_hang_on_chunks_threads_or_the_cache(
     assert len(calls) > 3, "one chunk proves nothing"
 
 
+@pytest.mark.parametrize("threads", [0, 1000, True, "two", 1.0])
+def test_threads_are_counted(threads: Any) -> None:
+    mechanism, vary = open_and_whole()
+    with pytest.raises(ct.InputError, match="is no number of threads; give a whole number"):
+        ct.sweep(mechanism, vary, "angle", 3, threads=threads)
+
+
 def test_machine_code_is_chosen_where_it_pays(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism, vary = open_and_whole()
     assert ct.sweep(mechanism, vary, "angle", 37).attrs["executor"] == ARRAYS

@@ -7,8 +7,10 @@ import sys
 
 import pytest
 
+from centrode.algebra import machine_code
 from centrode.sweeps import limits
 
+COMPILED = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
 PROBE = """
 import resource, sys
 import centrode as ct
@@ -18,7 +20,7 @@ def run(count):
     mechanism = ct.example(sys.argv[3])
     own = ct.value_at(mechanism, "links.OA.length")
     ranges = {"links.OA.length": (0.98 * own, 1.02 * own, count)}
-    return ct.sweep(mechanism, ct.grid(ranges), "position", int(sys.argv[2]), reduce="range")
+    return ct.sweep(mechanism, ct.grid(ranges), "position", int(sys.argv[2]), reduce="range", executor=sys.argv[4])
 run(2)
 before = peak()
 data = run(int(sys.argv[1]))
@@ -26,10 +28,10 @@ print(peak() - before, sum(v.nbytes for v in data.variables.values()))
 """
 
 
-def grown(mechanisms: int, samples: int, name: str) -> tuple[int, int]:
+def grown(mechanisms: int, samples: int, name: str, executor: str) -> tuple[int, int]:
     """Bytes by which the peak grew, and those of the result."""
     done = subprocess.run(
-        [sys.executable, "-c", PROBE, str(mechanisms), str(samples), name],
+        [sys.executable, "-c", PROBE, str(mechanisms), str(samples), name, executor],
         capture_output=True,
         encoding="utf-8",
         check=True,
@@ -42,10 +44,15 @@ def grown(mechanisms: int, samples: int, name: str) -> tuple[int, int]:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="peak memory is asked of resource, which Windows lacks")
 @pytest.mark.parametrize(
-    ("mechanisms", "samples", "name"),
-    [(6_000, 37, "crank-rocker"), (400, 2_000, "crank-rocker"), (400, 37, "third-class-triad")],
+    ("mechanisms", "samples", "name", "executor"),
+    [
+        (6_000, 37, "crank-rocker", "arrays"),
+        (400, 2_000, "crank-rocker", "arrays"),
+        (400, 37, "third-class-triad", "arrays"),
+        pytest.param(500_000, 37, "six-bar-press", "machine code", marks=COMPILED),
+    ],
 )
-def test_memory_is_bounded(mechanisms: int, samples: int, name: str) -> None:
+def test_memory_is_bounded(mechanisms: int, samples: int, name: str, executor: str) -> None:
     """Chunks are full: with more mechanisms there are more of them, not greater ones."""
-    more, result = grown(mechanisms, samples, name)
+    more, result = grown(mechanisms, samples, name, executor)
     assert more < limits.WORKING_SET + limits.BLOCK_BYTES + result

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import importlib
 from collections.abc import Mapping
 from typing import TypeAlias
 
@@ -11,16 +13,18 @@ import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
-from centrode.kinematics.compiled.many import solve_many
 from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import Progress, asked_span
-from centrode.kinematics.spans import span_at
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.solve import Progress, Solved, asked_span, solve
+from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.dimensions import Dimensions, dimensions_of
 
 Values: TypeAlias = Mapping[str, npt.ArrayLike]
+
+# what machine code needs is not loaded for one motion
+_many = functools.partial(importlib.import_module, "centrode.kinematics.compiled.many")
 
 
 def motion(
@@ -67,7 +71,16 @@ def motion(
         span = asked_span(prepared, samples, start, stop)
     else:
         span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
-    return dataset_of(solve_many(prepared, span, numbers, lanes, progress), vary)
+    return dataset_of(_solved(prepared, span, numbers, lanes, progress), vary)
+
+
+def _solved(
+    ready: Ready, span: Span, numbers: Dimensions | None, lanes: int, progress: Progress | None
+) -> Solved:
+    if numbers is None:
+        return solve(ready, span, progress=progress)
+    found: Solved = _many().solve_many(ready, span, numbers, lanes, progress)
+    return found
 
 
 def _batch(mechanism: Mechanism, vary: Values | None) -> tuple[Dimensions | None, int]:

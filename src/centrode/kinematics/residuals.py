@@ -50,7 +50,8 @@ def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[
     worst = np.zeros(samples.status.shape)
     greatest: dict[Kept, float] = {}
     with np.errstate(all="ignore"):
-        for kept, found in each_residual(kinematics, ARRAYS, at, kinematics.numbers.scale):
+        for kept, size, angular in each_residual(kinematics, ARRAYS, at):
+            found = size / (1.0 if angular else kinematics.numbers.scale)
             worst = np.maximum(worst, found)
             greatest[kept] = float(np.nanmax(found, initial=0.0))
     if samples.status.any():
@@ -58,18 +59,15 @@ def residuals(kinematics: Kinematics, samples: Samples, at: Positions) -> tuple[
     return worst, max(greatest, key=greatest.__getitem__)
 
 
-def each_residual(
-    kinematics: Kinematics, m: Namespace, at: Positions, scale: Number
-) -> Iterator[tuple[Kept, Number]]:
-    """Every constraint, drives included, with the size of its residual, over any algebra."""
+def each_residual(kinematics: Kinematics, m: Namespace, at: Positions) -> Iterator[tuple[Kept, Number, bool]]:
+    """Every constraint, drives included, with the size of its residual over any algebra, and whether it has no unit."""
     numbers, space = kinematics.numbers, kinematics.numbers.space
     for constraint in kinematics.structure.constraints:
-        unit = 1.0 if constraint.angular else scale
         size = [m.abs(r) for r in constraint.residual(m, numbers, at)]
-        yield constraint, functools.reduce(m.max, size) / unit
+        yield constraint, functools.reduce(m.max, size), constraint.angular
     for link in kinematics.structure.mechanism.links:
         stretch = [m.abs(x) for x in space.stretch(space.attitude(at.poses[link]))]
-        yield UnitLength(link), functools.reduce(m.max, stretch)
+        yield UnitLength(link), functools.reduce(m.max, stretch), True
 
 
 def open_what_does_not_close(samples: Samples, residual: Array) -> None:

@@ -50,6 +50,16 @@ def check_executor(name: object) -> str:
     return name
 
 
+def check_threads(given: object) -> int:
+    """A number of threads; InputError for any other than 1 to `limits.THREADS`."""
+    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= limits.THREADS:
+        what = _("{count} is no number of threads").format(count=shown(given))
+        raise InputError(
+            "threads", what, _("give a whole number from 1 to {most}").format(most=limits.THREADS)
+        )
+    return given
+
+
 def executor_of(name: str, task: Task, design: Design, threads: int = 1) -> tuple[Executor, str]:
     """The executor of a name for a task, and what a result says of it.
 

@@ -11,8 +11,11 @@ BLOCK_POSITIONS = 2_000_000
 BLOCKS_OF_KERNELS = 32
 """How many times as many positions stand in a block that machine code computes."""
 
-WORTH_COMPILING = 200_000
+WORTH_COMPILING = 100_000
 """Positions (nodes of the mesh, if they are more) from which on "auto" takes machine code."""
+
+THREADS = 256
+"""Threads of one sweep."""
 
 KERNEL_LANES = 1 << 16
 """Mechanisms that machine code computes at once."""

@@ -23,17 +23,16 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
 from centrode.errors import Status
-from centrode.kinematics.compiled.judging import Judging, scan_of
-from centrode.kinematics.compiled.traced import Traced, Untraceable, centre_of, traced
-from centrode.kinematics.compiled.variables import PARAMETER, SCALE, Varied, boxed, inputs_of, varied_of
+from centrode.kinematics.compiled.judging import scan_of
+from centrode.kinematics.compiled.traced import Untraceable, traced
+from centrode.kinematics.compiled.variables import PARAMETER, varied_of
 from centrode.kinematics.residuals import CLOSED
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
 from centrode.sweeps import limits
 from centrode.sweeps.arrays import ArraysExecutor, Task
 from centrode.sweeps.designs import Rows
-from centrode.sweeps.folds import Folds
-from centrode.sweeps.slopes import Slopes
+from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
 
 Array: TypeAlias = npt.NDArray[np.float64]
 AnyArray: TypeAlias = npt.NDArray[Any]
@@ -42,8 +41,10 @@ Values: TypeAlias = dict[str, Array]
 
 m = EXPRESSIONS
 
-RESIDUAL, SLACK = "worst residual", "slack at samples"
 NUMBER = 8
+"""Bytes of a float64."""
+COPIES = 4
+"""Of what a mechanism has while samples are passed: before, after, as kernels are given it."""
 
 
 @dataclass(frozen=True)
@@ -52,17 +53,16 @@ class MachineCodeExecutor:
 
     Attributes
     ----------
-    varied : the numbers that vary as variables
-    traced : the motion at one sample
+    task : what is computed
+    asked : the same as expressions
     threads : that share the mechanisms
     kernels : "machine code"; "arrays" runs the same scans on NumPy
     """
 
     task: Task
-    varied: Varied
-    traced: Traced
-    threads: int = 1
-    kernels: str = MACHINE_CODE
+    asked: Expressed
+    threads: int
+    kernels: str
     blocks = limits.BLOCKS_OF_KERNELS
     arrays = ArraysExecutor()
 
@@ -81,21 +81,22 @@ class MachineCodeExecutor:
         if kernels == MACHINE_CODE and not machine_code.PRESENT:
             raise Untraceable(mark("llvmlite is not installed"))
         varied = varied_of(numbers, values)
-        found = cls(task, varied, traced(task.ready, task.span, varied), threads, kernels)
+        asked = Expressed(task, varied, traced(task.ready, task.span, varied), kernels, threads)
         if task.asked.slopes:
-            found._slopes  # noqa: B018 - what cannot be differentiated is told before anything is computed
-        return found
+            _ = asked.slopes  # what cannot be differentiated is told before anything is computed
+        return cls(task, asked, threads, kernels)
 
     def lanes(self, task: Task) -> int:
         """How many mechanisms are computed together."""
-        numbers = len(self.varied.names) + 2 * len(self._columns) + 20 * (1 + len(self._judging.links))
         written = 0 if task.asked.reduced else sum(column.bytes for column in task.asked.columns)
-        return max(1, min(limits.KERNEL_LANES, limits.WORKING_SET // (NUMBER * numbers + written)))
+        return max(
+            1, min(limits.KERNEL_LANES, limits.WORKING_SET // (COPIES * NUMBER * self.asked.states + written))
+        )
 
     def run(self, task: Task, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]) -> None:
         """Fill in all columns for the mechanisms of these dimensions."""
-        rows = self.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
-        judged = self._judging.judge(rows)
+        rows = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
+        judged = self.asked.judging.judge(rows)
         rows |= judged.values
         clear = judged.clear.copy()
         if clear.any():
@@ -120,71 +121,14 @@ class MachineCodeExecutor:
         for name, part in parts.items():
             results[name][lanes] = part
 
-    # what is asked for, as nodes
-
-    @cached_property
-    def _folds(self) -> Folds:
-        return Folds(len(self.task.span.parameter))
-
-    @cached_property
-    def _columns(self) -> dict[str, list[Node]]:
-        """Column -> its numbers: of a sample, or reduced."""
-        asked, solved = self.task.asked, self.traced.solved
-        if asked.formulas:
-            given = {path: boxed([variable(path)]) for path in self.task.paths}
-            return {
-                formula.name: [as_node(formula.traced(self._folds, solved, given))]
-                for formula in asked.formulas
-            }
-        found = {output.name: output.of(solved).ravel().tolist() for output in asked.outputs}
-        if asked.reduction is None:
-            return {name: [as_node(x) for x in nodes] for name, nodes in found.items()}
-        return {
-            name: [as_node(self._folds.fold(asked.reduction, x)) for x in nodes]
-            for name, nodes in found.items()
-        }
-
-    @cached_property
-    def _slopes(self) -> Slopes:
-        return Slopes.of(self.task.paths, self.varied, self.traced, self._folds)
-
-    @cached_property
-    def _final(self) -> dict[str, list[Node]]:
-        """Reduced columns, and those of derivatives, from the folds."""
-        found = dict(self._columns)
-        for name, slope in self.task.asked.slopes.items():
-            found[slope] = [x for node in found[name] for x in self._slopes.of_node(node).values()]
-        return found
-
-    @cached_property
-    def _judging(self) -> Judging:
-        residual = as_node(self.traced.solved.residual[0, 0])
-        nodes = [node for column in self._columns.values() for node in column]
-        nodes += [fold.value for fold in self._folds.found.values()]
-        used = frozenset(Graph({str(k): node for k, node in enumerate([*nodes, residual])}).variables)
-        links = tuple(link for link in self.traced.turning if centre_of(link) in used)
-        names = tuple(dict.fromkeys([*self.varied.names, SCALE]))
-        return Judging(self.traced, self.task.span.parameter, names, links, self.kernels, self.threads)
-
-    @cached_property
-    def _judges(self) -> dict[str, Node]:
-        """What is looked at in every sample: greatest residual, least slack of radicands."""
-        found = {RESIDUAL: as_node(self.traced.solved.residual[0, 0])}
-        slack = self._judging.slack_at_samples
-        return found if slack is None else {**found, SLACK: slack}
-
-    @cached_property
-    def _inputs(self) -> Values:
-        return inputs_of(self.task.span)
-
     # one number a motion
 
     def _reduced(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
         """Fill in what is reduced for the mechanisms at some places; returns which of them stay clear."""
         lanes = len(next(iter(rows.values())))
         rows = dict(rows)
-        columns = self._final
-        for depth in range(self._folds.passes):
+        columns = self.asked.final
+        for depth in range(self.asked.folds.passes):
             rows |= self._passed(depth, rows, lanes)
         graph = Graph(
             {f"{name} {k}": node for name, nodes in columns.items() for k, node in enumerate(nodes)}
@@ -198,15 +142,15 @@ class MachineCodeExecutor:
 
     def _passed(self, depth: int, rows: Values, lanes: int) -> Values:
         """The states after a pass over the samples."""
-        parts = [fold.state for fold in self._folds.at_depth(depth)]
+        parts = [fold.state for fold in self.asked.folds.at_depth(depth)]
         if self.task.asked.slopes:
-            parts += [self._slopes.of_fold(fold) for fold in self._folds.at_depth(depth)]
+            parts += [self.asked.slopes.of_fold(fold) for fold in self.asked.folds.at_depth(depth)]
         if depth == 0:
-            parts.append(_judging_states(self._judges))
+            parts.append(_judging_states(self.asked.judges))
         reduction = together(*parts)
-        scan = scan_of(reduction, tuple(rows), tuple(self._inputs))
+        scan = scan_of(reduction, tuple(rows), tuple(self.asked.inputs))
         parameters = np.stack([rows[name] for name in scan.parameters]) if scan.parameters else None
-        inputs = np.stack([self._inputs[name] for name in scan.inputs]) if scan.inputs else None
+        inputs = np.stack([self.asked.inputs[name] for name in scan.inputs]) if scan.inputs else None
         start = np.repeat([[value] for value in reduction.start.values()], lanes, axis=1)
         # nothing that moves: the samples are counted all the same
         steps = None if scan.inputs else len(self.task.span.parameter)
@@ -226,11 +170,11 @@ class MachineCodeExecutor:
     def _written_scan(self) -> Scan:
         """Lanes are samples, steps are mechanisms: every output is written as one stream."""
         outputs = {
-            f"{name} {k}": node for name, nodes in self._columns.items() for k, node in enumerate(nodes)
+            f"{name} {k}": node for name, nodes in self.asked.columns.items() for k, node in enumerate(nodes)
         }
-        outputs |= self._judges
+        outputs |= self.asked.judges
         used = Graph(outputs).variables
-        along = tuple(name for name in self._inputs if name in used or name == PARAMETER)
+        along = tuple(name for name in self.asked.inputs if name in used or name == PARAMETER)
         return Scan(along, tuple(name for name in used if name not in along), outputs)
 
     def _written(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
@@ -238,7 +182,7 @@ class MachineCodeExecutor:
         scan, samples = self._written_scan, len(self.task.span.parameter)
         lanes = len(next(iter(rows.values())))
         places = np.arange(len(results["samples_ok"]))[at]
-        along = np.stack([self._inputs[name] for name in scan.parameters])
+        along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         steps = max(1, limits.KERNEL_BUFFER // (NUMBER * len(scan.outputs) * samples))
         buffer = np.empty((len(scan.outputs), min(steps, lanes), samples))
         clear = np.empty(lanes, dtype=bool)
@@ -257,13 +201,13 @@ class MachineCodeExecutor:
         whole = slice(int(places[0]), int(places[-1]) + 1)
         where: Any = whole if whole.stop - whole.start == len(places) else places
         row = 0
-        for name, nodes in self._columns.items():
+        for name, nodes in self.asked.columns.items():
             target = results[name].reshape(*results[name].shape[:2], len(nodes))
             for k in range(len(nodes)):
                 target[where, :, k] = out[row]
                 row += 1
         residual = out[row].max(axis=1)
-        slack = out[row + 1].min(axis=1) if SLACK in self._judges else None
+        slack = out[row + 1].min(axis=1) if SLACK in self.asked.judges else None
         return self._judged(residual, slack, where, results)
 
 

@@ -23,7 +23,7 @@ from centrode.sweeps.asked import Reduce, asked_of, with_slopes
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import Grid, design_of
 from centrode.sweeps.drawing import Sample
-from centrode.sweeps.executors import Executor, check_executor, executor_of
+from centrode.sweeps.executors import Executor, check_executor, check_threads, executor_of
 from centrode.sweeps.results import Frame, InMemory, Kept, frame_of, told
 from centrode.sweeps.store import opened, read
 from centrode.sweeps.tallies import tally_of
@@ -90,7 +90,7 @@ def sweep(
     paths = tuple(design.coordinates)
     asked = asked_of(motion, design, outputs, reduce)
     task = Task(prepared, span, with_slopes(asked, len(paths)) if gradient else asked, paths)
-    chosen, told_of_it = executor_of(name, task, design, threads)
+    chosen, told_of_it = executor_of(name, task, design, check_threads(threads))
     units = {path: unit_of(mechanism, path) for path in design.coordinates}
     frame = frame_of(motion, design, units, task.asked, told_of_it)
     blocks = _blocks(frame, task, chosen)

@@ -42,7 +42,7 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
 Lanes: TypeAlias = npt.NDArray[np.intp]
 
-WORTH_COMPILING = 300_000
+WORTH_COMPILING = 200_000
 """Samples, or nodes of the mesh if they are more, of all mechanisms from which on compiling pays."""
 AT_ONCE = 256
 """Mechanisms between two reports of progress."""
@@ -52,11 +52,11 @@ ROOMS = ("all_points", "angles", "slides", "spins", "contacts", "residual")
 
 
 def solve_many(
-    ready: Ready, span: Span, numbers: Dimensions | None, lanes: int, progress: Progress | None = None
+    ready: Ready, span: Span, numbers: Dimensions, lanes: int, progress: Progress | None = None
 ) -> Solved:
     """Motion of a batch at the samples of a span: what `solve` gives."""
     places = max(len(span.parameter), len(mesh_of(ready.kinematics.path, span.parameter)))
-    if numbers is None or lanes * places < WORTH_COMPILING or not machine_code.PRESENT:
+    if lanes * places < WORTH_COMPILING or not machine_code.PRESENT:
         return solve(ready, span, numbers, lanes, progress)
     varied = varied_of(numbers, {})
     try:

@@ -7,6 +7,7 @@ which holds for mechanisms without events alone: `judging` tells which these are
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -204,9 +205,7 @@ def _solved(parts: _Parts, span: Span, varied: Varied) -> Solved:
         kinematics, layout, parts.columns[0], parts.angles[0], boxed([parameter])[0], EXPRESSIONS
     )
     points = parts.columns[:, : layout.first_attitude]
-    worst: Operand = 0.0
-    for _kept, size in each_residual(kinematics, EXPRESSIONS, at, varied.scale):
-        worst = EXPRESSIONS.max(worst, size) if not _zero(worst) else size
+    worst = _worst(kinematics, at, varied.scale)
     wheels = [c for c in kinematics.structure.constraints if isinstance(c, Contact)]
     contacts = [x for c in wheels for x in contact_point(c, EXPRESSIONS, kinematics.numbers, at)]
     start = parts.ready.assembled
@@ -228,5 +227,12 @@ def _solved(parts: _Parts, span: Span, varied: Varied) -> Solved:
     )
 
 
-def _zero(x: Operand) -> bool:
-    return isinstance(x, float) and x == 0.0
+def _worst(kinematics: Kinematics, at: Positions, scale: Operand) -> Operand:
+    """The greatest residual. Lengths are divided together: a greater number has no lesser quotient, to the last bit."""
+    found: dict[bool, Operand] = {}
+    for _kept, size, angular in each_residual(kinematics, EXPRESSIONS, at):
+        found[angular] = EXPRESSIONS.max(found[angular], size) if angular in found else size
+    if False in found:
+        found[False] = found[False] / scale
+    least: Operand = 0.0
+    return functools.reduce(EXPRESSIONS.max, found.values(), least)
