@@ -17,15 +17,21 @@ from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Meet, Rail, RigidPoint, Rod, TurnedLink, TwoPointLink
 from centrode.structure.positions import FRAME
 
-components = lazy_loader.load("pylinkage.components")
-actuators = lazy_loader.load("pylinkage.actuators")
-dyads = lazy_loader.load("pylinkage.dyads")
-simulation = lazy_loader.load("pylinkage.simulation")
-solver = lazy_loader.load("pylinkage.solver.simulation")
-
 Array = npt.NDArray[np.float64]
 PRESENT = find_spec("pylinkage") is not None and find_spec("numba") is not None
 MISSING = "pylinkage and numba are not installed: pip install 'centrode[benchmarks]'"
+
+
+def _loaded(module: str) -> Any:
+    # a module of a package that is not there cannot even be named
+    return lazy_loader.load(f"pylinkage.{module}") if PRESENT else None
+
+
+components = _loaded("components")
+actuators = _loaded("actuators")
+dyads = _loaded("dyads")
+simulation = _loaded("simulation")
+solver = _loaded("solver.simulation")
 
 
 class CannotBuild(Exception):
