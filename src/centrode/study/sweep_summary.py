@@ -36,14 +36,27 @@ def sweep_rows(data: xr.Dataset) -> Rows:
                 whole=whole, some=some, none=none
             ),
         ),
-        (_("worst residual"), _("{value:.1e} of the greatest length").format(value=worst)),
-        (_("executor"), told["executor"]),
+        (_("worst residual"), _worst(worst)),
+        (_("executor"), _executor(told["executor"])),
     ]
     extremes = list(_extremes(data))
     rows += extremes[:SHOWN]
     if len(extremes) > SHOWN:
         rows.append(("", _("and {count} more").format(count=len(extremes) - SHOWN)))
     return rows
+
+
+def _worst(residual: float) -> str:
+    # nothing is ok, so nothing has a residual
+    if math.isnan(residual):
+        return _("none")
+    return _("{value:.1e} of the greatest length").format(value=residual)
+
+
+def _executor(told: str) -> str:
+    """The executor as it is called, with the reason why it is this one in the language of messages."""
+    name, _bracket, reason = told.partition(" (")
+    return f"{name} ({_(reason[:-1])})" if reason else name
 
 
 def _extremes(data: xr.Dataset) -> Iterator[tuple[str, str]]:
