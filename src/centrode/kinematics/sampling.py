@@ -47,13 +47,6 @@ class Samples:
     status: npt.NDArray[np.int8]
     followed: set[str] = field(default_factory=set)
 
-    @classmethod
-    def of_layout(cls, layout: Layout, lanes: int, samples: int) -> Samples:
-        """Room for samples."""
-        columns = np.empty((ORDERS, layout.width, lanes, samples))
-        angles = np.empty((ORDERS, len(layout.angles), lanes, samples))
-        return cls(layout, columns, angles, np.zeros((lanes, samples), dtype=np.int8))
-
     def of(self, rows: slice) -> Samples:
         """A view of some mechanisms of the batch."""
         return Samples(self.layout, self.columns[:, :, rows], self.angles[:, :, rows], self.status[rows])

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple, TypeAlias
 
-from centrode.geometry.plane import Vector, place, reversed_rotor, turned
+from centrode.geometry.plane import Vector, reversed_rotor, turned
 from centrode.geometry.space import Place, Pose
 from centrode.structure.dimensions import Dimensions
 
@@ -68,12 +68,6 @@ class Positions:
 def mapped_pose(pose: Pose, function: Callable[[Number], Number]) -> Pose:
     """The same pose with every number replaced by function(number), in their order."""
     return type(pose)(*(tuple(map(function, vector)) for vector in pose))
-
-
-def line_of(numbers: Dimensions, at: Positions, guide: str, on: str) -> tuple[Vector, Vector]:
-    """Point and direction of a guide's line as it lies now."""
-    pose = at.poses[on]
-    return place(pose, numbers.through[guide]), turned(numbers.direction[guide], pose.rotor)
 
 
 def angle_between(m: Namespace, rotor: Vector, reference: Vector) -> Number:
