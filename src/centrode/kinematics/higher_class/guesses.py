@@ -14,6 +14,7 @@ from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
 from centrode.kinematics.higher_class.newton import newton
 from centrode.kinematics.higher_class.seeking import closing, scattered
+from centrode.kinematics.higher_class.surroundings import within
 from centrode.kinematics.higher_class.system import System
 from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.sides import is_measured
@@ -70,7 +71,7 @@ def bound_higher(system: System, at: Positions, bounded: Positions) -> None:
     known = bounded.mapped(
         lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x
     )
-    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).mapped(_single)
+    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).mapped(within(_single))
     bounded.points.update(found.points)
     bounded.poses.update(found.poses)
     bounded.angles.update(found.angles)
@@ -82,8 +83,6 @@ def _floating(x: Number) -> float:
 
 def _single(x: Number) -> Number:
     """One number from an array of one."""
-    if isinstance(x, Rounded):
-        return Rounded(_single(x.value), _single(x.bound))
     return x if np.ndim(x) == 0 else x[0]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, cast
 
@@ -98,30 +99,35 @@ def plain(number: Number) -> Number:
     return number.value if isinstance(number, Jet | Rounded) else number
 
 
+def within(function: Callable[[Number], Number]) -> Callable[[Number], Number]:
+    """A function of plain numbers made one of jets and bounded numbers, part by part."""
+
+    def apply(x: Number) -> Number:
+        if isinstance(x, Jet):
+            return Jet([apply(c) for c in x.coefficients])
+        if isinstance(x, Rounded):
+            return Rounded(apply(x.value), apply(x.bound))
+        return function(x)
+
+    return apply
+
+
 def flattened(at: Positions, shape: tuple[int, ...]) -> Positions:
     """Positions with every array spread over the shape and laid out in one row; floats stay."""
 
     def flat(x: Number) -> Number:
-        if isinstance(x, Jet):
-            return Jet([flat(c) for c in x.coefficients])
-        if isinstance(x, Rounded):
-            return Rounded(flat(x.value), flat(x.bound))
         return x if np.ndim(x) == 0 else np.broadcast_to(x, shape).reshape(-1)
 
-    return at.mapped(flat)
+    return at.mapped(within(flat))
 
 
 def shaped(at: Positions, names: Newton, shape: tuple[int, ...], into: Positions) -> None:
     """Add the group's points and links, laid out in one row, to positions of a shape."""
 
     def fold(x: Number) -> Number:
-        if isinstance(x, Jet):
-            return Jet([fold(c) for c in x.coefficients])
-        if isinstance(x, Rounded):
-            return Rounded(fold(x.value), fold(x.bound))
         return np.reshape(x, shape) if np.ndim(x) else x
 
-    folded = at.mapped(fold)
+    folded = at.mapped(within(fold))
     for name in names.points:
         into.points[name] = folded.points[name]
     for name in names.links:
