@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.model.sphere import unit_vector
-from centrode.present.scene import SIGN_INCHES, box
+from centrode.present.scene import box
+from centrode.present.sheet import Sheet
 
 if TYPE_CHECKING:
     import xarray
@@ -23,45 +24,17 @@ WHOLE = 0.7  # extent of a linkage from which on the whole sphere is drawn
 ABOVE = np.array([0.55, 0.35, 0.45])  # added to the direction of sight: a view straight on shows no depth
 
 
-@dataclass(frozen=True)
-class Globe:
-    """Places over a spherical motion, ready to draw.
+@dataclass(frozen=True, kw_only=True)
+class Globe(Sheet):
+    """A spherical motion on its sheet; the tracks are unit vectors (sample, 3).
 
     Attributes
     ----------
-    mechanism : Mechanism
-        The description.
-    tracks : mapping of point -> (sample, 3)
-        Unit vectors; NaN where a point has no position.
     view : (3, 3)
         To the right, up and towards the eye, as rows.
-    low, high : (2)
-        Corners of the drawing.
-    inches : float
-        Length on paper of its longer side.
     """
 
-    mechanism: Mechanism
-    tracks: Mapping[str, Array]
     view: Array
-    low: Array
-    high: Array
-    inches: float = 6.0
-
-    @property
-    def extent(self) -> float:
-        """The longer side of the drawing."""
-        return float(np.max(self.high - self.low))
-
-    @property
-    def sign(self) -> float:
-        """Radius of a hinge's circle; the other signs are measured by it."""
-        return SIGN_INCHES / self.inches * self.extent
-
-    def at(self, sample: int) -> dict[str, Array]:
-        """Unit vectors at a sample, of the points that have a place."""
-        places = {name: track[sample] for name, track in self.tracks.items()}
-        return {name: place for name, place in places.items() if np.isfinite(place).all()}
 
     def flat(self, places: Array) -> Array:
         """Places on paper (..., 2) of unit vectors (..., 3)."""
@@ -121,7 +94,7 @@ def globe_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Globe:
     low, high = box([places @ view[:2].T for places in tracks.values()])
     if float(np.max(high - low)) > WHOLE:
         low, high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
-    return Globe(mechanism, tracks, view, low, high)
+    return Globe(mechanism=mechanism, tracks=tracks, view=view, low=low, high=high)
 
 
 def view_of(tracks: Mapping[str, Array]) -> Array:

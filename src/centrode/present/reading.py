@@ -40,7 +40,10 @@ def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene:
     travels = {
         guide.id: factor * span(dataset["slide"].sel(guide=guide.id).to_numpy()) for guide in mechanism.guides
     }
-    scene = Scene(mechanism, tracks, turns, travels, *box(list(tracks.values())), factor)
+    low, high = box(list(tracks.values()))
+    scene = Scene(
+        mechanism=mechanism, tracks=tracks, turns=turns, travels=travels, low=low, high=high, factor=factor
+    )
     lines = [scene.guide_line(guide, slice(None)) for guide in mechanism.guides if guide.on != "frame"]
     ends = [end for line in lines if line is not None for end in line]
     low, high = box([*tracks.values(), *ends, *reaches(scene)])

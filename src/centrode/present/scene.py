@@ -9,59 +9,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from centrode.present.sheet import Sheet
+
 if TYPE_CHECKING:
-    from centrode.model.mechanism import Guide, Link, Mechanism
+    from centrode.model.mechanism import Guide, Link
 
 Array = NDArray[np.float64]
 Samples = int | slice
-SIGN_INCHES = 0.07  # radius of a hinge's circle on paper
 FLATTEST = 0.3  # least ratio of the sides of a drawing
 
 
-@dataclass(frozen=True)
-class Scene:
-    """Positions over a motion, ready to draw.
+@dataclass(frozen=True, kw_only=True)
+class Scene(Sheet):
+    """A planar motion on its sheet, in display units of length; points of the frame are rows without change.
 
     Attributes
     ----------
-    mechanism : Mechanism
-        The description.
-    tracks : mapping of point -> (sample, 2) [display unit of length]
-        NaN where a point has no position; points of the frame are rows without change.
     turns : mapping of link -> (sample) [rad]
     travels : mapping of guide -> (2) [display unit of length]
         The least and the greatest displacement along the guide.
-    low, high : (2) [display unit of length]
-        Corners of the box around everything.
     factor : float
         Display units of length in a metre.
-    inches : float
-        Length on paper of the longer side of the box.
     """
 
-    mechanism: Mechanism
-    tracks: Mapping[str, Array]
     turns: Mapping[str, Array]
     travels: Mapping[str, Array]
-    low: Array
-    high: Array
     factor: float
-    inches: float = 6.0
-
-    @property
-    def extent(self) -> float:
-        """The longer side of the box around everything."""
-        return float(np.max(self.high - self.low))
-
-    @property
-    def sign(self) -> float:
-        """Radius of a hinge's circle; the other signs are measured by it."""
-        return SIGN_INCHES / self.inches * self.extent
-
-    def at(self, sample: int) -> dict[str, Array]:
-        """Positions at a sample, of the points that have one."""
-        places = {name: track[sample] for name, track in self.tracks.items()}
-        return {name: place for name, place in places.items() if np.isfinite(place).all()}
 
     def carried(self, link: str, local: Sequence[float], sample: Samples) -> Array | None:
         """Where a place in a link's own axes is at a sample or samples; nothing if the link has no position."""
