@@ -7,15 +7,12 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
 from centrode.locale import _, mark
 
 
 @click.command(help=mark("Check a mechanism: mobility, loops, groups, plan."))
-@click.argument(
-    "mechanism",
-    metavar=mark("FILE_OR_EXAMPLE"),
-    help=mark("A TOML file, or the name of a built-in mechanism."),
-)
+@mechanism_argument
 def check(mechanism: str) -> None:
     """Print the structure of a mechanism; exit code 2 if it cannot be driven or does not assemble."""
     description = ct.load(mechanism)

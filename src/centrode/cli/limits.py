@@ -9,16 +9,13 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about as about_file
+from centrode.cli.arguments import mechanism_argument
 from centrode.cli.pairs import pairs
 from centrode.locale import _, mark, speaking
 
 
 @click.command(help=mark("Find the limits of one drive while the others are held."))
-@click.argument(
-    "mechanism",
-    metavar=mark("FILE_OR_EXAMPLE"),
-    help=mark("A TOML file, or the name of a built-in mechanism."),
-)
+@mechanism_argument
 @click.option(
     "--drive", metavar=mark("NAME"), help=mark("The drive that moves; needed where there are several.")
 )

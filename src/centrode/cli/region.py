@@ -10,6 +10,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
 from centrode.cli.pairs import pairs, ranges
 from centrode.cli.progress import Progress
 from centrode.errors import InputError
@@ -22,11 +23,7 @@ DEFAULT_FOLDER = "{name}-region"
 
 
 @click.command(help=mark("Compute the reachable region of two drives and draw it."))
-@click.argument(
-    "mechanism",
-    metavar=mark("FILE_OR_EXAMPLE"),
-    help=mark("A TOML file, or the name of a built-in mechanism."),
-)
+@mechanism_argument
 @click.option(
     "--drive",
     "drives",

@@ -11,6 +11,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
 from centrode.cli.progress import Progress
 from centrode.errors import MotionError
 from centrode.locale import _, mark, ngettext
@@ -22,11 +23,7 @@ DEFAULT_FOLDER = "{name}-result"
 
 
 @click.command(help=mark("Compute the motion of a mechanism and write tables and pictures."))
-@click.argument(
-    "mechanism",
-    metavar=mark("FILE_OR_EXAMPLE"),
-    help=mark("A TOML file, or the name of a built-in mechanism."),
-)
+@mechanism_argument
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
