@@ -15,7 +15,7 @@ from centrode.kinematics.ready import Ready
 from centrode.kinematics.several_drives.holding import Value, initial_values, named_drive, value_of
 from centrode.kinematics.several_drives.reach import limits_about
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import Drive, Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Ranges: TypeAlias = Mapping[str, tuple[Value, Value]]
@@ -37,6 +37,26 @@ def grid_nodes(
     samples: int,
 ) -> Array:
     """Evenly spaced values of a drive over its range, with its initial value among them."""
+    _check_asked(pair, ranges, samples)
+    start = initial_values(prepared)
+    drive = named_drive(prepared.mechanism, name, "ranges")
+    if ranges is not None and name in ranges:
+        low, high = sorted(value_of(prepared, drive, value, f"range {name}") for value in ranges[name])
+    elif drive.kind == "angle":
+        low, high = start[name] - np.pi, start[name] + np.pi
+    else:
+        low, high = _between_limits(prepared, name, {**start, **held})
+    _check_range(drive, start[name], low, high, unit_of(drive, prepared.kinematics.path.scale))
+    nodes = np.linspace(low, high, samples)
+    nearest = node_of(nodes, start[name])
+    if abs(nodes[nearest] - start[name]) > SAME * (high - low):
+        return np.union1d(nodes, [start[name]])
+    nodes[nearest] = start[name]
+    return nodes
+
+
+def _check_asked(pair: tuple[str, str], ranges: Ranges | None, samples: int) -> None:
+    """Refuse numbers of samples that make no grid, and ranges of what is not on it."""
     if isinstance(samples, bool) or not 2 <= samples <= MOST_NODES:
         raise InputError(
             _("samples"),
@@ -46,39 +66,28 @@ def grid_nodes(
     for given in ranges or {}:
         if given not in pair:
             raise InputError("ranges", _("{name} is not one of the two drives").format(name=given))
-    mechanism, start = prepared.mechanism, initial_values(prepared)
-    drive = named_drive(mechanism, name, "ranges")
-    if ranges is not None and name in ranges:
-        low, high = sorted(value_of(prepared, drive, value, f"range {name}") for value in ranges[name])
-    elif drive.kind == "angle":
-        low, high = start[name] - np.pi, start[name] + np.pi
-    else:
-        low, high = _between_limits(prepared, name, {**start, **held})
+
+
+def _check_range(drive: Drive, initial: float, low: float, high: float, unit: float) -> None:
+    """Refuse a range that is empty, too long, without the initial value, or of cylinders without a length."""
+    where = f"range {drive.id}"
     if drive.kind == "distance" and low <= 0.0:
-        raise InputError(
-            f"range {name}", _("a cylinder has a length above zero"), _("give the distance of its points")
-        )
+        raise InputError(where, _("a cylinder has a length above zero"), _("give the distance of its points"))
     if low == high:
-        raise InputError(f"range {name}", _("it is empty"), _("ask for a range about the initial value"))
-    if not low <= start[name] <= high:
+        raise InputError(where, _("it is empty"), _("ask for a range about the initial value"))
+    if not low <= initial <= high:
         raise InputError(
-            f"range {name}",
-            _("it has to hold the initial value, {value:.6g}").format(value=start[name]),
+            where,
+            _("it has to hold the initial value, {value:.6g}").format(value=initial),
             _("ask for a range about it"),
         )
-    turns = (high - low) / (tau * unit_of(drive, prepared.kinematics.path.scale))
+    turns = (high - low) / (tau * unit)
     if turns > MOST_TURNS * (1.0 + SAME):
         raise InputError(
-            f"range {name}",
+            where,
             _("it reaches too far: {turns:.3g} turns").format(turns=turns),
             _("ask for at most {most:g}").format(most=MOST_TURNS),
         )
-    nodes = np.linspace(low, high, samples)
-    nearest = node_of(nodes, start[name])
-    if abs(nodes[nearest] - start[name]) > SAME * (high - low):
-        return np.union1d(nodes, [start[name]])
-    nodes[nearest] = start[name]
-    return nodes
 
 
 def _between_limits(prepared: Ready, name: str, values: Mapping[str, float]) -> tuple[float, float]:
