@@ -9,8 +9,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.kinematics.counted_turns import Turns
 from centrode.kinematics.paths import Path
-from centrode.kinematics.turns import Turns
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

@@ -20,11 +20,11 @@ from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.continuation import Continuation, Rough
+from centrode.kinematics.counted_turns import counted
 from centrode.kinematics.evaluate import Kinematics, Reached
 from centrode.kinematics.mesh import largest_of, low_minima, sign_changes
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.roots import bracketed_roots
-from centrode.kinematics.turns import counted
 from centrode.structure.groups import Aim, Meet
 from centrode.structure.positions import Positions
 

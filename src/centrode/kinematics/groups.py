@@ -22,7 +22,7 @@ from centrode.geometry.plane import (
 )
 from centrode.geometry.space import Curve, Root
 from centrode.geometry.space import Pose as AnyPose
-from centrode.kinematics.turned import add_angle, difference_of, turn_link
+from centrode.kinematics.turned_links import add_angle, difference_of, turn_link
 from centrode.kinematics.wheels import (
     beside_track,
     rolloff_line,

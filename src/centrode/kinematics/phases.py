@@ -17,7 +17,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import Choices, Kinematics
 from centrode.kinematics.higher_class.guesses import guesses
-from centrode.kinematics.turned import turn_link
+from centrode.kinematics.turned_links import turn_link
 from centrode.kinematics.wheels import equation_at
 from centrode.locale import _
 from centrode.structure.constraints import Constraint

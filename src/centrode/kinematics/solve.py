@@ -24,7 +24,7 @@ from centrode.kinematics.residuals import Kept, open_what_does_not_close, residu
 from centrode.kinematics.sampling import ORDERS, Samples, sample, settle
 from centrode.kinematics.spans import Span, span_of
 from centrode.kinematics.spins import spins_of
-from centrode.kinematics.turning import Course, fill_angles, fill_slides
+from centrode.kinematics.unwound import Course, fill_angles, fill_slides
 from centrode.locale import _
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import Positions
