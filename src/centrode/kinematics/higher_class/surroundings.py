@@ -31,7 +31,7 @@ class Surroundings:
 
     kinematics: Kinematics
     group: int
-    hooks: Any
+    hooks: Callable[[Namespace, Array, Lanes], Hooks]
 
     @property
     def unit(self) -> float:
@@ -46,7 +46,7 @@ class Surroundings:
     def known(self, parameter: Jet, lanes: Lanes) -> Positions:
         """What the group's equations need of what is known before it, at a parameter given as a jet."""
         used = self.kinematics.taken(lanes)
-        hooks: Hooks = self.hooks(JETS, parameter.value, lanes)
+        hooks = self.hooks(JETS, parameter.value, lanes)
         with np.errstate(all="ignore"):
             at = used.frame(JETS, parameter)
             used.advance(at, range(self.group), JETS, hooks)
