@@ -193,7 +193,10 @@ class _Search:
     def _reached(self) -> Mask:
         low, high = self.tour.low, self.tour.high
         turns = (0.0, -tau) if self.tour.angular else (0.0,)
-        return np.any([(low <= self.nodes + turn) & (self.nodes + turn <= high) for turn in turns], axis=0)
+        reached: Mask = np.any(
+            [(low <= self.nodes + turn) & (self.nodes + turn <= high) for turn in turns], axis=0
+        )
+        return reached
 
     def _branch(self, lane: int, run: int) -> Branch:
         groups = self.tour.prepared.structure.groups

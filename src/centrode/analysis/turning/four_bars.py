@@ -143,7 +143,7 @@ def _kind(mechanism: Mechanism, bodies: tuple[str, ...], shortest: int, verdict:
 
 def _distance(numbers: Dimensions, body: str, first: str, second: str) -> float:
     """Distance of two points of a body [m], on the sphere their arc [rad]."""
-    local: Mapping[str, tuple[float, float]] = numbers.frame if body == FRAME else numbers.local[body]  # type: ignore[assignment]
+    local: Mapping[str, tuple[float, float]] = numbers.frame if body == FRAME else numbers.local[body]
     space = numbers.space
     one, other = (space.place(ARRAYS, space.at_rest, local[point]) for point in (first, second))
     return float(space.distance(ARRAYS, one, other))

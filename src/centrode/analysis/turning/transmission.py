@@ -73,10 +73,10 @@ def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
 def _between_rods(sphere: bool, rods: list[Any], at: Positions) -> Pair:
     one, other = ((at.points[rod.point], at.points[rod.centre]) for rod in rods)
     if sphere:
-        first, second = (tangent(pin, centre) for pin, centre in (one, other))
-        return dot(first, second), dot(one[0], cross(first, second))
-    first, second = (subtract(centre, pin) for pin, centre in (one, other))
-    return plane_dot(first, second), plane_cross(first, second)
+        arc, next_arc = (tangent(pin, centre) for pin, centre in (one, other))
+        return dot(arc, next_arc), dot(one[0], cross(arc, next_arc))
+    line, next_line = (subtract(centre, pin) for pin, centre in (one, other))
+    return plane_dot(line, next_line), plane_cross(line, next_line)
 
 
 def _to_normal(kinematics: Kinematics, rod: Any, line: Locus, carriage: str | None, at: Positions) -> Pair:
