@@ -19,6 +19,7 @@ from centrode.cli.check import check
 from centrode.cli.examples import examples
 from centrode.cli.limits import limits
 from centrode.cli.region import region
+from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.sweep import sweep
@@ -26,7 +27,7 @@ from centrode.cli.translation import language_option, translated, wished_languag
 from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
-COMMANDS: tuple[click.Command, ...] = (run, check, limits, region, sweep, examples, schema)
+COMMANDS: tuple[click.Command, ...] = (run, check, rotatability, limits, region, sweep, examples, schema)
 """In the order that `centrode --help` lists them."""
 
 FAULT, INTERRUPTED, READER_GONE = 70, 130, 141

@@ -16,6 +16,7 @@ from centrode.kinematics.evaluate import Choices, FixedSigns, Kinematics
 from centrode.kinematics.groups import solve_group
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.sides import side_names, side_words, stated_side
+from centrode.model.frozen import FrozenMap
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.paths import with_value
 from centrode.model.placing import replace_placed
@@ -153,7 +154,7 @@ def signs_at_start(
 
 
 def _hints(mechanism: Mechanism, group: Group, angles: Mapping[str, Number]) -> dict[str, Number]:
-    found = {}
+    found: dict[str, Number] = {}
     for link in links_of(group):
         angle = mechanism.links[link].angle
         if link in angles:
@@ -190,13 +191,13 @@ def _assembled_as(prepared: Ready, mechanism: Mechanism, batch: Batch) -> Mechan
     """The description with its assembly said by sides, and initial angles as they are with the new dimensions."""
     groups = [group for group in prepared.structure.groups if group.signed]
     space = batch.kinematics.numbers.space
-    sides = dict(mechanism.assembly.sides)
+    sides: dict[str, Any] = dict(mechanism.assembly.sides)
     for index, group in enumerate(prepared.structure.groups):
         if group.signed and not any(name in sides for name in side_names(group)):
             sides[side_names(group)[0]] = side_words(space, group)[
                 0 if prepared.assembled.signs[index] > 0 else 1
             ]
-    assembly = mechanism.assembly.model_copy(update={"sides": type(mechanism.assembly.sides)(sides)})
+    assembly = mechanism.assembly.model_copy(update={"sides": FrozenMap(sides)})
     found = mechanism.model_copy(update={"assembly": assembly})
     at = _positions(batch)
     guided = {guide.link for guide in mechanism.guides} | {guide.on for guide in mechanism.guides}

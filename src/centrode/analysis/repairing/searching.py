@@ -169,7 +169,8 @@ class Search:
         self.tried += len(changes)
         if self.progress is not None:
             self.progress(min(self.tried, self.total), self.total)
-        return least_by_sector(squared_sines(self.candidates.batch(changes), FINE), SECTORS)
+        sines = squared_sines(self.candidates.batch(changes), FINE)
+        return least_by_sector(sines, SECTORS)
 
     def _slopes(self, change: Array) -> Array:
         size = len(change)

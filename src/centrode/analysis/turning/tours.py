@@ -105,8 +105,7 @@ class Tour:
         first, last = self.span
         if self.angular and self.unlimited:
             count = NODES_PER_TURN * round((last - first) / tau)
-            nodes: Array = first + (np.arange(count + 1) + OFF_GRID) * ((last - first) / count)
-            return nodes
+            return np.asarray(first + (np.arange(count + 1) + OFF_GRID) * ((last - first) / count))
         share = 0.5 - 0.5 * np.cos(pi * (np.arange(NODES_PER_TURN) + 0.5) / NODES_PER_TURN)
         return np.asarray(first + (last - first) * share)
 

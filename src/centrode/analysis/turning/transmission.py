@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.analysis.turning.tours import Tour
 from centrode.analysis.turning.watched import Course, Pair, Watched
 from centrode.geometry.plane import cross as plane_cross
@@ -124,8 +125,21 @@ def _least(course: Course, k: int, index: int, extremes: list[tuple[float, float
             if event.group == index and (event.kind == "change point" or event.at in (tour.low, tour.high)):
                 return 0.0, event.at
     acute = [(min(value, pi - value), at) for at, value in extremes]
-    nodes = np.abs(np.sin(course.values[k]))
     if not acute or not tour.comes_round:
-        node = int(np.nanargmin(nodes))
-        acute.append((float(np.arcsin(nodes[node])), float(course.nodes[node])))
+        acute += _at_ends(course, k)
+    if not acute:
+        sines = np.abs(np.sin(course.values[k]))
+        node = int(np.nanargmin(sines))
+        acute.append((float(np.arcsin(sines[node])), float(course.nodes[node])))
     return min(acute)
+
+
+def _at_ends(course: Course, k: int) -> list[tuple[float, float]]:
+    """The acute angle at the ends of the stretch: the drive's limits, or the initial position."""
+    found = []
+    for at in (end for end in course.tour.span if np.isfinite(end)):
+        value = float(course.watched[k].value(course.tour.stopped(at, ARRAYS), 1)[0])
+        if np.isfinite(value):
+            between = _between(value)
+            found.append((min(between, pi - between), at))
+    return found
