@@ -102,7 +102,7 @@ class _Words:
 
     def branch(self, branch: Branch) -> str:
         """A branch by its sides, and from where to where it goes."""
-        sides = ", ".join(f"{point} {_(word)}" for point, word in branch.sides.items()) or _("no sides")
+        sides = ", ".join(f"{point} {word}" for point, word in branch.sides.items()) or _("no sides")
         if branch.low is None and branch.high is None:
             return _("{sides}: everywhere").format(sides=sides)
         ends = (

@@ -163,7 +163,7 @@ class Search:
         return np.asarray(np.clip(moved, self._low, self._high))
 
     def _conditions(self, change: Array) -> Array:
-        return self._sectors(change[None, :])[0] / self.target - (1.0 + SLACK)
+        return np.asarray(self._sectors(change[None, :])[0] / self.target - (1.0 + SLACK))
 
     def _sectors(self, changes: Array) -> Array:
         self.tried += len(changes)

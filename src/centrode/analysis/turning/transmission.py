@@ -17,6 +17,7 @@ from centrode.geometry.plane import place, subtract, turned
 from centrode.geometry.sphere import cross, dot, tangent
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.groups import aim_curve
+from centrode.kinematics.paths import JETS
 from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Slot, Stroke
 from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
@@ -66,6 +67,8 @@ def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
     if len(centres) == 2:
         return Watched(name, "rad", lambda at: _between_rods(sphere, centres, at))
     line = next((locus for locus in group.loci if isinstance(locus, (Rail, Slot))), None)
+    if len(centres) == 1 and isinstance(line, Rail) and sphere:
+        return Watched(name, "rad", lambda at: _to_pole(kinematics, centres[0], line, at))
     if len(centres) == 1 and line is not None and not sphere:
         return Watched(name, "rad", lambda at: _to_normal(kinematics, centres[0], line, group.carriage, at))
     return None
@@ -78,6 +81,15 @@ def _between_rods(sphere: bool, rods: list[Any], at: Positions) -> Pair:
         return dot(arc, next_arc), dot(one[0], cross(arc, next_arc))
     line, next_line = (subtract(centre, pin) for pin, centre in (one, other))
     return plane_dot(line, next_line), plane_cross(line, next_line)
+
+
+def _to_pole(kinematics: Kinematics, rod: Any, line: Rail, at: Positions) -> Pair:
+    """Between the rod's arc and the arc to the pole of the guide's circle."""
+    space, numbers = kinematics.numbers.space, kinematics.numbers
+    pin, centre = at.points[rod.point], at.points[rod.centre]
+    pole = space.place(JETS, at.poses[line.on], numbers.through[line.guide])
+    arc, to_pole = tangent(pin, centre), tangent(pin, pole)
+    return dot(arc, to_pole), dot(pin, cross(arc, to_pole))
 
 
 def _to_normal(kinematics: Kinematics, rod: Any, line: Locus, carriage: str | None, at: Positions) -> Pair:
