@@ -98,7 +98,7 @@ def bearing_of_locus(
     if isinstance(locus, Rod):
         return bearing_between(mechanism, numbers, locus.link, locus.centre, locus.point)
     if isinstance(locus, Stroke):
-        return Bearing((f"phi({locus.drive})",))
+        return Bearing(("psi_" + locus.drive.replace("-", ""),))
     if isinstance(locus, Rail):
         return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
     if isinstance(locus, Slot):
