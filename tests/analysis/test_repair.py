@@ -218,7 +218,7 @@ def test_none_found_claims_nothing() -> None:
         "found",
         "none within the bounds; that does not say that there is none",
     )
-    data = json.loads(ct.repair_text(found))
+    data = json.loads(ct.repair_text(LOCKED, found))
     assert data["found"] is False and data["after"] is None
 
 

@@ -11,6 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.analysis.turning.swings import DWELL_BAND, Swing
+from growing import DYADS, grown, mechanism_of
 from mechanisms import EPS, four_bar
 
 LIMITED = [
@@ -277,6 +278,34 @@ def test_what_is_found_is_json_and_rows() -> None:
         assert len(data["drives"][0]["swings"]) == len(found.one.swings)
         rows = ct.rotatability_rows(mechanism, found)
         assert rows[0] == ("drive", found.one.drive)
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_random_mechanisms_swing_between_their_extreme_positions(seed: int) -> None:
+    """No sample of the motion lies beyond what roots of rates found, and some lie near it."""
+    kinds = [str(kind) for kind in np.random.default_rng(seed).choice(DYADS, size=2)]
+    mechanism = mechanism_of(grown(kinds, seed))
+    found = ct.rotatability(mechanism)
+    assert {limit.value for limit in found.limits} <= set(ct.limits(mechanism).interval)
+    ends = {limit.end: limit.value for limit in found.limits}
+    first = ends.get("low", found.one.initial)
+    last = ends.get("high", found.one.initial + math.tau * (found.one.period or 2))
+    motion = ct.motion(mechanism, at=np.linspace(first, last, 1203)[1:-1])
+    assert (motion.status == 0).all()
+    for swing in found.one.swings:
+        if swing.least is None or swing.greatest is None or swing.stroke is None:
+            continue
+        along = (
+            motion.angle.sel(link=swing.name)
+            if swing.member == "link"
+            else motion.slide.sel(guide=swing.name)
+        )
+        low, high = float(along.min()), float(along.max())
+        # at a limit a value is as exact as the root of its group's rounding
+        margin = 16 * math.sqrt(EPS) * max(1.0, abs(low), abs(high))
+        assert swing.least.value - margin <= low and high <= swing.greatest.value + margin
+        near_limits = 0.2 * swing.stroke if found.limits else 1e-4 * swing.stroke
+        assert low <= swing.least.value + near_limits and swing.greatest.value - near_limits <= high
 
 
 def test_every_example_is_answered() -> None:

@@ -30,6 +30,8 @@ TIGHTENINGS = 4
 ENOUGH = 1e-9
 """By how much [rad] the verified least transmission angle may fall short of the one asked for."""
 
+_PARTS = ("mechanism", "changes", "varying", "before", "after")
+
 
 @dataclass(frozen=True)
 class Change:
@@ -58,6 +60,7 @@ class Repair:
     mechanism : it; the one given if that turns already; None if none was found
     changes : of every number that may vary
     size : root of the sum of the squares of the changes' sizes
+    varying : what could change, with its bounds
     least_transmission_angle, reached : asked for, and that of the mechanism found (exact) [rad]
     tried : candidates evaluated
     spread, turning : candidates of the first spread over the bounds, and how many of these turn
@@ -69,6 +72,7 @@ class Repair:
     mechanism: Mechanism | None
     changes: tuple[Change, ...]
     size: float
+    varying: tuple[Varying, ...]
     least_transmission_angle: float
     reached: float | None
     tried: int
@@ -80,10 +84,11 @@ class Repair:
 
     def as_dict(self) -> dict[str, Any]:
         """For JSON, in SI."""
-        plain = {k: v for k, v in vars(self).items() if k not in ("mechanism", "changes", "before", "after")}
+        plain = {k: v for k, v in vars(self).items() if k not in _PARTS}
         return {
             **plain,
             "changes": [vars(change) for change in self.changes],
+            "varying": [vars(one) for one in self.varying],
             "before": self.before.as_dict(),
             "after": self.after.as_dict() if self.after else None,
         }
@@ -129,7 +134,7 @@ def repair(
     least_angle = _angle(least_transmission_angle)
     varying = varyings(prepared, vary, bounds)
     before = rotatability(mechanism)
-    asked = Repair(False, None, (), 0.0, least_angle, None, 0, 0, 0, "", before, None)
+    asked = Repair(False, None, (), 0.0, varying, least_angle, None, 0, 0, 0, "", before, None)
     if turns_well(before, least_angle):
         return replace(asked, found=True, mechanism=mechanism, reached=_reached(before), after=before)
     candidates = Candidates(prepared, varying)

@@ -73,7 +73,7 @@ def rotatability(
     _heading(description, mechanism)
     click.echo(output.table(ct.repair_rows(description, found)))
     if out is not None:
-        _write_repair(found, out, force)
+        _write_repair(description, found, out, force)
     if not found.found:
         raise MotionError(
             mechanism, _("no change was found after which it turns so"), _("widen the bounds, or vary more")
@@ -121,10 +121,10 @@ def _varied(texts: Sequence[str]) -> tuple[list[str], dict[str, tuple[str, str]]
     return paths, bounds
 
 
-def _write_repair(found: Repair, out: Path, force: bool) -> None:
+def _write_repair(description: ct.Mechanism, found: Repair, out: Path, force: bool) -> None:
     """The report, or the description of the repaired mechanism, which there is only if one was found."""
     if out.suffix.lower() == REPORT:
-        output.write_file(out, ct.repair_text(found), force=force)
+        output.write_file(out, ct.repair_text(description, found), force=force)
     elif found.mechanism is not None:
         output.write_file(out, ct.mechanism_text(found.mechanism), force=force)
     else:

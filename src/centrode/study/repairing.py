@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from math import degrees
 from typing import TypeAlias
 
 from centrode.analysis.repair import Change, Repair
-from centrode.locale import _, ngettext
+from centrode.analysis.repairing.candidates import Candidates
+from centrode.analysis.repairing.impossible import impossible
+from centrode.analysis.rotatability import rotatability
+from centrode.kinematics.ready import ready
+from centrode.locale import _, ngettext, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.wording import value_text
 
@@ -42,9 +47,17 @@ def repair_rows(mechanism: Mechanism, found: Repair) -> Rows:
     ]
 
 
-def repair_text(found: Repair) -> str:
-    """What was found as JSON, in SI."""
-    return json.dumps(found.as_dict(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+def repair_text(mechanism: Mechanism, found: Repair) -> str:
+    """What was found for a mechanism as JSON, in SI and in English, whatever language it was found in."""
+    with speaking("en"):
+        after = None if found.mechanism is None else rotatability(found.mechanism)
+        reason = (
+            impossible(Candidates(ready(mechanism), found.varying), found.least_transmission_angle)
+            if found.impossible
+            else ""
+        )
+        english = replace(found, before=rotatability(mechanism), after=after, impossible=reason)
+        return json.dumps(english.as_dict(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _reached(found: Repair) -> tuple[str, str]:
