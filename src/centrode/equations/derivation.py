@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,18 +12,17 @@ from centrode.equations.board import Board
 from centrode.equations.draft import Condition, Draft, Unknown
 from centrode.equations.expressions import expression, matrix
 from centrode.equations.formulas import Formula, formula_of
+from centrode.equations.given import Given, given_of
 from centrode.equations.laying import laid
 from centrode.equations.letters import Letter
-from centrode.equations.places import Place
+from centrode.equations.points import PointVelocity, velocity_of
 from centrode.equations.sums import Sum
 from centrode.equations.systems import LinearSystem, system_of
-from centrode.equations.given import Given, given_of
 from centrode.errors import InputError
-from centrode.equations.points import PointVelocity, shortest, velocity_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.structure.assur import assur_groups
+from centrode.structure.assur import assur_groups, roman
 
 TOGETHER = 3
 """Unknowns of the largest mechanism whose groups are also solved as one system, as the textbooks do."""
@@ -39,16 +38,32 @@ class Solution:
     system : matrix, right side, determinants
     letters : the unknowns
     formulas : each in terms of what stands before it
-    under : the letter that stands for the determinant where this has several terms
+    under : the letter of the determinant; it stands in the formulas where this has several terms
     """
 
     system: LinearSystem
     formulas: tuple[Formula, ...] | None
-    under: Letter | None
+    under: Letter
 
     @property
     def letters(self) -> tuple[Letter, ...]:
         return self.system.unknowns
+
+    @property
+    def lettered(self) -> bool:
+        """Whether the formulas are written with the letter of the determinant."""
+        return self.system.determinant is not None and not self.system.determinant.single
+
+    def expressions(self, formulas: Sequence[Formula] | None) -> Mapping[str, Any]:
+        """Unknown -> SymPy expression, the determinant written out."""
+        found = {
+            letter.name: formula.expression
+            for letter, formula in zip(self.letters, formulas or (), strict=False)
+        }
+        if not self.lettered or self.system.determinant is None:
+            return found
+        under = self.system.determinant.expression
+        return {name: one.subs(expression(Sum.letter(self.under)), under) for name, one in found.items()}
 
 
 @dataclass(frozen=True)
@@ -119,10 +134,7 @@ class GroupEquations:
     @cached_property
     def rates(self) -> Mapping[str, Any]:
         """Rate -> expression: of time and unknowns where it is short, else of the rates of earlier groups too."""
-        return {
-            letter.name: formula.expression
-            for letter, formula in zip(self.velocities.letters, self.normal_form or (), strict=False)
-        }
+        return self.velocities.expressions(self.normal_form)
 
     @property
     def normal_form(self) -> tuple[Formula, ...] | None:
@@ -135,10 +147,7 @@ class GroupEquations:
     @cached_property
     def accelerations(self) -> Mapping[str, Any]:
         """Acceleration -> expression of the rates and of earlier accelerations."""
-        return {
-            letter.name: formula.expression
-            for letter, formula in zip(self.seconds.letters, self.seconds.formulas or (), strict=False)
-        }
+        return self.seconds.expressions(self.seconds.formulas)
 
 
 @dataclass(frozen=True)
@@ -147,7 +156,7 @@ class Equations:
 
     Attributes
     ----------
-    title : of the mechanism
+    mechanism : as it was given
     legend : every letter with what it stands for and its number
     given : what the drives give
     groups : in the order of the plan, those without unknowns left out
@@ -155,14 +164,13 @@ class Equations:
     sliding : points on guides of the frame
     """
 
-    title: str
+    mechanism: Mechanism
     legend: tuple[Meaning, ...]
     given: Given
     groups: tuple[GroupEquations, ...]
     together: Solution | None
     sliding: tuple[str, ...]
     board: Board
-    places: Mapping[str, Place]
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -184,6 +192,19 @@ class Equations:
         """Symbol -> number [m, rad]; of what moves, that in the initial position."""
         return {one.symbol: one.value for one in self.legend}
 
+    def legend_of(self, points: Sequence[str]) -> list[Meaning]:
+        """Meanings of the letters in the constraints and in the velocities of some points: what moves first."""
+        sums = [
+            side
+            for group in self.groups
+            for one in group.conditions
+            for side in (one.full, one.left, one.right)
+        ]
+        sums += [side for point in points for side in self.velocity(point).place]
+        used = {letter for one in sums for letter in one.letters} | {one.letter for one in self.given.drives}
+        meanings = self.board.alphabet.meanings
+        return [meanings[x] for x in sorted(used, key=lambda x: (not meanings[x].moves, x))]
+
     def velocity(self, point: str) -> PointVelocity:
         """Velocity of a point as formulas; raises InputError for a name that is no moving point."""
         if point not in self.board.moving:
@@ -195,7 +216,7 @@ class Equations:
             for letter, formula in zip(group.velocities.letters, group.closed, strict=True)
             if formula is not None
         }
-        return velocity_of(point, self.places[point], self.board, self.given, closed)
+        return velocity_of(point, self.board.points[point], self.board, self.given, closed)
 
 
 def equations(mechanism: Mechanism) -> Equations:
@@ -213,19 +234,23 @@ def equations_of(made: Ready) -> Equations:
     """The equations of a mechanism made ready."""
     board, drafts = laid(made)
     given = given_of(board)
-    places = shortest(board)
     closed: dict[Letter, Sum] = {}
-    groups = tuple(_group(made, board, draft, given, closed, i) for i, draft in enumerate(drafts, 1))
+    deltas = [
+        Letter(DELTA + i, f"Delta_{roman(i)}" if len(drafts) > 1 else "Delta")
+        for i in range(1, len(drafts) + 1)
+    ]
+    groups = tuple(
+        _group(made, board, draft, given, closed, delta) for draft, delta in zip(drafts, deltas, strict=True)
+    )
     sliding = tuple(dict.fromkeys(g.point for g in made.mechanism.guides if g.on == "frame"))
     return Equations(
-        made.mechanism.title,
+        made.mechanism,
         tuple(board.alphabet.meanings.values()),
         given,
         groups,
         _together(board, drafts, given),
         sliding,
         board,
-        places,
     )
 
 
@@ -237,29 +262,35 @@ def _rates(board: Board, draft: Draft, given: Given) -> LinearSystem:
     )
 
 
-def _seconds(board: Board, draft: Draft, given: Given) -> LinearSystem:
+def _seconds(board: Board, draft: Draft, given: Given, closed: Mapping[Letter, Sum]) -> LinearSystem:
+    zeros = {letter: total for letter, total in closed.items() if not total}
     return system_of(
-        [given.put(one.residual.rate(board.moves).rate(board.moves_twice)) for one in draft.conditions],
+        [
+            given.put(one.residual.rate(board.moves).rate(board.moves_twice)).replaced(zeros)
+            for one in draft.conditions
+        ],
         [one.second for one in draft.unknowns],
         [one.pair for one in draft.conditions],
     )
 
 
-def _solution(system: LinearSystem, number: int) -> Solution:
-    under = system.determinant
-    several = under is not None and not under.single
-    letter = Letter(DELTA + number, f"Delta{number}")
-    return Solution(system, system.solved(letter), letter if several else None)
+def _solution(system: LinearSystem, letter: Letter) -> Solution:
+    return Solution(system, system.solved(letter), letter)
 
 
 def _group(
-    made: Ready, board: Board, draft: Draft, given: Given, closed: dict[Letter, Sum], number: int
+    made: Ready, board: Board, draft: Draft, given: Given, closed: dict[Letter, Sum], delta: Letter
 ) -> GroupEquations:
-    velocities = _solution(_rates(board, draft, given), number)
-    seconds = _solution(_seconds(board, draft, given), number)
+    velocities = _solution(_rates(board, draft, given), delta)
+    seconds = _solution(_seconds(board, draft, given, closed), delta)
     short = _closed(velocities, closed)
     closed.update(
         (letter, one.total) for letter, one in zip(velocities.letters, short, strict=True) if one is not None
+    )
+    closed.update(
+        (letter, one.total)
+        for letter, one in zip(seconds.letters, seconds.formulas or (), strict=False)
+        if not one.number
     )
     return GroupEquations(
         _label(made, draft),
@@ -274,7 +305,7 @@ def _group(
 
 def _closed(solution: Solution, closed: Mapping[Letter, Sum]) -> tuple[Formula | None, ...]:
     """Rates with those of earlier groups put in, where one product comes out."""
-    if solution.formulas is None or solution.under is not None:
+    if solution.formulas is None or solution.lettered:
         return (None,) * len(solution.letters)
     found = []
     for formula in solution.formulas:
@@ -293,7 +324,7 @@ def _together(board: Board, drafts: tuple[Draft, ...], given: Given) -> Solution
     for one in drafts:
         draft.unknowns += one.unknowns
         draft.conditions += one.conditions
-    return _solution(_rates(board, draft, given), 0)
+    return _solution(_rates(board, draft, given), Letter(DELTA, "Delta"))
 
 
 def _label(made: Ready, draft: Draft) -> str:

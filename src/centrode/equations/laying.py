@@ -11,6 +11,7 @@ from centrode.equations.board import Board
 from centrode.equations.chains import Chains
 from centrode.equations.draft import Condition, Draft
 from centrode.equations.places import Place
+from centrode.equations.shortcuts import shorten
 from centrode.equations.sums import ZERO
 from centrode.equations.wheels import mesh, meshings_of
 from centrode.errors import InputError
@@ -42,6 +43,7 @@ def laid(ready: Ready) -> tuple[Board, tuple[Draft, ...]]:
             if draft.unknowns:
                 groups.append(draft)
             draft = Draft()
+            shorten(board)
     if draft.balance or chains.lines or chains.rods or waiting:
         raise InputError(
             "",
