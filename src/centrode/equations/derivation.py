@@ -161,7 +161,7 @@ class Equations:
     given : what the drives give
     groups : in the order of the plan, those without unknowns left out
     together : all rates as one system, where they are few
-    sliding : points on guides of the frame
+    sliding : points on guides of the frame; where nothing is unknown, all moving points
     """
 
     mechanism: Mechanism
@@ -194,16 +194,13 @@ class Equations:
 
     def legend_of(self, points: Sequence[str]) -> list[Meaning]:
         """Meanings of the letters in the constraints and in the velocities of some points: what moves first."""
-        sums = [
-            side
-            for group in self.groups
-            for one in group.conditions
-            for side in (one.full, one.left, one.right)
-        ]
+        moves, meanings = self.board.moves, self.board.alphabet.meanings
+        conditions = [one for group in self.groups for one in group.conditions]
+        sums = [side for one in conditions for side in (one.full, one.left, one.right, one.rate(moves))]
         sums += [side for point in points for side in self.velocity(point).place]
         used = {letter for one in sums for letter in one.letters} | {one.letter for one in self.given.drives}
-        meanings = self.board.alphabet.meanings
-        return [meanings[x] for x in sorted(used, key=lambda x: (not meanings[x].moves, x))]
+        known = [letter for letter in used if letter in meanings]
+        return [meanings[x] for x in sorted(known, key=lambda x: (not meanings[x].moves, x))]
 
     def velocity(self, point: str) -> PointVelocity:
         """Velocity of a point as formulas; raises InputError for a name that is no moving point."""
@@ -243,6 +240,8 @@ def equations_of(made: Ready) -> Equations:
         _group(made, board, draft, given, closed, delta) for draft, delta in zip(drafts, deltas, strict=True)
     )
     sliding = tuple(dict.fromkeys(g.point for g in made.mechanism.guides if g.on == "frame"))
+    if not groups:
+        sliding = tuple(board.moving)
     return Equations(
         made.mechanism,
         tuple(board.alphabet.meanings.values()),
@@ -256,7 +255,7 @@ def equations_of(made: Ready) -> Equations:
 
 def _rates(board: Board, draft: Draft, given: Given) -> LinearSystem:
     return system_of(
-        [given.put(one.residual.rate(board.moves)) for one in draft.conditions],
+        [given.put(one.rate(board.moves)) for one in draft.conditions],
         [one.rate for one in draft.unknowns],
         [one.pair for one in draft.conditions],
     )
@@ -265,10 +264,7 @@ def _rates(board: Board, draft: Draft, given: Given) -> LinearSystem:
 def _seconds(board: Board, draft: Draft, given: Given, closed: Mapping[Letter, Sum]) -> LinearSystem:
     zeros = {letter: total for letter, total in closed.items() if not total}
     return system_of(
-        [
-            given.put(one.residual.rate(board.moves).rate(board.moves_twice)).replaced(zeros)
-            for one in draft.conditions
-        ],
+        [given.put(one.rate(board.moves_twice, 2)).replaced(zeros) for one in draft.conditions],
         [one.second for one in draft.unknowns],
         [one.pair for one in draft.conditions],
     )

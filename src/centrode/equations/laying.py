@@ -76,9 +76,17 @@ def _project(draft: Draft, pair: int) -> None:
     line = both[0].closing
     place = draft.conditions.index(x)
     draft.conditions = [one for one in draft.conditions if one.pair != pair]
-    left = Place(x.left, y.left).plus(Place(x.right, y.right), -1).across(line)
+    vector = Place(x.residual, y.residual)
     full = Place(x.full, y.full).plus(Place(x.right, y.right), -1).across(line)
-    one = replace(x, name=x.name.replace("x_", "n_", 1), left=left, full=full, right=ZERO, pair=-1)
+    one = replace(
+        x,
+        name=x.name.replace("x_", "n_", 1),
+        left=vector.across(line),
+        full=full,
+        right=ZERO,
+        pair=-1,
+        vector=vector,
+    )
     draft.conditions.insert(place, one)
 
 

@@ -50,6 +50,9 @@ class Note:
     text: str
 
 
+NOTHING = 1e-13
+"""Angles [rad], and lengths as a part of the greatest, below which an initial value is rounding and shown as zero."""
+
 Entry: TypeAlias = Relation | System | Symbols | Note
 
 
@@ -95,13 +98,15 @@ def sections(equations: Equations, spelling: Spelling, points: Sequence[str]) ->
 
 def _symbols(equations: Equations, spelling: Spelling, points: Sequence[str]) -> Symbols:
     display = equations.mechanism.display
+    largest = max((abs(one.value) for one in equations.legend if one.unit == "m"), default=1.0)
+    least = {"m": NOTHING * largest, "rad": NOTHING}
     rows = []
     for one in equations.legend_of(points):
         name = spelling.letter(Letter(0, one.symbol))
         rows.append(
             (
                 spelling.initial(name) if one.moves else name,
-                value_text(one, display),
+                value_text(one, display, least),
                 meaning_text(one, equations),
             )
         )
@@ -121,7 +126,7 @@ def _is_offset(one: Condition) -> bool:
 
 
 def _differentiated(one: Condition, equations: Equations, spelling: Spelling) -> Relation:
-    total = one.residual.rate(equations.board.moves)
+    total = one.rate(equations.board.moves)
     return Relation((spelled_sum(total, spelling), spelling.number(0)))
 
 
@@ -151,7 +156,8 @@ def _solved(solution: Solution, spelling: Spelling) -> list[Entry]:
     matrix = tuple(tuple(_entry(entry, spelling) for entry in row) for row in system.matrix)
     right = tuple(_entry(entry, spelling) for entry in system.right)
     if len(unknowns) == 1:
-        return [Relation((spelling.join([_factor(matrix[0][0], spelling), unknowns[0]]).strip(), right[0]))]
+        left = formula_of(system.matrix[0][0] * Sum.letter(system.unknowns[0]))
+        return [Relation((spelled(left, spelling), right[0]))]
     lines: list[Entry] = [System(matrix, unknowns, right)]
     if system.determinant is None or system.numerators is None:
         return [
@@ -175,12 +181,6 @@ def _index(letter: Letter) -> str:
 
 def _entry(total: Sum, spelling: Spelling) -> str:
     return spelled(formula_of(total), spelling) if total else spelling.number(0)
-
-
-def _factor(text: str, spelling: Spelling) -> str:
-    if text == spelling.number(1):
-        return ""
-    return spelling.bracket(text) if " + " in text or " - " in text else text
 
 
 def _normal(group: GroupEquations, spelling: Spelling) -> list[Entry]:

@@ -2,28 +2,36 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.equations.formulas import Formula
 from centrode.equations.letters import Letter
-from centrode.equations.spelling import Spelling, spelled
+from centrode.equations.spelling import Spelling, spelled, spelled_sum
 from centrode.equations.sums import Sum, Term
 
 if TYPE_CHECKING:
     from centrode.equations.points import PointVelocity
 
-Line = tuple[str, ...]
+Line: TypeAlias = tuple[str, ...]
 
 LONGEST = 3
 """Terms of the longest square of a speed that tells more than the components."""
 
 
 def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
-    """Along its guide, or both components and the speed; in the rates, and with these put in where that is short."""
+    """Coordinates, then the velocity along its guide, or both components and the speed.
+
+    In the rates, and with these put in where that is short.
+    """
     point = velocity.point
+    lines: list[Line] = [
+        (spelling.letter(Letter(0, f"{axis}_{point}")), spelled_sum(total, spelling))
+        for axis, total, rate in zip("xy", velocity.place, (velocity.x, velocity.y), strict=True)
+        if rate.number
+    ]
     if velocity.along is not None:
-        return [_line(f"v_{point}", velocity.along, velocity.closed_along, spelling)]
-    lines = [
+        return [*lines, _line(f"v_{point}", velocity.along, velocity.closed_along, spelling)]
+    lines += [
         _line(f"v_{point}x", velocity.x, velocity.closed_x, spelling),
         _line(f"v_{point}y", velocity.y, velocity.closed_y, spelling),
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from centrode.locale import _
@@ -20,7 +21,8 @@ def meaning_text(meaning: Meaning, equations: Equations) -> str:
     sentences = {
         "link angle": _("angle of link {first}"),
         "relative angle": _("angle of link {first} against link {second}"),
-        "bearing": _("direction of {first}"),
+        "bearing": _("direction of the centre of wheel {first} from that of its track"),
+        "cylinder": _("direction of cylinder {first}"),
         "angle in link": _("angle of {second}-{third} against the axis of link {first}"),
         "angle of guide": _("direction of guide {first} on {body}"),
         "angle of pair": _("constant angle of the links that guide {first} keeps parallel"),
@@ -46,14 +48,15 @@ def meaning_text(meaning: Meaning, equations: Equations) -> str:
 def _constraint_of(symbol: str, equations: Equations) -> str:
     for group in equations.groups:
         for one in group.conditions:
-            if any(letter.name == symbol for letter in one.right.letters):
+            if any(letter.name == symbol for letter in one.residual.letters):
                 return one.name
     return ""
 
 
-def value_text(meaning: Meaning, display: Display) -> str:
-    """Its number in the units of the description."""
+def value_text(meaning: Meaning, display: Display, least: Mapping[str, float]) -> str:
+    """Its number in the units of the description; zero where it is smaller than what counts in its unit."""
+    value = 0.0 if abs(meaning.value) < least.get(meaning.unit, 0.0) else meaning.value
     if meaning.unit == "1":
         return f"{meaning.value:.6g}"
     factor, shown = display_unit(meaning.unit, display.length, display.angle)
-    return f"{meaning.value * factor:.6g} {shown}"
+    return f"{value * factor:.6g} {shown}"
