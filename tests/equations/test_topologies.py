@@ -1,4 +1,4 @@
-"""What chains have to manage besides dyads: telescopes, cylinders to sliders, wheels that other links keep on their tracks."""
+"""What chains manage besides dyads: telescopes, cylinders to sliders, wheels that other links keep on their tracks."""
 
 from __future__ import annotations
 
