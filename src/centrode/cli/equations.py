@@ -16,7 +16,7 @@ from centrode.locale import _, mark
 KINDS = {".txt": "equations_text", ".tex": "equations_latex", ".md": "equations_markdown"}
 
 
-@click.command(help=mark("Write the constraint equations in symbols, differentiated and solved."))
+@click.command(help=mark("Write the constraint equations in symbols, solved."))
 @mechanism_argument
 @click.option(
     "--point",
