@@ -14,7 +14,7 @@ from centrode.cli.pairs import pairs
 from centrode.locale import _, mark, speaking
 
 
-@click.command(help=mark("Find the limits of one drive with the others held."))
+@click.command(help=mark("Find the limits of one drive while the others are held."))
 @mechanism_argument
 @click.option(
     "--drive", metavar=mark("NAME"), help=mark("The drive that moves; needed where there are several.")
