@@ -9,8 +9,9 @@ import numpy as np
 
 import centrode as ct
 from centrode.algebra.jets import Jet
-from centrode.equations.derivation import Equations, Solution
+from centrode.equations.derivation import Equations
 from centrode.equations.formulas import Formula
+from centrode.equations.groups import Solution
 from centrode.equations.letters import Letter
 from centrode.kinematics.paths import JETS
 

@@ -9,7 +9,7 @@ import pytest
 
 import centrode as ct
 from centrode.present.equation_latex import LatexSpelling, escaped
-from centrode.present.equation_page import Relation, System, sections
+from centrode.present.equation_page import LONGEST, Relation, System, sections
 
 WIDTH = 110
 """Columns of a relation that can be broken."""
@@ -106,7 +106,20 @@ def test_velocities_are_told_in_rates_and_put_in() -> None:
     ]
 
 
+def test_long_formulas_are_left_out_of_the_page_alone() -> None:
+    found = ct.equations(ct.example("watt-driven-second-loop"))
+    (group,) = found.groups
+    assert group.seconds.formulas is not None
+    longest = max(formula.size for formula in group.seconds.formulas)
+    assert longest > LONGEST
+    text = ct.equations_text(found)
+    written = [one.second for one, formula in zip(group.unknowns, group.seconds.formulas, strict=True)
+               if formula.size <= LONGEST]  # fmt: skip
+    assert text.count("as a number, from") == len(group.unknowns) - len(written)
+    assert r"$\varepsilon_{1}$: as a number" in ct.equations_latex(found)
+
+
 def test_groups_too_large_for_determinants_say_so() -> None:
     text = ct.equations_text(ct.equations(ct.example("scissor-lift-cylinder")))
     assert "too many terms to be read" in text
-    assert "as numbers" in text
+    assert "ω₁: as a number, from the system of group IV(OC, AB, BE, CF, slider A)" in text

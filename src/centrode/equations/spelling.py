@@ -69,6 +69,10 @@ class Spelling:
         """Something in round brackets."""
         return f"({text})"
 
+    def math(self, text: str) -> str:
+        """A formula inside of a sentence."""
+        return text
+
     def bars(self, text: str) -> str:
         """The size of something."""
         return f"|{text}|"

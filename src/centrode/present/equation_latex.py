@@ -59,6 +59,9 @@ class LatexSpelling(Spelling):
     def bracket(self, text: str) -> str:
         return rf"\left({text}\right)" if r"\frac" in text else f"({text})"
 
+    def math(self, text: str) -> str:
+        return f"${text}$"
+
     def bars(self, text: str) -> str:
         return rf"\lvert {text} \rvert"
 
@@ -150,7 +153,13 @@ def _tex(block: Block) -> str:
     if isinstance(block, Symbols):
         rows = [rf"${name}$ & {escaped(value)} & {escaped(words)} \\" for name, value, words in block.rows]
         return "\\begin{tabular}{lll}\n" + "\n".join(rows) + "\n\\end{tabular}\n"
-    return escaped(block.text) + "\n\n"
+    return _sentence(block.text) + "\n\n"
+
+
+def _sentence(text: str) -> str:
+    """A sentence for LaTeX; every other part of it, between dollar signs, is mathematics."""
+    parts = text.split("$")
+    return "$".join(part if i % 2 else escaped(part) for i, part in enumerate(parts))
 
 
 def _markdown(block: Block) -> str:

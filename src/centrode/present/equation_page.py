@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.equations.formulas import formula_of
+from centrode.equations.formulas import Formula, formula_of
 from centrode.equations.letters import Letter
 from centrode.equations.spelling import Spelling, spelled, spelled_sum
 from centrode.equations.sums import Sum
@@ -15,9 +15,10 @@ from centrode.present.equation_velocities import velocity_lines
 from centrode.present.equation_words import meaning_text, value_text
 
 if TYPE_CHECKING:
-    from centrode.equations.derivation import Equations, GroupEquations, Solution
-    from centrode.equations.draft import Condition
+    from centrode.equations.derivation import Equations
+    from centrode.equations.draft import Condition, Unknown
     from centrode.equations.given import Drivenness
+    from centrode.equations.groups import GroupEquations, Solution
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,8 @@ class Note:
     text: str
 
 
+LONGEST = 24
+"""Terms of the longest formula that is written out."""
 NOTHING = 1e-13
 """Angles [rad], and lengths as a part of the greatest, below which an initial value is rounding and shown as zero."""
 
@@ -73,7 +76,7 @@ def sections(equations: Equations, spelling: Spelling, points: Sequence[str]) ->
         rates = [_differentiated(one, equations, spelling) for one in conditions]
         found.append(Section(_("Differentiated by time"), tuple(rates)))
     given = [line for one in equations.given.drives for line in _given(one, spelling)]
-    found.append(Section(_("Given by the drives"), tuple(given)))
+    found.append(Section(_("Given by the drives (SI)"), tuple(given)))
     if equations.together is not None:
         found.append(Section(_("Velocities: Cramer's rule"), tuple(_solved(equations.together, spelling))))
     else:
@@ -150,6 +153,11 @@ def _given(one: Drivenness, spelling: Spelling) -> list[Entry]:
     return [Relation((value, way)), Relation((rate, spelling.decimal(one.speed)))]
 
 
+def _law(one: Drivenness, spelling: Spelling) -> str:
+    value, rate = (spelling.math(spelling.letter(letter)) for letter in (one.letter, one.rate))
+    return _("{value} and {rate} by the law of drive {drive}").format(value=value, rate=rate, drive=one.drive)
+
+
 def _solved(solution: Solution, spelling: Spelling) -> list[Entry]:
     system = solution.system
     unknowns = tuple(spelling.letter(letter) for letter in system.unknowns)
@@ -184,18 +192,11 @@ def _entry(total: Sum, spelling: Spelling) -> str:
 
 
 def _normal(group: GroupEquations, spelling: Spelling) -> list[Entry]:
-    formulas = group.normal_form
-    if formulas is None:
-        names = ", ".join(spelling.letter(one.rate) for one in group.unknowns)
-        return [
-            Note(
-                _("{rates}: from the system of group {group}, as numbers").format(
-                    rates=names, group=group.label
-                )
-            )
-        ]
     lines: list[Entry] = []
-    for unknown, formula in zip(group.unknowns, formulas, strict=True):
+    for unknown, formula in _with_formulas(group.unknowns, group.normal_form):
+        if formula is None:
+            lines.append(_as_numbers(unknown.rate, group, spelling))
+            continue
         parts = [
             spelling.derivative(unknown.letter),
             spelling.letter(unknown.rate),
@@ -208,17 +209,26 @@ def _normal(group: GroupEquations, spelling: Spelling) -> list[Entry]:
 
 
 def _seconds(group: GroupEquations, spelling: Spelling) -> list[Entry]:
-    formulas = group.seconds.formulas
-    if formulas is None:
-        names = ", ".join(spelling.letter(one.second) for one in group.unknowns)
-        return [
-            Note(
-                _("{rates}: from the system of group {group}, as numbers").format(
-                    rates=names, group=group.label
-                )
-            )
-        ]
     return [
-        Relation((spelling.letter(letter), spelled(formula, spelling)))
-        for letter, formula in zip(group.seconds.letters, formulas, strict=True)
+        _as_numbers(unknown.second, group, spelling)
+        if formula is None
+        else Relation((spelling.letter(unknown.second), spelled(formula, spelling)))
+        for unknown, formula in _with_formulas(group.unknowns, group.seconds.formulas)
     ]
+
+
+def _with_formulas(
+    unknowns: Sequence[Unknown], formulas: Sequence[Formula] | None
+) -> list[tuple[Unknown, Formula | None]]:
+    """Unknowns with their formulas, None for those too long to be read."""
+    if formulas is None:
+        return [(unknown, None) for unknown in unknowns]
+    return [
+        (unknown, formula if formula.size <= LONGEST else None)
+        for unknown, formula in zip(unknowns, formulas, strict=True)
+    ]
+
+
+def _as_numbers(letter: Letter, group: GroupEquations, spelling: Spelling) -> Note:
+    sentence = _("{letter}: as a number, from the system of group {group}")
+    return Note(sentence.format(letter=spelling.math(spelling.letter(letter)), group=group.label))
