@@ -48,6 +48,13 @@ from .study.repairing import repair_text as repair_text
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
+# Equations in symbols
+from .equations.derivation import equations as equations
+from .present import equations_text as equations_text
+from .present import equations_latex as equations_latex
+from .present import equations_markdown as equations_markdown
+from .present import equations_rows as equations_rows
+
 # Many mechanisms
 from .sweeps.sweeping import sweep as sweep
 from .sweeps.designs import grid as grid

@@ -16,6 +16,7 @@ import click
 
 import centrode as ct
 from centrode.cli.check import check
+from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.limits import limits
 from centrode.cli.region import region
@@ -27,7 +28,17 @@ from centrode.cli.translation import language_option, translated, wished_languag
 from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
-COMMANDS: tuple[click.Command, ...] = (run, check, rotatability, limits, region, sweep, examples, schema)
+COMMANDS: tuple[click.Command, ...] = (
+    run,
+    check,
+    equations,
+    rotatability,
+    limits,
+    region,
+    sweep,
+    examples,
+    schema,
+)
 """In the order that `centrode --help` lists them."""
 
 FAULT, INTERRUPTED, READER_GONE = 70, 130, 141

@@ -15,6 +15,8 @@ from centrode.locale import _
 if TYPE_CHECKING:
     from centrode.present.coefficient_tables import write_coefficients_csv
     from centrode.present.drawing import draw_mechanism
+    from centrode.present.equation_latex import equations_latex, equations_markdown
+    from centrode.present.equation_text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
     from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
@@ -25,6 +27,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "draw_mechanism",
+    "equations_latex",
+    "equations_markdown",
+    "equations_rows",
+    "equations_text",
     "motion_figures",
     "motion_table",
     "region_figure",
@@ -42,6 +48,8 @@ _attached, __dir__, _names = lazy_loader.attach(
     submod_attrs={
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
+        "equation_latex": ["equations_latex", "equations_markdown"],
+        "equation_text": ["equations_rows", "equations_text"],
         "figures": ["motion_figures"],
         "reading": ["scene_of"],
         "region_tables": ["write_region_csv"],
