@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -124,6 +124,7 @@ def bodies_of(motion: xr.Dataset) -> Bodies:
     }
     front = motion["status"].shape
     kinds = dict.fromkeys(ORDERS[:3], np.complex128) | dict.fromkeys(ORDERS[3:], np.float64)
+    found: dict[str, npt.NDArray[Any]]
     found = {name: np.zeros((*front, len(names)), dtype=kind) for name, kind in kinds.items()}
     columns = {dimension: [str(name) for name in motion[dimension].values] for dimension in ("point", "link")}
     for number, name in enumerate(names[1:], start=1):
@@ -161,6 +162,12 @@ def sliders_of(mechanism: Mechanism) -> dict[str, Guide]:
                 name += "'"
             found[name] = guide
     return found
+
+
+def vectors(places: Places) -> Array:
+    """Places as pairs of coordinates; NaN in both where one is not there."""
+    known = np.isfinite(places)
+    return np.stack([np.where(known, places.real, np.nan), np.where(known, places.imag, np.nan)], axis=-1)
 
 
 def refuse_batch(motion: xr.Dataset) -> None:

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.analysis.bodies import ROUNDED, Array, Bodies, Pair
+from centrode.analysis.bodies import ROUNDED, Array, Bodies, Pair, Places
 from centrode.analysis.primary import joints_of, ordered, rolling_pairs
 from centrode.locale import _, mark
 
@@ -79,7 +79,7 @@ class Recogniser:
         found[~np.isfinite(np.abs(moving) + spin)] = Case.ABSENT
         return found
 
-    def _by_velocities(self, pair: Pair, moving: Array, spin: Array, slow: Array) -> Kinds:
+    def _by_velocities(self, pair: Pair, moving: Places, spin: Array, slow: Array) -> Kinds:
         """Cases told by the velocities of two points of the first body against the second."""
         bodies, first = self.bodies, pair[0]
         arm = bodies.second_place(first) - bodies.place[..., first]

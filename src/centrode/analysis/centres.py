@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.bodies import Array, Bodies, Pair, bodies_of
+from centrode.analysis.bodies import Array, Bodies, Pair, Places, bodies_of, vectors
 from centrode.analysis.cases import Case, Recogniser
 from centrode.errors import InputError
 from centrode.kinematics.dataset import labels_of, named
@@ -68,8 +68,8 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     }
     variables["centre_case"][2]["flag_values"] = np.array([case.value for case in Case], dtype=np.int8)
     variables["centre_case"][2]["flag_meanings"] = " ".join(case.name.lower() for case in Case)
-    kept = motion[["status"]].assign_coords(pair=labels_of(tuple(labels)), axis=labels_of(("x", "y")))
-    return kept.assign(variables)
+    kept = motion[["status"]].assign_coords(drive_value=motion["drive_value"], axis=motion["axis"])
+    return kept.assign_coords(pair=labels_of(tuple(labels))).assign(variables)
 
 
 def _located(bodies: Bodies, pair: Pair, cases: Array) -> tuple[Array, Array]:
@@ -80,22 +80,21 @@ def _located(bodies: Bodies, pair: Pair, cases: Array) -> tuple[Array, Array]:
         place = bodies.place[..., pair[0]] + 1j * moving / spin
         towards = upward(1j * moving / np.abs(moving))
     return (
-        _vectors(np.where(finite, place, np.nan)),
-        _vectors(np.where(cases == Case.TRANSLATION, towards, np.nan)),
+        vectors(np.where(finite, place, np.nan)),
+        vectors(np.where(cases == Case.TRANSLATION, towards, np.nan)),
     )
 
 
-def upward(direction: np.ndarray[tuple[int, ...], np.dtype[np.complex128]]) -> Array:
+def upward(direction: Places) -> Places:
     """Of the two senses of a direction the one that points up, or to the right."""
     down = (direction.imag < 0.0) | ((direction.imag == 0.0) & (direction.real < 0.0))
     return np.asarray(np.where(down, -direction, direction))
 
 
-def _vectors(places: Array) -> Array:
-    absent = ~np.isfinite(places)
-    found = np.stack([places.real, places.imag], axis=-1)
-    found[absent] = np.nan
-    return found
+def bearing(direction: Sequence[float]) -> float:
+    """Angle [deg] of the line in a direction, at least 0 and less than 180; rounding is taken off."""
+    angle = float(np.degrees(np.arctan2(direction[1], direction[0]))) % 180.0
+    return 0.0 if min(angle, 180.0 - angle) < 1e-9 else angle
 
 
 def numbered(bodies: Bodies, pairs: Sequence[tuple[str, str]] | None) -> list[Pair]:

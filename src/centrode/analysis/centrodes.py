@@ -6,13 +6,13 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.analysis.bodies import ROUNDED, Array, Places, bodies_of
+from centrode.analysis.bodies import ROUNDED, Array, Places, bodies_of, vectors
 from centrode.analysis.centres import numbered
 from centrode.analysis.relative import Seen, seen_by
 from centrode.errors import Status
 from centrode.kinematics.dataset import named
 
-GAUSS = np.polynomial.legendre.leggauss(4)
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Dataset:
@@ -56,8 +56,8 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
         arcs = [_arc(curve, rate, pieces) for curve, rate in zip((fixed, moving), rates, strict=True)]
     front = tuple(map(str, motion["status"].dims))
     variables = {
-        "fixed_centrode": named("fixed_centrode", (*front, "axis"), _vectors(fixed)),
-        "moving_centrode": named("moving_centrode", (*front, "axis"), _vectors(moving)),
+        "fixed_centrode": named("fixed_centrode", (*front, "axis"), vectors(fixed)),
+        "moving_centrode": named("moving_centrode", (*front, "axis"), vectors(moving)),
         "centrode_piece": named("centrode_piece", front, pieces),
         "fixed_arc": named("fixed_arc", front, arcs[0]),
         "moving_arc": named("moving_arc", front, arcs[1]),
@@ -89,7 +89,7 @@ def _arc(curve: Places, rate: Places, pieces: npt.NDArray[np.int32]) -> Array:
     chord = curve[..., 1:] - curve[..., :-1]
     first, last = rate[..., :-1], rate[..., 1:]
     steps = np.zeros(chord.shape)
-    for node, weight in zip(*GAUSS, strict=True):
+    for node, weight in zip(NODES, WEIGHTS, strict=True):
         t = 0.5 * (node + 1.0)
         slope = 6.0 * t * (1.0 - t) * chord + (1.0 - t) * (1.0 - 3.0 * t) * first + t * (3.0 * t - 2.0) * last
         steps += 0.5 * weight * np.abs(slope)
@@ -98,7 +98,3 @@ def _arc(curve: Places, rate: Places, pieces: npt.NDArray[np.int32]) -> Array:
     for k in range(steps.shape[-1]):  # each piece begins at zero
         total[..., k + 1] = np.where(joined[..., k], total[..., k] + steps[..., k], 0.0)
     return np.asarray(np.where(pieces < 0, np.nan, total))
-
-
-def _vectors(places: Places) -> Array:
-    return np.stack([places.real, np.where(np.isnan(places.real), np.nan, places.imag)], axis=-1)

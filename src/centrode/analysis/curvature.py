@@ -10,7 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.algebra.jets import Jet
-from centrode.analysis.bodies import ROUNDED, Array, Places, described, refuse_batch, sliders_of
+from centrode.analysis.bodies import ROUNDED, Array, described, refuse_batch, sliders_of, vectors
 from centrode.analysis.relative import Seen
 from centrode.errors import InputError, NotComputedYet, Status
 from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
@@ -190,14 +190,14 @@ def _of_pole(seen: Seen, scale: float) -> dict[str, object]:
     ball = np.where(told, pole + square * (square * np.conj(to_inflection)).real, np.nan)
     tangent = np.angle(-1j * normal * seen.rotor)
     return {
-        "pole": named("pole", ("sample", "axis"), _vectors(seen.outside(pole))),
+        "pole": named("pole", ("sample", "axis"), vectors(seen.outside(pole))),
         "inflection_pole": named(
-            "inflection_pole", ("sample", "axis"), _vectors(seen.outside(pole + to_inflection))
+            "inflection_pole", ("sample", "axis"), vectors(seen.outside(pole + to_inflection))
         ),
         "inflection_diameter": named("inflection_diameter", ("sample",), diameter),
         "pole_tangent": named("pole_tangent", ("sample",), tangent),
         "stationary_cubic": named("stationary_cubic", ("sample", "coefficient"), cubic),
-        "ball_point": named("ball_point", ("sample", "axis"), _vectors(seen.outside(ball))),
+        "ball_point": named("ball_point", ("sample", "axis"), vectors(seen.outside(ball))),
     }
 
 
@@ -221,12 +221,5 @@ def _of_points(seen: Seen, points: Local, scale: float) -> dict[str, object]:
     return {
         "path_curvature": named("path_curvature", ("sample", "point"), curved),
         "path_curvature_slope": named("path_curvature_slope", ("sample", "point"), slope),
-        "curvature_centre": named("curvature_centre", ("sample", "point", "axis"), _vectors(outside)),
+        "curvature_centre": named("curvature_centre", ("sample", "point", "axis"), vectors(outside)),
     }
-
-
-def _vectors(places: Places) -> Array:
-    absent = ~np.isfinite(places)
-    found = np.stack([places.real, places.imag], axis=-1)
-    found[absent] = np.nan
-    return found

@@ -8,16 +8,16 @@ centre: a chord that closes two triangles is found.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Literal, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
 
 from centrode.analysis.bodies import ROUNDED, Bodies, Pair, bodies_of, refuse_batch
 from centrode.analysis.centres import numbered, upward
-from centrode.analysis.primary import Gearing, gearings_of, joints_of, ordered, place_of
+from centrode.analysis.construction import Construction, How, Step
+from centrode.analysis.primary import Gearing, Joint, gearings_of, joints_of, ordered, place_of
 from centrode.analysis.projective import (
     EPS,
     Spot,
@@ -33,7 +33,6 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 Derived: TypeAlias = "tuple[Pair, Spot | None, How, str, tuple[int, ...]]"
-How: TypeAlias = Literal["hinge", "guide", "rolling", "gear", "kennedy", "together", "rest", "field"]
 
 MOST_BODIES = 40
 """Bodies of one construction: its work grows as their cube."""
@@ -41,66 +40,6 @@ ROUNDINGS = 16.0 * EPS
 """Error of a place of the motion, in the size of the mechanism, besides its residual."""
 UNSURE = 1e-6
 """A crossing that may be off by more is not used: its lines all but coincide in this position."""
-
-
-@dataclass(frozen=True)
-class Step:
-    """How one centre was found.
-
-    Attributes
-    ----------
-    pair : numbers of the two bodies, the later first
-    how : "hinge", "guide" (at infinity square to it), "rolling" (contact), "gear", "kennedy" (two lines),
-        "together" (its two neighbours lie in one place), "rest" (no relative motion), "field" (the velocity
-        field, where Kennedy's theorem is not enough)
-    name : of the hinge, guide, wheel or gear
-    by : numbers of the bodies whose lines meet, or that were gone by
-    place : [m], None at infinity and at rest
-    direction : unit vector towards a centre at infinity, else None
-    error : bound on rounding, as an angle between places seen from the mechanism's size
-    """
-
-    pair: Pair
-    how: How
-    name: str
-    by: tuple[int, ...]
-    place: tuple[float, float] | None
-    direction: tuple[float, float] | None
-    error: float
-
-
-@dataclass(frozen=True)
-class Construction:
-    """Constructed centres of one position: `bodies` by number, `steps` in the order they were found.
-
-    `mismatch` of a pair is the relative velocity left at its constructed centre, in the greatest velocity of
-    the motion: zero to rounding.
-    """
-
-    bodies: tuple[str, ...]
-    steps: tuple[Step, ...]
-    mismatch: dict[Pair, float]
-
-    def step(self, first: str, second: str) -> Step:
-        """The step that found the centre of two bodies; raises InputError where there is none."""
-        for step in self.steps:
-            if {first, second} == {self.bodies[number] for number in step.pair}:
-                return step
-        raise InputError(
-            "pair",
-            _("there is no constructed centre of {first} and {second}").format(first=first, second=second),
-        )
-
-    def needed(self, pairs: Sequence[Pair]) -> Construction:
-        """The same with the steps alone that lead to some pairs."""
-        wanted: set[Pair] = {ordered(pair) for pair in pairs}
-        kept: list[Step] = []
-        for step in reversed(self.steps):
-            if step.pair in wanted:
-                kept.append(step)
-                wanted.update(ordered((one, by)) for by in step.by for one in step.pair)
-        steps = tuple(reversed(kept))
-        return replace(self, steps=steps, mismatch={step.pair: self.mismatch[step.pair] for step in steps})
 
 
 def construct_centres(
@@ -164,25 +103,29 @@ class _Constructing:
     def run(self) -> Construction:
         """Find all centres."""
         for joint in joints_of(self.bodies.mechanism, self.bodies):
-            place, at_infinity = place_of(joint, self.bodies)
-            where = self._spot(place, at_infinity)
-            before = self.known.get(joint.pair)
-            if joint.pair not in self.known:
-                self._note(joint.pair, where, joint.kind, joint.name, at=None if at_infinity else place)
-            elif before is not None and differ(before, where):
-                self._rest(joint.pair, ())  # joined twice, the bodies cannot move against each other
+            self._see(joint)
         everything = [ordered(pair) for pair in combinations(range(len(self.bodies.names)), 2)]
         unknown = [pair for pair in everything if pair not in self.known]
         while unknown:
             found = [step for step in map(self._derived, unknown) if step is not None]
-            for pair, place, how, name, by in found or [self._borrowed(unknown)]:
-                if place is None:
+            for pair, where, how, name, by in found or [self._borrowed(unknown)]:
+                if where is None:
                     self._rest(pair, by)
                 else:
-                    self._note(pair, place, how, name, by)
+                    self._note(pair, where, how, name, by)
             unknown = [pair for pair in unknown if pair not in self.known]
         mismatch = {step.pair: self._mismatch(step.pair) for step in self.steps}
         return Construction(self.bodies.names, tuple(self.steps), mismatch)
+
+    def _see(self, joint: Joint) -> None:
+        """Take in the centre that a joint shows."""
+        place, at_infinity = place_of(joint, self.bodies)
+        where = self._spot(place, at_infinity)
+        before = self.known.get(joint.pair)
+        if joint.pair not in self.known:
+            self._note(joint.pair, where, joint.kind, joint.name, at=None if at_infinity else place)
+        elif before is not None and differ(before, where):
+            self._rest(joint.pair, ())  # joined twice, the bodies cannot move against each other
 
     def _spot(self, place: complex, at_infinity: bool) -> Spot:
         return (
@@ -286,10 +229,10 @@ class _Constructing:
         """The velocity field of a pair as a place: (x, y, w) over its spin, in the greatest velocity."""
         moving, spin = self.bodies.relative(pair)
         rate = float(self.bodies.rate) or 1.0
-        spin = float(spin) * self.size / rate
+        turning = float(spin) * self.size / rate
         arm = (complex(self.bodies.place[pair[0]]) - self.middle) / self.size
-        x = spin * arm + 1j * complex(moving) / rate
-        return x.real, x.imag, spin
+        x = turning * arm + 1j * complex(moving) / rate
+        return x.real, x.imag, turning
 
     def _mismatch(self, pair: Pair) -> float:
         """Relative velocity at the constructed centre, in the greatest of the motion."""

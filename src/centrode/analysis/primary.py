@@ -52,7 +52,13 @@ def joints_of(mechanism: Mechanism, bodies: Bodies) -> tuple[Joint, ...]:
 def gearings_of(mechanism: Mechanism, bodies: Bodies) -> tuple[Gearing, ...]:
     """Gears as ties between centres."""
     return tuple(
-        Gearing(gear.id, *(bodies.number(name) for name in (*gear.links, gear.carrier)), gear.ratio)
+        Gearing(
+            gear.id,
+            bodies.number(gear.links[0]),
+            bodies.number(gear.links[1]),
+            bodies.number(gear.carrier),
+            gear.ratio,
+        )
         for gear in mechanism.gears
     )
 

@@ -15,6 +15,8 @@ from typing import Any
 import click
 
 import centrode as ct
+from centrode.cli.centres import centres
+from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
 from centrode.cli.examples import examples
 from centrode.cli.limits import limits
@@ -26,7 +28,17 @@ from centrode.cli.translation import language_option, translated, wished_languag
 from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
-COMMANDS: tuple[click.Command, ...] = (run, check, limits, region, sweep, examples, schema)
+COMMANDS: tuple[click.Command, ...] = (
+    run,
+    check,
+    limits,
+    region,
+    centres,
+    centrodes,
+    sweep,
+    examples,
+    schema,
+)
 """In the order that `centrode --help` lists them."""
 
 FAULT, INTERRUPTED, READER_GONE = 70, 130, 141
