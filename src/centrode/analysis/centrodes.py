@@ -95,6 +95,6 @@ def _arc(curve: Places, rate: Places, pieces: npt.NDArray[np.int32]) -> Array:
         steps += 0.5 * weight * np.abs(slope)
     joined = pieces[..., 1:] == pieces[..., :-1]
     total = np.zeros(curve.shape)
-    for k in range(steps.shape[-1]):  # each piece begins at zero
+    for k in range(chord.shape[-1]):  # each piece begins at zero
         total[..., k + 1] = np.where(joined[..., k], total[..., k] + steps[..., k], 0.0)
     return np.asarray(np.where(pieces < 0, np.nan, total))

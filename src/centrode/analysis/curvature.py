@@ -182,11 +182,12 @@ def _of_pole(seen: Seen, scale: float) -> dict[str, object]:
     to_inflection = np.where(turning, second - 1j * first, np.nan)
     rest = third + first
     diameter = np.abs(to_inflection)
-    normal = to_inflection / diameter
+    # a hinge that stays has a circle without size, and no tangent
+    normal = np.where(diameter > ROUNDED * scale, to_inflection / diameter, np.nan)
     ahead = rest * np.conj(-1j * normal)  # in the pole's axes: x along the tangent, y along the normal
     cubic = np.stack([ahead.real + 3.0 * diameter, ahead.imag], axis=-1) / (3.0 * diameter**2)[:, None]
     square = 1j * rest / np.abs(rest)
-    told = np.abs(rest) > ROUNDED * np.maximum(diameter, scale)
+    told = (np.abs(rest) > ROUNDED * np.maximum(diameter, scale)) & np.isfinite(normal)
     ball = np.where(told, pole + square * (square * np.conj(to_inflection)).real, np.nan)
     tangent = np.angle(-1j * normal * seen.rotor)
     return {
