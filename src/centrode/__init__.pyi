@@ -49,7 +49,6 @@ from .analysis.kennedy import MOST_BODIES as MOST_BODIES
 from .analysis.centrodes import centrodes as centrodes
 from .analysis.curvature import curvature as curvature
 from .study.centres import body_names as body_names
-from .study.centres import bodies_text as bodies_text
 from .study.centres import initial_place as initial_place
 from .study.centres import place_words as place_words
 from .study.centres import centres_header as centres_header

@@ -84,7 +84,7 @@ def centres(
                     _draw(description, motion, made, asked, draft, dark)
                 files = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
-    click.echo(f"\n{output.paragraph(_('bodies') + ':', ct.bodies_text(names).split(', '))}")
+    click.echo(f"\n{_numbered(names)}")
     for text in texts:
         click.echo(f"\n{text}")
     if out is not None:
@@ -101,6 +101,12 @@ def centres(
             ),
             _("ask for places between the limits"),
         )
+
+
+def _numbered(names: Iterable[str]) -> str:
+    """The bodies by number; a number and its name stay in one line."""
+    items = [f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names)]
+    return output.paragraph(_("bodies") + ":", items).replace("\N{NO-BREAK SPACE}", " ")
 
 
 def named_pairs(texts: Iterable[str]) -> list[tuple[str, str]]:

@@ -168,11 +168,10 @@ def _column(
     ]
     texts = [f"{number} {plain(name)}" for number, name in enumerate(needed.bodies)]
     columns = 1 if len(texts) <= 4 else 2 if len(texts) <= 12 else 3
-    bodies = key.legend(
+    key.legend(
         handles, texts, loc="upper left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=8.0,
         handlelength=1.4, borderaxespad=0.0, columnspacing=0.8, labelspacing=0.25,
     )  # fmt: skip
-    key.add_artist(bodies)
     rows = -(-len(texts) // columns)
     _order(key, needed, shown, inside, top=1.0 - 0.066 * rows - 0.035)
 

@@ -19,7 +19,7 @@ LEAST = 0.58  # lightness that a coloured line gets at least
 
 def darkened(figure: Figure) -> Figure:
     """Turn the colours of a figure round: greys by their lightness, colours made light enough; returns it."""
-    for artist in figure.findobj():
+    for artist in {id(one): one for one in figure.findobj()}.values():  # some are found twice
         if isinstance(artist, Line2D):
             artist.set_color(_light(artist.get_color()))
             for name in ("markerfacecolor", "markeredgecolor"):

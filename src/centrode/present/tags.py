@@ -19,7 +19,7 @@ SIDES = 24
 STEP = 0.45  # between the rings on which a text is tried, in its height
 RINGS = 26
 GAP = 2.0  # between texts [pixels at 72 dpi]
-SOLID, THIN = 1.6, 0.5  # cost of a line under a text, in rings
+RING, SOLID, THIN = 0.35, 1.6, 0.5  # cost of each ring further out, of a line under a text, of a thin one
 LEADER = 1.5  # a text farther than so many of its heights gets a thin line to its place
 
 
@@ -53,82 +53,66 @@ def write_tags(
     weights = np.repeat([SOLID, THIN], [len(solid), len(thin)])
     anchors = [np.asarray(axes.transData.transform(tag.place)) for tag in tags]
     room = axes.get_window_extent()
-    taken: list[Bbox] = []
+    taken: list[Array] = []
     for number, tag in enumerate(tags):
-        width, height = _extent(figure, tag.text, size)
-        signs = [_around(anchor, reach * pixel) for k, anchor in enumerate(anchors) if k != number]
+        extent = _extent(figure, tag.text, size)
+        signs = [_square(anchor, reach * pixel) for k, anchor in enumerate(anchors) if k != number]
+        others = np.array([*taken, *signs]).reshape(-1, 4)
         box = _best(
-            anchors[number], (width, height), reach * pixel, [*taken, *signs], (lines, weights), room, pixel
+            _candidates(anchors[number], extent, reach * pixel, pixel), others, (lines, weights), room, pixel
         )
         taken.append(box)
-        centre = 0.5 * (box.p0 + box.p1)
-        _write(axes, tag, centre, box, anchors[number], size, height)
+        _write(axes, tag, box, anchors[number], size)
 
 
-def _extent(figure: Figure, text: str, size: float) -> tuple[float, float]:
+def _extent(figure: Figure, text: str, size: float) -> Array:
     """Width and height of a text [pixel]."""
     written = figure.text(0.5, 0.5, text, fontsize=size, linespacing=1.05)
     canvas: Any = FigureCanvasAgg(figure)
     box = written.get_window_extent(canvas.get_renderer())
     written.remove()
-    return float(box.width), float(box.height)
+    return np.array([float(box.width), float(box.height)])
 
 
-def _around(anchor: Array, radius: float) -> Bbox:
-    return Bbox([anchor - radius, anchor + radius])
+def _square(anchor: Array, radius: float) -> Array:
+    return np.concatenate([anchor - radius, anchor + radius])
 
 
-def _best(
-    anchor: Array,
-    extent: tuple[float, float],
-    reach: float,
-    taken: Sequence[Bbox],
-    lines: tuple[Array, Array],
-    room: Bbox,
-    pixel: float,
-) -> Bbox:
-    """The box of the least cost: free of all others, near its place, on few lines."""
-    half = 0.5 * np.array(extent)
+def _candidates(anchor: Array, extent: Array, reach: float, pixel: float) -> Array:
+    """Boxes (rings * sides, 4) about a place, the nearest ring first: lower left and upper right corners."""
+    half = 0.5 * extent
     turns = np.pi / 4 + 2 * np.pi * np.arange(SIDES) / SIDES
     ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
     # the box touches a circle about the place from outside, whichever side it stands on
-    sides = np.minimum(
-        half[0] / np.maximum(np.abs(ways[:, 0]), 1e-9), half[1] / np.maximum(np.abs(ways[:, 1]), 1e-9)
-    )
-    best, least = None, np.inf
-    for ring in range(RINGS):
-        away = reach + GAP * pixel + 2.0 * STEP * half[1] * ring
-        for way, side in zip(ways, sides, strict=True):
-            centre = anchor + way * (away + side)
-            box = Bbox([centre - half, centre + half])
-            padded = Bbox([box.p0 - GAP * pixel, box.p1 + GAP * pixel])
-            cost = 0.35 * ring + _lines_through(padded, *lines)
-            if any(padded.overlaps(other) for other in taken):
-                cost += 1000.0
-            if box.x0 < room.x0 or box.x1 > room.x1 or box.y0 < room.y0 or box.y1 > room.y1:
-                cost += 300.0
-            if cost < least - 1e-9:
-                best, least = box, cost
-        if least <= 0.35 * (ring + 1):
-            break
-    assert best is not None
-    return best
+    sides = np.min(half / np.maximum(np.abs(ways), 1e-9), axis=1)
+    away = reach + GAP * pixel + 2.0 * STEP * half[1] * np.arange(RINGS)
+    centres = anchor + ways * (away[:, None, None] + sides[:, None])
+    centres = centres.reshape(-1, 2)
+    return np.concatenate([centres - half, centres + half], axis=1)
 
 
-def _lines_through(box: Bbox, lines: Array, weights: Array) -> float:
-    """Weights of the segments that pass through a box (slab method)."""
-    if not len(lines):
-        return 0.0
+def _best(boxes: Array, others: Array, lines: tuple[Array, Array], room: Bbox, pixel: float) -> Array:
+    """The box of the least cost: free of all others, near its place, on few lines."""
+    padded = boxes + GAP * pixel * np.array([-1.0, -1.0, 1.0, 1.0])
+    cost = RING * np.repeat(np.arange(RINGS), SIDES) + _weight_below(padded, *lines)
+    low, high = padded[:, None, :2], padded[:, None, 2:]
+    covers = ((low < others[:, 2:]) & (high > others[:, :2])).all(axis=2).any(axis=1)
+    outside = (boxes[:, :2] < room.p0).any(axis=1) | (boxes[:, 2:] > room.p1).any(axis=1)
+    return np.asarray(boxes[int(np.argmin(np.round(cost + 1000.0 * covers + 300.0 * outside, 6)))])
+
+
+def _weight_below(boxes: Array, lines: Array, weights: Array) -> Array:
+    """Weights of the segments that pass through each box (slab method)."""
     start, along = lines[:, 0], lines[:, 1] - lines[:, 0]
     along = np.where(np.abs(along) < 1e-12, 1e-12, along)
-    low, high = (box.p0 - start) / along, (box.p1 - start) / along
-    enter = np.minimum(low, high).max(axis=1)
-    leave = np.maximum(low, high).min(axis=1)
-    return float(np.sum(weights[(enter < leave) & (leave > 0.0) & (enter < 1.0)]))
+    ends = (boxes.reshape(-1, 1, 2, 2) - start[:, None, :]) / along[:, None, :]
+    enter, leave = ends.min(axis=2).max(axis=2), ends.max(axis=2).min(axis=2)
+    return np.asarray(((enter < leave) & (leave > 0.0) & (enter < 1.0)) @ weights)
 
 
-def _write(axes: Axes, tag: Tag, centre: Array, box: Bbox, anchor: Array, size: float, height: float) -> None:
-    place = axes.transData.inverted().transform(centre)
+def _write(axes: Axes, tag: Tag, box: Array, anchor: Array, size: float) -> None:
+    """A text in its box, with a thin line to its place where that is far."""
+    place = axes.transData.inverted().transform(0.5 * (box[:2] + box[2:]))
     axes.text(
         place[0],
         place[1],
@@ -141,7 +125,7 @@ def _write(axes: Axes, tag: Tag, centre: Array, box: Bbox, anchor: Array, size: 
         zorder=9,
         gid="tag",
     )
-    nearest = np.clip(anchor, box.p0, box.p1)
-    if np.hypot(*(nearest - anchor)) > LEADER * height:
+    nearest = np.clip(anchor, box[:2], box[2:])
+    if np.hypot(*(nearest - anchor)) > LEADER * size * axes.figure.dpi / 72.0:
         ends = axes.transData.inverted().transform([anchor, nearest])
         axes.plot(ends[:, 0], ends[:, 1], color=MUTED, linewidth=0.5, zorder=8.5)

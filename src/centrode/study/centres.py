@@ -29,11 +29,6 @@ def centre_symbol(pair: Pair, bodies: int) -> str:
     return f"P{pair[0]}{comma}{pair[1]}"
 
 
-def bodies_text(names: Sequence[str]) -> str:
-    """Numbers of the bodies: "0 frame, 1 OA"."""
-    return ", ".join(f"{number} {name}" for number, name in enumerate(names))
-
-
 def initial_place(mechanism: Mechanism) -> float:
     """Value of the drive in the initial position, with a law or several drives the time there [rad, m or s]."""
     path = ready(mechanism).kinematics.path
