@@ -46,7 +46,7 @@ def write_tags(
     """
     figure = axes.figure
     assert isinstance(figure, Figure)
-    figure.draw_without_rendering()
+    axes.apply_aspect()
     pixel = figure.dpi / 72.0
     lines = np.array([[axes.transData.transform(end) for end in segment] for segment in (*solid, *thin)])
     lines = lines.reshape(-1, 2, 2)
@@ -105,8 +105,11 @@ def _weight_below(boxes: Array, lines: Array, weights: Array) -> Array:
     """Weights of the segments that pass through each box (slab method)."""
     start, along = lines[:, 0], lines[:, 1] - lines[:, 0]
     along = np.where(np.abs(along) < 1e-12, 1e-12, along)
-    ends = (boxes.reshape(-1, 1, 2, 2) - start[:, None, :]) / along[:, None, :]
-    enter, leave = ends.min(axis=2).max(axis=2), ends.max(axis=2).min(axis=2)
+    enter: Array = np.full((len(boxes), len(lines)), -np.inf)
+    leave: Array = np.full((len(boxes), len(lines)), np.inf)
+    for axis in (0, 1):
+        low, high = ((boxes[:, None, axis + side] - start[:, axis]) / along[:, axis] for side in (0, 2))
+        enter, leave = np.maximum(enter, np.minimum(low, high)), np.minimum(leave, np.maximum(low, high))
     return np.asarray(((enter < leave) & (leave > 0.0) & (enter < 1.0)) @ weights)
 
 
