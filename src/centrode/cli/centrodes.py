@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 DEFAULT_FOLDER = "{name}-centrodes"
 
 
-@click.command(help=mark("Compute the fixed and the moving centrode of a link and draw them."))
+@click.command(help=mark("Compute the centrodes of a link and draw them."))
 @mechanism_argument
 @click.option(
     "--link", required=True, metavar=mark("LINK"), help=mark("The link that carries the moving centrode.")

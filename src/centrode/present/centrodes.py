@@ -35,6 +35,7 @@ WIDTH, HEIGHT = 8.2, 5.75  # inches: A5 across
 PLACE = (0.085, 0.095, 0.66, 0.775)
 FIXED, MOVING, CENTRE = "#0072B2", "#D55E00", "#A00000"
 FRAMES = 48
+LOOKS = 9  # samples whose curves the window holds
 MILLISECONDS = 70  # a frame
 SCREEN_DPI = 90
 NAMED = 10.0
@@ -83,16 +84,14 @@ def animate_centrodes(
             canvas: Any = FigureCanvasAgg(darkened(figure) if dark else figure)
             canvas.draw()
             picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
-            pictures.append(picture.quantize(64, dither=Image.Dither.NONE))
+            pictures.append(picture.quantize(256, dither=Image.Dither.NONE))
     pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=MILLISECONDS, loop=0)
 
 
 def _scene(mechanism: Mechanism, motion: xarray.Dataset, centrodes: xarray.Dataset) -> Scene:
     scene = scene_of(mechanism, motion)
-    against = str(centrodes.attrs["against"])
-    fixed = centrodes["fixed_centrode"].to_numpy()
-    shown = [carried_by(scene, against, fixed, 0)] if against == "frame" else []
-    places = np.concatenate([*shown, np.empty((0, 2))])
+    looks = np.unique(np.linspace(0, motion.sizes["sample"] - 1, LOOKS).astype(int))
+    places = np.concatenate([curve for look in looks for curve in _curves(scene, centrodes, int(look))])
     return widened(scene, places, (PLACE[2] * WIDTH - 0.3, PLACE[3] * HEIGHT - 0.3))
 
 
@@ -114,11 +113,7 @@ def _drawn(
     draw_mechanism(axes, scene, sample, names=False)
     label_lengths(axes, scene)
     axes.set_title(caption(scene.mechanism, motion, sample))
-    bodies = [str(centrodes.attrs[name]) for name in ("against", "link")]
-    curves = [
-        carried_by(scene, body, centrodes[name].to_numpy(), sample)
-        for body, name in zip(bodies, ("fixed_centrode", "moving_centrode"), strict=True)
-    ]
+    curves = _curves(scene, centrodes, sample)
     pieces = centrodes["centrode_piece"].to_numpy()
     handles = [
         _draw_curve(axes, curve, pieces, colour)
@@ -132,7 +127,7 @@ def _drawn(
     reach = 72 * scene.sign * scene.inches / scene.extent
     inside = [np.where(_near(scene, curve)[:, None], curve, np.nan) for curve in curves]
     write_tags(axes, tags, lines(scene, sample), segments_of(inside), NAMED, reach)
-    against, link = map(plain, bodies)
+    against, link = (plain(str(centrodes.attrs[name])) for name in ("against", "link"))
     texts = [
         _("fixed centrode\n(of {name})").format(name=against),
         _("moving centrode\n(of {name})").format(name=link),
@@ -140,6 +135,13 @@ def _drawn(
     write_legend(axes, list(zip(handles, texts, strict=True)))
     write_title(figure, _("Centrodes"), _(scene.mechanism.title))
     return figure
+
+
+def _curves(scene: Scene, centrodes: xarray.Dataset, sample: int) -> tuple[Array, Array]:
+    """Fixed and moving centrode, laid where their bodies are at a sample."""
+    fixed, moving = (centrodes[name].to_numpy() for name in ("fixed_centrode", "moving_centrode"))
+    bodies = [str(centrodes.attrs[name]) for name in ("against", "link")]
+    return carried_by(scene, bodies[0], fixed, sample), carried_by(scene, bodies[1], moving, sample)
 
 
 def _near(scene: Scene, curve: Array) -> Array:

@@ -96,7 +96,8 @@ def _best(boxes: Array, others: Array, lines: tuple[Array, Array], room: Bbox, p
     padded = boxes + GAP * pixel * np.array([-1.0, -1.0, 1.0, 1.0])
     cost = RING * np.repeat(np.arange(RINGS), SIDES) + _weight_below(padded, *lines)
     low, high = padded[:, None, :2], padded[:, None, 2:]
-    covers = ((low < others[:, 2:]) & (high > others[:, :2])).all(axis=2).any(axis=1)
+    apart = np.asarray(((low >= others[:, 2:]) | (high <= others[:, :2])).any(axis=2))
+    covers = ~apart.all(axis=1)
     outside = (boxes[:, :2] < room.p0).any(axis=1) | (boxes[:, 2:] > room.p1).any(axis=1)
     return np.asarray(boxes[int(np.argmin(np.round(cost + 1000.0 * covers + 300.0 * outside, 6)))])
 
