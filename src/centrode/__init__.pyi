@@ -53,6 +53,7 @@ from .study.centres import initial_place as initial_place
 from .study.centres import place_words as place_words
 from .study.centres import centres_header as centres_header
 from .study.centres import centres_rows as centres_rows
+from .study.centres import steps_leading_to as steps_leading_to
 from .study.centres import centrode_rows as centrode_rows
 from .study.centres import curvature_rows as curvature_rows
 

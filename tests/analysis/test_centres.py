@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import centrode as ct
 from centrode.analysis.bodies import ROUNDED, bodies_of
 from growing import KINDS, descriptions, grown, mechanism_of
-from growing_higher import higher_descriptions
+from growing_higher import grown_higher, higher_descriptions
 from mechanisms import EPS, conditioning, moved, point, solved_at
 
 WORTH = 1e5
@@ -262,6 +262,36 @@ def test_bodies_at_rest_against_each_other_have_no_centre() -> None:
     made = ct.construct_centres(motion)
     assert made.step("bar", "AB").how == "rest"
     assert max(made.mismatch.values()) <= 1e-13
+
+
+def test_a_triangle_of_links_is_rigid() -> None:
+    """Two rods between two points of a crank stand still against it: their centres are not on a line."""
+    parts = {
+        "frame": {"points": {"O": [0, 0]}},
+        "links": {
+            "crank": {"points": {"O": [0, 0], "A": [1, 0], "B": [0, 1]}},
+            "AC": {"length": 1.2},
+            "BC": {"length": 1.1},
+        },
+        "drives": [{"link": "crank", "start": 0.3, "speed": 1}],
+        "assembly": {"sides": {"C": "left"}},
+    }
+    made = ct.construct_centres(ct.motion(ct.Mechanism(**parts), at=[0.3]))
+    for pair in (("AC", "crank"), ("BC", "crank"), ("BC", "AC")):
+        assert made.step(*pair).how == "rest"
+    for link in ("AC", "BC"):
+        assert made.step(link, "frame").how == "together"
+        assert made.step(link, "frame").place == pytest.approx((0.0, 0.0), abs=16 * EPS)
+
+
+@pytest.mark.parametrize("group", ["triad", "four sides"])
+def test_where_no_two_lines_tell_one_centre_comes_from_the_velocities(group: str) -> None:
+    """Groups of the third and the fourth class on moving bodies: the theorem alone stops, and the step says so."""
+    parts = grown_higher([group], 3)
+    motion = ct.motion(mechanism_of(parts), at=[parts["drives"][0]["start"]])
+    made = ct.construct_centres(motion)
+    assert [step.how for step in made.steps].count("field") == 1
+    assert all(made.mismatch[step.pair] <= step.error for step in made.steps)
 
 
 def test_steps_lead_to_what_is_asked() -> None:

@@ -127,6 +127,20 @@ def test_centrodes_are_written(centrode: Centrode, folder: Path) -> None:
     assert {row["status"] for row in table} == {"ok"}
 
 
+def test_curvature_at_a_place_that_is_not_reached_ends_with_3(centrode: Centrode, folder: Path) -> None:
+    arguments = ("--link", "CB", "--samples", "5", "--at", "1 rad", "--at", "2 rad", "--out", "r")
+    done = centrode("centrodes", "slider-between-cranks-locked", *arguments)
+    assert done.code == 3
+    assert "at 1 of 2 places there are no velocities (open)" in done.err
+    assert sorted(path.name for path in (folder / "r").glob("*.png")) == ["centrodes.png", "curvature-1.png"]
+
+
+def test_the_way_to_a_pair_is_told(centrode: Centrode) -> None:
+    done = centrode("centres", "five-bar-two-drives", "--pair", "AB,EC")
+    assert done.code == 0
+    assert "by way of: " in done.out and "velocity field" in done.out.partition("by way of")[2]
+
+
 def test_centrodes_of_links_against_each_other(centrode: Centrode, folder: Path) -> None:
     done = centrode(
         "centrodes", "antiparallelogram", "--link", "DB", "--against", "OA", "--from", "30 deg", "--to", "160 deg",

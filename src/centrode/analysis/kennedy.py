@@ -26,6 +26,7 @@ from centrode.analysis.projective import (
     cross,
     crossing,
     differ,
+    dot,
     length,
     spot,
 )
@@ -104,6 +105,7 @@ class _Constructing:
         """Find all centres."""
         for joint in joints_of(self.bodies.mechanism, self.bodies):
             self._see(joint)
+        self._lock()
         everything = [ordered(pair) for pair in combinations(range(len(self.bodies.names)), 2)]
         unknown = [pair for pair in everything if pair not in self.known]
         while unknown:
@@ -126,6 +128,20 @@ class _Constructing:
             self._note(joint.pair, where, joint.kind, joint.name, at=None if at_infinity else place)
         elif before is not None and differ(before, where):
             self._rest(joint.pair, ())  # joined twice, the bodies cannot move against each other
+
+    def _lock(self) -> None:
+        """Three bodies whose joints show centres that are not on a line cannot move against each other."""
+        rigid: set[Pair] = set()
+        for triple in combinations(range(len(self.bodies.names)), 3):
+            pairs = [ordered(pair) for pair in combinations(triple, 2)]
+            one, other, third = (self.known.get(pair) for pair in pairs)
+            if one is None or other is None or third is None:
+                continue
+            volume = abs(dot(cross(one.vector, other.vector), third.vector))
+            if volume > one.error + other.error + third.error + EPS:
+                rigid.update(pairs)
+        for pair in sorted(rigid):
+            self._rest(pair, ())
 
     def _spot(self, place: complex, at_infinity: bool) -> Spot:
         return (

@@ -41,6 +41,11 @@ def cross(a: Triple, b: Triple) -> Triple:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
+def dot(a: Triple, b: Triple) -> float:
+    """Scalar product: zero where a place lies on a line."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
 def length(a: Triple) -> float:
     """Length of a vector."""
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])

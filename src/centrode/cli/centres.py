@@ -13,9 +13,9 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.cli.progress import Progress
-from centrode.errors import InputError, MotionError
+from centrode.cli.reached import is_moving, tell_absent
+from centrode.errors import InputError
 from centrode.locale import _, mark, ngettext
-from centrode.quantities import status_word
 
 if TYPE_CHECKING:
     import xarray
@@ -72,7 +72,9 @@ def centres(
             _check_rows(names, asked)
             found = ct.instant_centres(motion, asked)
             made = [_constructed(motion, sample, names) for sample in range(len(at))]
-        texts = [_text(description, motion, found, sample, names, made[sample]) for sample in range(len(at))]
+        texts = [
+            _text(description, motion, found, sample, names, made[sample], asked) for sample in range(len(at))
+        ]
         files: list[str] = []
         if out is not None:
             with output.output_folder(out) as draft:
@@ -92,21 +94,17 @@ def centres(
             n=len(files), folder=out
         )
         click.echo(f"\n{output.paragraph(f'{count}:', files)}")
-    absent = [int(status) for status in motion["status"].values if int(status) not in (0, 2)]
-    if absent:
-        raise MotionError(
-            mechanism,
-            _("at {n} of {all} places there are no velocities ({status})").format(
-                n=len(absent), all=len(at), status=status_word(absent[0])
-            ),
-            _("ask for places between the limits"),
-        )
+    tell_absent(mechanism, motion)
 
 
 def _numbered(names: Iterable[str]) -> str:
     """The bodies by number; a number and its name stay in one line."""
-    items = [f"{number} {name}".replace(" ", "\N{NO-BREAK SPACE}") for number, name in enumerate(names)]
+    items = [_unbroken(f"{number} {name}") for number, name in enumerate(names)]
     return output.paragraph(_("bodies") + ":", items).replace("\N{NO-BREAK SPACE}", " ")
+
+
+def _unbroken(text: str) -> str:
+    return text.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def named_pairs(texts: Iterable[str]) -> list[tuple[str, str]]:
@@ -141,7 +139,7 @@ def _check_rows(names: tuple[str, ...], asked: list[tuple[str, str]] | None) -> 
 
 def _constructed(motion: xarray.Dataset, sample: int, names: tuple[str, ...]) -> Construction | None:
     """The construction of a place; none where there is no position, or more bodies than can be drawn."""
-    if int(motion["status"][sample]) not in (0, 2) or len(names) > ct.MOST_BODIES:
+    if not is_moving(motion, sample) or len(names) > ct.MOST_BODIES:
         return None
     return ct.construct_centres(motion, sample)
 
@@ -153,10 +151,16 @@ def _text(
     sample: int,
     names: tuple[str, ...],
     made: Construction | None,
+    asked: list[tuple[str, str]] | None,
 ) -> str:
-    """A heading with the place and a table of its centres."""
+    """A heading with the place and a table of its centres; of pairs asked for also what they were found from."""
     rows = ct.centres_rows(description, found, sample, names, made)
-    return f"{ct.place_words(description, motion, sample)}\n{output.table(rows, ct.centres_header())}"
+    text = f"{ct.place_words(description, motion, sample)}\n{output.table(rows, ct.centres_header())}"
+    if asked is None or made is None:
+        return text
+    steps = [_unbroken(step) for step in ct.steps_leading_to(made, asked)]
+    way = f"\n{output.paragraph(_('by way of') + ':', steps)}" if steps else ""
+    return f"{text}{way}".replace("\N{NO-BREAK SPACE}", " ")
 
 
 def _draw(

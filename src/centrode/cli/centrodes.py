@@ -12,6 +12,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.cli.progress import Progress
+from centrode.cli.reached import is_moving, tell_absent
 from centrode.locale import _, mark, ngettext
 
 if TYPE_CHECKING:
@@ -77,6 +78,7 @@ def centrodes(
             motion = ct.motion(description, samples, first, last)
             found = ct.centrodes(motion, link, against)
             bent = ct.curvature(description, link, at, against) if at else None
+            looked = ct.motion(description, at=at) if at else None
         progress.say(_("writing tables"))
         ct.write_centrodes_csv(description, found, draft / "centrodes.csv")
         ct.write_motion_netcdf(found, draft / "centrodes.nc")
@@ -85,8 +87,8 @@ def centrodes(
         if not no_figures:
             progress.say(_("drawing"))
             _draw(description, motion, found, draft, dark)
-            if bent is not None:
-                _draw_curvature(description, ct.motion(description, at=at), bent, draft, dark)
+            if bent is not None and looked is not None:
+                _draw_curvature(description, looked, bent, draft, dark)
         if animate:
             progress.say(_("drawing {name}").format(name="centrodes.gif"))
             with about(mechanism):
@@ -101,6 +103,8 @@ def centrodes(
         n=len(names), folder=folder
     )
     click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    if looked is not None:
+        tell_absent(mechanism, looked)
 
 
 def _draw(
@@ -116,6 +120,8 @@ def _draw_curvature(
     """One picture for each place; numbered where there are several."""
     count = motion.sizes["sample"]
     for sample in range(count):
+        if not is_moving(motion, sample):
+            continue
         figure = ct.curvature_figure(description, motion, bent, sample)
         name = "curvature" if count == 1 else f"curvature-{sample + 1}"
         ct.save_figures({name: ct.darkened(figure) if dark else figure}, folder)

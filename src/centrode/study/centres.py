@@ -96,6 +96,18 @@ def centres_rows(
     return rows
 
 
+def steps_leading_to(construction: Construction, pairs: Sequence[tuple[str, str]]) -> list[str]:
+    """The steps that some centres were found from, themselves left out: "P10 hinge O"."""
+    names = construction.bodies
+    numbers = [(names.index(first), names.index(second)) for first, second in pairs]
+    wanted = {(max(pair), min(pair)) for pair in numbers}
+    return [
+        f"{centre_symbol(step.pair, len(names))} {step_text(step, names)}"
+        for step in construction.needed(numbers).steps
+        if step.pair not in wanted
+    ]
+
+
 def _step(construction: Construction | None, pair: Pair) -> Step | None:
     steps = () if construction is None else construction.steps
     return next((step for step in steps if step.pair == (max(pair), min(pair))), None)
