@@ -54,6 +54,22 @@ from .present import equations_text as equations_text
 from .present import equations_latex as equations_latex
 from .present import equations_markdown as equations_markdown
 from .present import equations_rows as equations_rows
+# Instant centres, centrodes, curvature
+from .analysis.centres import instant_centres as instant_centres
+from .analysis.cases import Case as Case
+from .analysis.kennedy import construct_centres as construct_centres
+from .analysis.construction import Construction as Construction
+from .analysis.kennedy import MOST_BODIES as MOST_BODIES
+from .analysis.centrodes import centrodes as centrodes
+from .analysis.curvature import curvature as curvature
+from .study.centres import body_names as body_names
+from .study.centres import initial_place as initial_place
+from .study.centres import place_words as place_words
+from .study.centres import centres_header as centres_header
+from .study.centres import centres_rows as centres_rows
+from .study.centres import steps_leading_to as steps_leading_to
+from .study.centres import centrode_rows as centrode_rows
+from .study.centres import curvature_rows as curvature_rows
 
 # Many mechanisms
 from .sweeps.sweeping import sweep as sweep
@@ -68,6 +84,13 @@ from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
 from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_region_csv as write_region_csv
+from .present import write_centres_csv as write_centres_csv
+from .present import write_centrodes_csv as write_centrodes_csv
+from .present import centres_figure as centres_figure
+from .present import centrodes_figure as centrodes_figure
+from .present import animate_centrodes as animate_centrodes
+from .present import curvature_figure as curvature_figure
+from .present import darkened as darkened
 from .present import motion_figures as motion_figures
 from .present import region_figure as region_figure
 from .present import save_figures as save_figures

@@ -29,7 +29,26 @@ def test_every_variable_of_a_motion_is_named() -> None:
     ]
     others = ("time", "drive_value", "position", "velocity", "acceleration", "contact", "status", "residual")
     events = ("event_value", "event_kind", "event_group")
-    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events}
+    centres = (
+        "centre",
+        "centre_direction",
+        "centre_case",
+        "fixed_centrode",
+        "moving_centrode",
+        "fixed_arc",
+        "moving_arc",
+        "centrode_piece",
+        "pole",
+        "inflection_pole",
+        "inflection_diameter",
+        "pole_tangent",
+        "ball_point",
+        "stationary_cubic",
+        "path_curvature",
+        "path_curvature_slope",
+        "curvature_centre",
+    )
+    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *centres}
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
 

@@ -15,6 +15,8 @@ from typing import Any
 import click
 
 import centrode as ct
+from centrode.cli.centres import centres
+from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
@@ -35,6 +37,8 @@ COMMANDS: tuple[click.Command, ...] = (
     rotatability,
     limits,
     region,
+    centres,
+    centrodes,
     sweep,
     examples,
     schema,

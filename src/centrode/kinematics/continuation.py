@@ -63,6 +63,8 @@ class Continuation:
     branches: Branches
     start: Positions
     nominal: Dimensions
+    order: int = 2
+    """Derivatives that interpolated stretches carry."""
     _tracks: dict[int, Tracks] = field(default_factory=dict)
     _windows: dict[int, list[Window]] = field(default_factory=dict)
     _known: dict[tuple[int, bool], list[Number]] = field(default_factory=dict)
@@ -158,7 +160,7 @@ class Continuation:
             lanes = np.repeat([window.lane for window in windows], len(NODES)).astype(np.intp)
             nodes = np.concatenate([window.centre + window.half * NODES for window in windows])
             m: Namespace = ROUNDED if bounded else JETS
-            lifted: Number = Rounded.of(nodes) if bounded else Jet.variable(nodes, 2)
+            lifted: Number = Rounded.of(nodes) if bounded else Jet.variable(nodes, self.order)
             used = self.kinematics.taken(lanes)
             at = used.frame(m, lifted)
             with np.errstate(all="ignore"):

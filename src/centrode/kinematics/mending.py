@@ -96,7 +96,8 @@ def mended(old: Number, node: Number, shape: tuple[int, ...], index: Index, basi
         value = _interpolated(known.value, basis)
         bound = _interpolated(known.bound + UNIT_ROUNDOFF * np.abs(known.value), np.abs(basis))
         return Rounded(_put(old.value, shape, index, value), _put(old.bound, shape, index, bound))
-    nodes = node.coefficients if isinstance(node, Jet) else (node, 0.0 * node, 0.0 * node)
+    still = [0.0 * node] * old.order if isinstance(old, Jet) and not isinstance(node, Jet) else []
+    nodes = node.coefficients if isinstance(node, Jet) else (node, *still)
     if isinstance(old, Jet):
         return Jet(
             [

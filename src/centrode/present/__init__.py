@@ -13,7 +13,12 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.centres import centres_figure
+    from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
+    from centrode.present.centrodes import animate_centrodes, centrodes_figure
     from centrode.present.coefficient_tables import write_coefficients_csv
+    from centrode.present.curvature import curvature_figure
+    from centrode.present.dark import darkened
     from centrode.present.drawing import draw_mechanism
     from centrode.present.equation_latex import equations_latex, equations_markdown
     from centrode.present.equation_text import equations_rows, equations_text
@@ -26,6 +31,11 @@ if TYPE_CHECKING:
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
 
 __all__ = [
+    "animate_centrodes",
+    "centres_figure",
+    "centrodes_figure",
+    "curvature_figure",
+    "darkened",
     "draw_mechanism",
     "equations_latex",
     "equations_markdown",
@@ -37,6 +47,8 @@ __all__ = [
     "save_figures",
     "scene_of",
     "sweep_csv",
+    "write_centres_csv",
+    "write_centrodes_csv",
     "write_coefficients_csv",
     "write_motion_csv",
     "write_motion_netcdf",
@@ -46,6 +58,11 @@ __all__ = [
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "centres": ["centres_figure"],
+        "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
+        "centrodes": ["animate_centrodes", "centrodes_figure"],
+        "curvature": ["curvature_figure"],
+        "dark": ["darkened"],
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
         "equation_latex": ["equations_latex", "equations_markdown"],
