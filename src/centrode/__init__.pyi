@@ -32,6 +32,15 @@ from .kinematics.several_drives.coefficients import kinematic_coefficients as ki
 from .kinematics.several_drives.reach import limits as limits
 from .kinematics.several_drives.reach import Limits as Limits
 from .kinematics.several_drives.region import reachable_region as reachable_region
+from .analysis.diagrams import velocity_diagram as velocity_diagram
+from .analysis.diagrams import acceleration_diagram as acceleration_diagram
+from .analysis.diagrams import Diagram as Diagram
+from .analysis.graphic_check import graphic_check as graphic_check
+from .analysis.graphic_check import GraphicCheck as GraphicCheck
+from .analysis.position_plan import plan_of_positions as plan_of_positions
+from .analysis.position_plan import PositionPlan as PositionPlan
+from .analysis.transmission import transmission_angles as transmission_angles
+from .study.graphic import graphic_text as graphic_text
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.limiting import limits_rows as limits_rows
@@ -55,6 +64,10 @@ from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_region_csv as write_region_csv
 from .present import motion_figures as motion_figures
 from .present import region_figure as region_figure
+from .present import diagram_figures as diagram_figures
+from .present import plan_figure as plan_figure
+from .present import transmission_figure as transmission_figure
+from .present import in_dark as in_dark
 from .present import save_figures as save_figures
 
 # Words, failures, language

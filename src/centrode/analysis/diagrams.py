@@ -1,0 +1,246 @@
+"""Velocity and acceleration diagrams of a mechanism at an instant, constructed as on a drawing board."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jets import Jet
+from centrode.analysis.board import Board, round_scale
+from centrode.analysis.construction import construct
+from centrode.analysis.stage import Drawing, Edge, Stage, Step
+from centrode.errors import InputError, MotionError, Status
+from centrode.geometry.plane import pose_with_point
+from centrode.kinematics.dataset import dataset_of
+from centrode.kinematics.paths import JETS
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.solve import solve
+from centrode.kinematics.spans import Span, span_at
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.quantities import status_word
+from centrode.structure.positions import FRAME, Positions
+
+PAPER = (90.0, 90.0)
+"""Room of a drawing on a page A5 [mm]: across and up."""
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """A velocity or acceleration diagram.
+
+    Attributes
+    ----------
+    order : 1 of velocities, 2 of accelerations
+    images : point -> end of its vector from the pole, a complex number [m/s or m/s^2]; the frame's points at the pole
+    hidden : places of links under points that slide on them (a dash behind the point's name)
+    edges : relative vectors and the parts of vector equations, as they are drawn
+    turns : link -> angular velocity [rad/s] or acceleration [rad/s^2]
+    steps : what was done, group by group, with triangles and trials
+    scale : what a millimetre stands for [m/s or m/s^2]
+    """
+
+    order: int
+    images: Mapping[str, complex]
+    hidden: Mapping[str, complex]
+    edges: tuple[Edge, ...]
+    turns: Mapping[str, float]
+    steps: tuple[Step, ...]
+    scale: float
+
+    @property
+    def unit(self) -> str:
+        """SI unit of its vectors."""
+        return "m/s" if self.order == 1 else "m/s^2"
+
+
+@dataclass(frozen=True)
+class Diagrams:
+    """Everything that is drawn of one instant.
+
+    Attributes
+    ----------
+    exact : the motion at the instant
+    scale : metres that a millimetre of the mechanism's drawing stands for
+    centres : link -> its instant centre [m]; None at infinity; links at rest are left out
+    """
+
+    mechanism: Mechanism
+    exact: xr.Dataset
+    board: Board
+    velocity: Diagram
+    acceleration: Diagram
+    centres: Mapping[str, complex | None]
+    places: Mapping[str, complex]
+    scale: float
+
+
+def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | None = None) -> Diagram:
+    """The velocity diagram at a value of the drive [rad or m], or a time [s] where that is what a motion is asked at.
+
+    `angle_step` [rad] rounds the directions that are read off the drawing. Raises as `diagrams` does. Without it the
+    images agree with the motion's velocities to rounding over the sine between the lines that meet.
+    """
+    return diagrams(mechanism, at, angle_step).velocity
+
+
+def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | None = None) -> Diagram:
+    """The acceleration diagram, with normal, tangential and Coriolis parts; as `velocity_diagram`."""
+    return diagrams(mechanism, at, angle_step).acceleration
+
+
+def diagrams(
+    mechanism: Mechanism, at: float, angle_step: float | None = None, length_step: float | None = None
+) -> Diagrams:
+    """Both diagrams of an instant, with the instant centres.
+
+    Parameters
+    ----------
+    at : float [rad or m, or s]
+        A value of the drive, or a time, as in `motion(at=...)`.
+    angle_step : float [rad], optional
+        Directions are read to this; exactly if left out.
+    length_step : float [m], optional
+        Lengths on paper are read to this.
+
+    Raises
+    ------
+    InputError
+        The sphere, where diagrams do not apply; a group that needs more than two trials; steps out of range.
+    MotionError
+        The mechanism does not close there, or stands at a limit, a change point or a dead point.
+    """
+    if mechanism.space != "plane":
+        raise InputError(
+            "space",
+            _("velocity and acceleration diagrams do not apply on the sphere"),
+            _("take velocities from the motion"),
+        )
+    board = Board(angle_step, length_step)
+    prepared = ready(mechanism)
+    span = span_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
+    exact = dataset_of(solve(prepared, span))
+    _refuse_where_it_is_not(exact, at)
+    found = _constructed(prepared, exact, span, replace(board, length_step=None), (0.0, 0.0))
+    if length_step is None:
+        return found
+    # scales are chosen by the exact drawing, then lengths on paper are read
+    coarse = replace(board, length_step=1e3 * length_step * found.scale)
+    grains = tuple(1e3 * length_step * one.scale for one in (found.velocity, found.acceleration))
+    again = _constructed(prepared, exact, span, coarse, (grains[0], grains[1]))
+    return replace(
+        again,
+        scale=found.scale,
+        velocity=replace(again.velocity, scale=found.velocity.scale),
+        acceleration=replace(again.acceleration, scale=found.acceleration.scale),
+    )
+
+
+def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
+    status = int(exact["status"][0])
+    if status not in (Status.OK, Status.CUT_OFF):
+        raise MotionError(
+            "at",
+            _("at {at:.9g} the mechanism is {status}: there is nothing to construct").format(
+                at=at, status=status_word(status)
+            ),
+            _("choose another instant"),
+        )
+
+
+def _constructed(
+    prepared: Ready, exact: xr.Dataset, span: Span, board: Board, grains: tuple[float, float]
+) -> Diagrams:
+    drawing = Drawing(prepared.kinematics.numbers, _positions(prepared, exact), board)
+    first, second = _driven(prepared, span)
+    velocity = Stage(drawing, first, grain=grains[0])
+    velocity.points |= dict.fromkeys(drawing.numbers.frame, 0j)
+    construct(prepared.structure, velocity)
+    acceleration = Stage(drawing, second, before=velocity, grain=grains[1])
+    acceleration.points |= dict.fromkeys(drawing.numbers.frame, 0j)
+    construct(prepared.structure, acceleration)
+    places = {name: complex(*at) for name, at in drawing.at.points.items()}
+    return Diagrams(
+        prepared.mechanism,
+        exact,
+        board,
+        _diagram(velocity),
+        _diagram(acceleration),
+        instant_centres(velocity),
+        places,
+        round_scale(_extent(list(places.values())), PAPER[0]),
+    )
+
+
+def _positions(prepared: Ready, exact: xr.Dataset) -> Positions:
+    """The mechanism as it is drawn: places and poses at the only sample."""
+    numbers = prepared.kinematics.numbers
+    at = Positions.of_frame(numbers, {}, ARRAYS)
+    for name in exact["point"].to_numpy().tolist():
+        x, y = exact["position"].sel(point=name).to_numpy()[0].tolist()
+        at.points[name] = (x, y)
+    for name in exact["link"].to_numpy().tolist():
+        angle = float(exact["angle"].sel(link=name)[0])
+        point, local = next(iter(numbers.local[name].items()))
+        at.poses[name] = pose_with_point(local, at.points[point], (np.cos(angle), np.sin(angle)))
+        at.angles[name] = angle
+    return at
+
+
+def _driven(prepared: Ready, span: Span) -> tuple[dict[str, float], dict[str, float]]:
+    """First and second derivatives by time of every drive's value."""
+    path = prepared.kinematics.path
+    if not path.by_time:
+        drive = path.driven[0].drive.id
+        return {drive: float(span.rate[0])}, {drive: float(span.second_rate[0])}
+    first, second = {}, {}
+    for one in path.driven:
+        value = one.value(JETS, Jet.variable(span.time, 2))
+        value = value if isinstance(value, Jet) else Jet((value, 0.0, 0.0))
+        first[one.drive.id], second[one.drive.id] = (
+            float(np.broadcast_to(value.derivative(k), (1,))[0]) for k in (1, 2)
+        )
+    return first, second
+
+
+def _diagram(stage: Stage) -> Diagram:
+    ends = [end for edge in stage.edges for end in (edge.start, edge.end)]
+    extent = _extent([0j, *stage.points.values(), *stage.hidden.values(), *ends])
+    turns = {name: turn for name, turn in stage.turns.items() if name != FRAME}
+    return Diagram(
+        stage.order,
+        stage.points,
+        stage.hidden,
+        tuple(stage.edges),
+        turns,
+        tuple(stage.steps),
+        round_scale(extent, PAPER[0]),
+    )
+
+
+def _extent(places: list[complex]) -> float:
+    """The longer side of the box around places."""
+    across = np.ptp([place.real for place in places])
+    return float(max(across, np.ptp([place.imag for place in places])))
+
+
+AT_REST = 1e-9
+"""Links that turn slower than this part of the fastest, or move so, count as translating or at rest."""
+
+
+def instant_centres(velocity: Stage) -> dict[str, complex | None]:
+    """Instant centres of velocity where perpendiculars to the velocities meet; None at infinity."""
+    size = max((abs(rate) for rate in velocity.points.values()), default=0.0)
+    reach = _extent([velocity.drawing.point(name) for name in velocity.points])
+    found: dict[str, complex | None] = {}
+    for link, base in velocity.bases.items():
+        rate, turn = velocity.points[base], velocity.turns[link]
+        if abs(turn) * reach > AT_REST * size:
+            found[link] = velocity.drawing.point(base) + 1j * rate / turn
+        elif abs(rate) > AT_REST * size:
+            found[link] = None
+    return found
