@@ -40,7 +40,7 @@ from .analysis.graphic_check import GraphicCheck as GraphicCheck
 from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
-from .study.graphic import graphic_text as graphic_text
+from .study.graphic import graphic_rows as graphic_rows
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.limiting import limits_rows as limits_rows

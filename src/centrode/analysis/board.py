@@ -14,16 +14,21 @@ from centrode.locale import _
 
 PARALLEL = 1e-12
 """Lines whose sine is smaller count as parallel: rounding of directions makes some 1e-16, a dead point 1e-8."""
-ROUND = (1.0, 2.0, 2.5, 4.0, 5.0, 10.0)
-"""Scales that drawing rules have, times a power of ten."""
-COARSEST_ANGLE = math.pi / 6
+ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+"""Scales that a person takes, times a power of ten."""
+COARSEST_ANGLE, COARSEST_LENGTH = math.pi / 6, 0.01
+"""Reading steps [rad] and [m on paper] above which nothing is told."""
 
 
 @dataclass(frozen=True)
 class Board:
-    """Reading steps of angles [rad] and of lengths [m in the mechanism]; None reads exactly."""
+    """Reading steps of angles [rad] and of lengths on paper [m]; None reads exactly.
+
+    `length_step` is what the step on paper is in the mechanism [m], once its scale is chosen.
+    """
 
     angle_step: float | None = None
+    paper_step: float | None = None
     length_step: float | None = None
 
     def __post_init__(self) -> None:
@@ -33,11 +38,11 @@ class Board:
                 _("a reading step of {step:g} rad is none").format(step=self.angle_step),
                 _("give one above 0 and at most 30 deg"),
             )
-        if self.length_step is not None and not 0.0 < self.length_step < math.inf:
+        if self.paper_step is not None and not 0.0 < self.paper_step <= COARSEST_LENGTH:
             raise InputError(
                 "length_step",
-                _("a reading step of {step:g} m is none").format(step=self.length_step),
-                _("give a positive length"),
+                _("a reading step of {step:g} m is none").format(step=self.paper_step),
+                _("give one above 0 and at most 10 mm on paper"),
             )
 
     def angle(self, angle: float) -> float:

@@ -23,10 +23,11 @@ from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import status_word
+from centrode.structure.gearing import Round
 from centrode.structure.positions import FRAME, Positions
 
-PAPER = (90.0, 90.0)
-"""Room of a drawing on a page A5 [mm]: across and up."""
+MECHANISM, DIAGRAM = 90.0, 105.0
+"""Room of the mechanism and of a diagram on a page A5 [mm]."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,7 @@ class Diagrams:
     exact : the motion at the instant
     scale : metres that a millimetre of the mechanism's drawing stands for
     centres : link -> its instant centre [m]; None at infinity; links at rest are left out
+    places : point -> its place [m]
     """
 
     mechanism: Mechanism
@@ -77,6 +79,10 @@ class Diagrams:
     centres: Mapping[str, complex | None]
     places: Mapping[str, complex]
     scale: float
+
+    def reach(self, link: str, point: str) -> float:
+        """Distance [m] of a point of a link from its instant centre, as speeds tell it."""
+        return abs(self.velocity.images[point] / self.velocity.turns[link])
 
 
 def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | None = None) -> Diagram:
@@ -125,7 +131,7 @@ def diagrams(
     span = span_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)
-    found = _constructed(prepared, exact, span, replace(board, length_step=None), (0.0, 0.0))
+    found = _constructed(prepared, exact, span, board, (0.0, 0.0))
     if length_step is None:
         return found
     # scales are chosen by the exact drawing, then lengths on paper are read
@@ -172,7 +178,7 @@ def _constructed(
         _diagram(acceleration),
         instant_centres(velocity),
         places,
-        round_scale(_extent(list(places.values())), PAPER[0]),
+        round_scale(_extent([*places.values(), *_rims(prepared.mechanism, drawing)]), MECHANISM),
     )
 
 
@@ -218,8 +224,18 @@ def _diagram(stage: Stage) -> Diagram:
         tuple(stage.edges),
         turns,
         tuple(stage.steps),
-        round_scale(extent, PAPER[0]),
+        round_scale(extent, DIAGRAM),
     )
+
+
+def _rims(mechanism: Mechanism, drawing: Drawing) -> list[complex]:
+    """Corners around wheels, and around the circles that they roll on."""
+    rims = [(drawing.point(wheel.centre), wheel.radius) for wheel in mechanism.rolling]
+    for wheel in mechanism.rolling:
+        track = drawing.numbers.gearing.track[wheel.id]
+        if isinstance(track, Round):
+            rims.append((drawing.inside(wheel.on, track.centre), track.radius))
+    return [centre + radius * corner for centre, radius in rims for corner in (1 + 1j, -1 - 1j)]
 
 
 def _extent(places: list[complex]) -> float:

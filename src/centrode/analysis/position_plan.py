@@ -13,13 +13,15 @@ import xarray as xr
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import FRAME, Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
 MOST = 72
 """Positions in one plan: more cannot be told apart."""
 SAMPLES = 721
+SAME = 1e-9
+"""Part of a turn within which its end and its beginning are one place."""
 NEWTON = 40
 """Steps to an extreme position; each but the last few halves an interval at least."""
 
@@ -139,8 +141,8 @@ def _extremes(
 ) -> tuple[str, tuple[float, ...]]:
     """The link or guide that position 0 belongs to, and where it stands still; the last that does by default."""
     if link is None:
-        names = [*(guide.id for guide in mechanism.guides), *reversed(mechanism.link_names)]
-        for name in names:
+        fixed = [guide.id for guide in mechanism.guides if guide.on == FRAME]
+        for name in [*reversed(fixed), *reversed(mechanism.link_names)]:
             found = _stops(mechanism, path, by, name)
             if found:
                 return name, found
@@ -163,7 +165,11 @@ def _stops(mechanism: Mechanism, path: xr.Dataset, by: Array, name: str) -> tupl
     if size <= 1e-9 * unit:
         return ()  # it does not move at all
     turns = np.flatnonzero((rate[:-1] * rate[1:] < 0) | (rate[:-1] == 0))
-    return tuple(_refined(mechanism, name, float(by[k]), float(by[k + 1]), float(rate[k])) for k in turns)
+    places = [_refined(mechanism, name, float(by[k]), float(by[k + 1]), float(rate[k])) for k in turns]
+    turn = by[-1] - by[0]
+    # the end of the turn is its beginning
+    places = [place - turn if abs(by[-1] - place) < SAME * abs(turn) else place for place in places]
+    return tuple(sorted(places, key=lambda place: (place - by[0]) / turn))
 
 
 def _length(path: xr.Dataset) -> float:

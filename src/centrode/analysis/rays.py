@@ -63,7 +63,7 @@ class Ray:
         return [*found, Edge(place, end, self.kind, self.name, self.link)]
 
     def equation(self, letter: str, name: str) -> str:
-        """The equation in symbols: v_B = v_A + v_BA (⟂ AB)."""
+        """The equation in symbols: v_B = v_A + v_BA (⊥ AB)."""
         parts = [self.origin_text, *(leg.text for leg in self.legs), self.text]
         return f"{letter}_{name} = {' + '.join(part for part in parts if part)}"
 
@@ -92,7 +92,7 @@ def turning(stage: Stage, arm: complex, point: str, centre: str, link: str) -> R
     if stage.before is not None:
         legs = (Leg("normal", stage.inwards(link, arm), name, f"aⁿ_{name} (∥ {name})"),)
     kind: Kind = "relative" if stage.order == 1 else "tangential"
-    text = f"{symbol if stage.order == 1 else 'aᵗ'}_{name} (⟂ {name})"
+    text = f"{symbol if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
     return Ray(
         stage.points[centre],
         told(stage, centre),
@@ -131,7 +131,7 @@ def _along(
         f"{letter(stage)}_{under}" if on != FRAME else "",
         legs,
         direction,
-        "relative" if stage.order == 1 else "tangential",
+        "sliding",
         f"{point}{under}" if on != FRAME else point,
         text,
         at,
@@ -146,11 +146,9 @@ def carrying(stage: Stage, link: str, point: str, direction: complex, guide: str
     if stage.before is not None and stage.before.turns[link] != 0.0:
         turned = -stage.coriolis(link, at, stage.before.points[point])
         legs = (Leg("coriolis", turned, f"{under}{point}", f"aᵏ_{under}{point}"),)
-    symbol = letter(stage)
-    kind: Kind = "relative" if stage.order == 1 else "tangential"
-    text = f"{symbol}ʳ_{under}{point} (∥ {guide})"
+    text = f"{letter(stage)}ʳ_{under}{point} (∥ {guide})"
     origin, name = stage.points[point], f"{under}{point}"
-    return Ray(origin, told(stage, point), legs, direction, kind, name, text, at, under, link=link)
+    return Ray(origin, told(stage, point), legs, direction, "sliding", name, text, at, under, link=link)
 
 
 def ray_of(stage: Stage, locus: Locus, carriage: str | None) -> Ray:
@@ -177,7 +175,7 @@ def ray_of(stage: Stage, locus: Locus, carriage: str | None) -> Ray:
 def _driven(ray: Ray, rate: float) -> Ray:
     """The equation of a point that is driven along the direction and free square to it."""
     driven = Leg("driven", rate * ray.direction, ray.name, ray.text)
-    free = ray.text.replace("∥", "⟂")
+    free = ray.text.replace("∥", "⊥")
     return replace(ray, legs=(*ray.legs, driven), direction=1j * ray.direction, text=free)
 
 
@@ -192,8 +190,8 @@ def cylinder(stage: Stage, locus: Stroke) -> Ray:
         spin = dot(1j * along, apart) / abs(arm)
         stretch = dot(along, apart)
         legs.insert(0, Leg("normal", -(spin**2) * arm, name, f"aⁿ_{name} (∥ {name})"))
-        legs.append(Leg("coriolis", 2j * spin * stretch * along, name, f"aᵏ_{name} (⟂ {name})"))
-    text = f"{letter(stage) if stage.order == 1 else 'aᵗ'}_{name} (⟂ {name})"
+        legs.append(Leg("coriolis", 2j * spin * stretch * along, name, f"aᵏ_{name} (⊥ {name})"))
+    text = f"{letter(stage) if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
     kind: Kind = "relative" if stage.order == 1 else "tangential"
     origin = stage.points[locus.centre]
     at = drawing.point(locus.point)
@@ -237,7 +235,7 @@ def _about_track(stage: Stage, locus: Touch | Rolloff, on: str, track: Round) ->
         spin = dot(1j * arm, apart) / abs(arm) ** 2
         legs = (Leg("normal", -(spin**2) * sense * arm, name, f"aⁿ_{name} (∥ {name})"),)
     kind: Kind = "relative" if stage.order == 1 else "tangential"
-    text = f"{letter(stage) if stage.order == 1 else 'aᵗ'}_{name} (⟂ {name})"
+    text = f"{letter(stage) if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
     first = told(stage, wheel) if locus.carried else ("" if on == FRAME else f"{letter(stage)}_K")
     place = centre if locus.carried else drawing.point(wheel)
     of = "K" if locus.carried else wheel

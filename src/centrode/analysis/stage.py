@@ -10,7 +10,9 @@ from centrode.geometry.plane import place, turned
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import FRAME, Positions
 
-Kind: TypeAlias = Literal["image", "normal", "tangential", "relative", "coriolis", "driven", "carried"]
+Kind: TypeAlias = Literal[
+    "image", "normal", "tangential", "relative", "sliding", "coriolis", "driven", "carried"
+]
 
 
 @dataclass(frozen=True)

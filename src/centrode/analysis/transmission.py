@@ -19,12 +19,11 @@ import xarray as xr
 from centrode.errors import InputError
 from centrode.kinematics.dataset import named
 from centrode.kinematics.motion import motion
-from centrode.locale import _, speaking
+from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Meet, Rail, Rod, Slot, Stop, Stroke
+from centrode.structure.groups import Aim, Group, Meet, Rail, Rod, Slot, Stop, Stroke, links_of, points_of
 from centrode.structure.plan import structure_of
-from centrode.structure.steps import name_of
 
 Lines: TypeAlias = npt.NDArray[np.complex128]
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -40,7 +39,8 @@ def transmission_angles(
     """Transmission and pressure angles of every dyad over the motion.
 
     The arguments are those of `motion`. The result has the dimensions sample and group: `transmission_angle` and
-    `pressure_angle` [rad], with time, status and values of the drives as in the motion. Accurate as the positions
+    `pressure_angle` [rad] by the links of the groups, with time, status, events and values of the drives as in the
+    motion. Accurate as the positions
     are; at a limit the transmission angle is 0 or 180 deg. Groups of higher class and gears have none.
 
     Raises InputError on the sphere, and where no group has such an angle; else as `motion` does.
@@ -54,11 +54,10 @@ def transmission_angles(
     data = motion(mechanism, samples, start, stop, at)
     structure = structure_of(mechanism)
     found = {}
-    with speaking("en"):  # what results hold is English
-        for group in structure.groups:
-            angle = _angle(data, structure.dimensions, group)
-            if angle is not None:
-                found[name_of(group)] = angle
+    for group in structure.groups:
+        angle = _angle(data, structure.dimensions, group)
+        if angle is not None:
+            found["-".join(links_of(group) or points_of(group))] = angle
     if not found:
         raise InputError(
             "[links]",
@@ -69,7 +68,7 @@ def transmission_angles(
     variables = {
         "transmission_angle": named("transmission_angle", ("sample", "group"), angles),
         "pressure_angle": named("pressure_angle", ("sample", "group"), np.abs(np.pi / 2 - angles)),
-        "status": data["status"],
+        **{name: data[name] for name in ("status", "event_value", "event_kind")},
     }
     coords = {"group": list(found), **{name: data[name] for name in ("time", "drive_value")}}
     return xr.Dataset(variables, coords, attrs={"title": mechanism.title})

@@ -14,23 +14,31 @@ from centrode.locale import _
 
 if TYPE_CHECKING:
     from centrode.present.coefficient_tables import write_coefficients_csv
+    from centrode.present.dark import in_dark
     from centrode.present.drawing import draw_mechanism
     from centrode.present.figures import motion_figures
+    from centrode.present.instant_drawing import diagram_figures
+    from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
     from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
+    from centrode.present.transmission_curves import transmission_figure
 
 __all__ = [
+    "diagram_figures",
     "draw_mechanism",
+    "in_dark",
     "motion_figures",
     "motion_table",
+    "plan_figure",
     "region_figure",
     "save_figures",
     "scene_of",
     "sweep_csv",
+    "transmission_figure",
     "write_coefficients_csv",
     "write_motion_csv",
     "write_motion_netcdf",
@@ -40,15 +48,19 @@ __all__ = [
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "dark": ["in_dark"],
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
         "figures": ["motion_figures"],
+        "instant_drawing": ["diagram_figures"],
+        "plan_drawing": ["plan_figure"],
         "reading": ["scene_of"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],
         "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
+        "transmission_curves": ["transmission_figure"],
     },
 )
 

@@ -1,0 +1,90 @@
+"""`centrode diagrams`: velocities and accelerations of chosen instants as on a drawing board."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
+from centrode.cli.progress import Progress
+from centrode.locale import _, mark, ngettext
+from centrode.model.units import to_si
+from centrode.study.graphic import about_rows, graphic_csv, graphic_header, step_lines
+
+DEFAULT_FOLDER = "{name}-diagrams"
+
+
+@click.command(help=mark("Check velocities and accelerations by drawing: diagrams and instant centres."))
+@mechanism_argument
+@click.option(
+    "--at",
+    "instants",
+    multiple=True,
+    required=True,
+    metavar=mark("VALUE"),
+    help=mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'),
+)
+@click.option(
+    "--angle-step",
+    metavar=mark("ANGLE"),
+    help=mark('Read directions to this ("1 deg"); exactly if left out.'),
+)
+@click.option(
+    "--length-step",
+    metavar=mark("LENGTH"),
+    help=mark('Read lengths on paper to this ("0.5 mm"); exactly if left out.'),
+)
+@click.option("--dark", is_flag=True, help=mark("Draw on dark ground."))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Folder for the results; named after the mechanism if left out."),
+)
+@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+def diagrams(
+    mechanism: str,
+    instants: tuple[str, ...],
+    angle_step: str | None,
+    length_step: str | None,
+    dark: bool,
+    out: Path | None,
+    no_figures: bool,
+) -> None:
+    """Construct, compare and draw."""
+    description = ct.load(mechanism)
+    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    texts = [_(description.title) or mechanism]
+    with output.output_folder(folder) as draft, Progress() as progress:
+        for number, text in enumerate(instants, start=1):
+            progress.say(_("drawing"), number, len(instants))
+            with about(mechanism):
+                angle = None if angle_step is None else to_si(angle_step, "angle")
+                length = None if length_step is None else to_si(length_step, "length")
+                check = ct.graphic_check(
+                    description, ct.range_value(description, text, "--at"), angle, length
+                )
+            suffix = f"-{number}" if len(instants) > 1 else ""
+            (draft / f"check{suffix}.csv").write_text(graphic_csv(check), encoding="utf-8")
+            if not no_figures:
+                figures = ct.diagram_figures(check.diagrams)
+                named = {f"{name}{suffix}": figure for name, figure in figures.items()}
+                shown = {name: ct.in_dark(figure) for name, figure in named.items()} if dark else named
+                ct.save_figures(shown, draft)
+            texts += ["", _("at {value}").format(value=text), report(check)]
+        names = sorted(path.name for path in draft.iterdir())
+    click.echo("\n".join(texts))
+    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
+        n=len(names), folder=folder
+    )
+    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+
+
+def report(check: ct.GraphicCheck) -> str:
+    """What is printed of one instant."""
+    table = output.table(ct.graphic_rows(check), graphic_header(), right=(2, 3, 4, 5))
+    return "\n".join([output.table(about_rows(check)), *step_lines(check), "", table])

@@ -1,0 +1,52 @@
+"""`centrode transmission`: transmission and pressure angles of the dyads over a motion."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
+from centrode.cli.progress import Progress
+from centrode.locale import _, mark, ngettext
+from centrode.study.transmission import transmission_csv, transmission_header, transmission_rows
+
+DEFAULT_FOLDER = "{name}-transmission"
+
+
+@click.command(help=mark("Compute transmission and pressure angles over the motion."))
+@mechanism_argument
+@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
+@click.option("--dark", is_flag=True, help=mark("Draw on dark ground."))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Folder for the results; named after the mechanism if left out."),
+)
+@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+def transmission(mechanism: str, samples: int | None, dark: bool, out: Path | None, no_figures: bool) -> None:
+    """Compute, write and draw."""
+    description = ct.load(mechanism)
+    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    with output.output_folder(folder) as draft, Progress() as progress:
+        progress.say(_("solving"))
+        with about(mechanism):
+            found = ct.transmission_angles(description, samples)
+        (draft / "transmission.csv").write_text(transmission_csv(found), encoding="utf-8")
+        ct.write_motion_netcdf(found, draft / "transmission.nc")
+        if not no_figures:
+            progress.say(_("drawing"))
+            figure = ct.transmission_figure(description, found)
+            ct.save_figures({"transmission": ct.in_dark(figure) if dark else figure}, draft)
+        names = sorted(path.name for path in draft.iterdir())
+    click.echo(_(description.title) or mechanism)
+    click.echo()
+    click.echo(output.table(transmission_rows(found), transmission_header(), right=(1, 2, 3)))
+    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
+        n=len(names), folder=folder
+    )
+    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
