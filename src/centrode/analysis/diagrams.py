@@ -8,15 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
 from centrode.analysis.board import Board, round_scale
-from centrode.analysis.construction import construct
+from centrode.analysis.instant import drawing_of, driven_rates, stages
 from centrode.analysis.stage import Drawing, Edge, Stage, Step
 from centrode.errors import InputError, MotionError, Status
-from centrode.geometry.plane import pose_with_point
 from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.kinematics.spans import Span, span_at
@@ -24,7 +20,7 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import status_word
 from centrode.structure.gearing import Round
-from centrode.structure.positions import FRAME, Positions
+from centrode.structure.positions import FRAME
 
 MECHANISM, DIAGRAM = 90.0, 105.0
 """Room of the mechanism and of a diagram on a page A5 [mm]."""
@@ -161,14 +157,8 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
 def _constructed(
     prepared: Ready, exact: xr.Dataset, span: Span, board: Board, grains: tuple[float, float]
 ) -> Diagrams:
-    drawing = Drawing(prepared.kinematics.numbers, _positions(prepared, exact), board)
-    first, second = _driven(prepared, span)
-    velocity = Stage(drawing, first, grain=grains[0])
-    velocity.points |= dict.fromkeys(drawing.numbers.frame, 0j)
-    construct(prepared.structure, velocity)
-    acceleration = Stage(drawing, second, before=velocity, grain=grains[1])
-    acceleration.points |= dict.fromkeys(drawing.numbers.frame, 0j)
-    construct(prepared.structure, acceleration)
+    drawing = drawing_of(prepared, exact, board)
+    velocity, acceleration = stages(prepared.structure, drawing, driven_rates(prepared, span), grains)
     places = {name: complex(*at) for name, at in drawing.at.points.items()}
     return Diagrams(
         prepared.mechanism,
@@ -180,37 +170,6 @@ def _constructed(
         places,
         round_scale(_extent([*places.values(), *_rims(prepared.mechanism, drawing)]), MECHANISM),
     )
-
-
-def _positions(prepared: Ready, exact: xr.Dataset) -> Positions:
-    """The mechanism as it is drawn: places and poses at the only sample."""
-    numbers = prepared.kinematics.numbers
-    at = Positions.of_frame(numbers, {}, ARRAYS)
-    for name in exact["point"].to_numpy().tolist():
-        x, y = exact["position"].sel(point=name).to_numpy()[0].tolist()
-        at.points[name] = (x, y)
-    for name in exact["link"].to_numpy().tolist():
-        angle = float(exact["angle"].sel(link=name)[0])
-        point, local = next(iter(numbers.local[name].items()))
-        at.poses[name] = pose_with_point(local, at.points[point], (np.cos(angle), np.sin(angle)))
-        at.angles[name] = angle
-    return at
-
-
-def _driven(prepared: Ready, span: Span) -> tuple[dict[str, float], dict[str, float]]:
-    """First and second derivatives by time of every drive's value."""
-    path = prepared.kinematics.path
-    if not path.by_time:
-        drive = path.driven[0].drive.id
-        return {drive: float(span.rate[0])}, {drive: float(span.second_rate[0])}
-    first, second = {}, {}
-    for one in path.driven:
-        value = one.value(JETS, Jet.variable(span.time, 2))
-        value = value if isinstance(value, Jet) else Jet((value, 0.0, 0.0))
-        first[one.drive.id], second[one.drive.id] = (
-            float(np.broadcast_to(value.derivative(k), (1,))[0]) for k in (1, 2)
-        )
-    return first, second
 
 
 def _diagram(stage: Stage) -> Diagram:

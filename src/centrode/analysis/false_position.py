@@ -84,7 +84,7 @@ class Opened:
 def solve_by_trials(structure: Structure, group: Newton, stage: Stage, construct: Construct) -> None:
     """Add the rates of a group of higher class; InputError where no trial makes dyads of it."""
     opened = open_up(structure, group)
-    size = max((abs(turn) for turn in stage.turns.values()), default=0.0) or 1.0
+    size = _trial_size(stage)
     count = len(opened.turned)
     values = [tuple(size * (k == j + 1) for j in range(count)) for k in range(count + 1)]
     misfits = [_misfits(_tried(stage, opened, trial, construct), opened) for trial in values]
@@ -94,6 +94,16 @@ def solve_by_trials(structure: Structure, group: Newton, stage: Stage, construct
     _adopt(stage, _tried(stage, opened, found, construct))
     for cut in opened.cuts:
         _put_back(stage, cut)
+
+
+def _trial_size(stage: Stage) -> float:
+    """A turning as large as those that are known: rounding of one that is zero must not set it."""
+    scale = float(stage.drawing.numbers.scale)
+    sizes = [abs(turn) for turn in stage.turns.values()]
+    sizes += [abs(rate) / scale for rate in stage.points.values()]
+    if stage.before is not None:
+        sizes += [turn**2 for turn in stage.before.turns.values()]
+    return max(sizes) or 1.0
 
 
 def _corrected(values: Array, misfits: Array) -> Array:

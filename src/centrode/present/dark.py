@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis, Tick
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
@@ -18,6 +20,8 @@ PARTS = ("color", "facecolor", "edgecolor", "markerfacecolor", "markeredgecolor"
 def in_dark(figure: Figure) -> Figure:
     """Turn a figure to dark ground, in place: every colour keeps its hue and changes its lightness; returns it."""
     for artist in figure.findobj(Artist):
+        if isinstance(artist, Figure | Axes | Axis | Tick):
+            continue  # their parts are met by themselves
         for part in PARTS:
             read, change = getattr(artist, f"get_{part}", None), getattr(artist, f"set_{part}", None)
             if read is not None and change is not None and not _double(artist, part):
