@@ -11,9 +11,9 @@ import numpy.typing as npt
 import xarray as xr
 
 import centrode as ct
-from centrode.analysis.board import Board
-from centrode.analysis.instant import Driven, drawing_of, driven_rates, stages
-from centrode.analysis.stage import Drawing, Stage
+from centrode.analysis.graphic.board import Board
+from centrode.analysis.graphic.instant import Driven, drawing_of, driven_rates, stages
+from centrode.analysis.graphic.stage import Drawing, Stage
 from centrode.geometry.plane import Pose
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
@@ -109,7 +109,8 @@ def exact_numbers(exact: xr.Dataset, both: tuple[Stage, Stage]) -> tuple[Array, 
             for part in exact[moving].sel(point=name).to_numpy()[0].tolist()
         ]
         turns = [
-            0.0 if name == "frame" else float(exact[turning].sel(link=name)[0]) for name in sorted(stage.turns)
+            0.0 if name == "frame" else float(exact[turning].sel(link=name)[0])
+            for name in sorted(stage.turns)
         ]
         found.append(np.array([*points, *turns]))
     return found[0], found[1]

@@ -32,11 +32,11 @@ from .kinematics.several_drives.coefficients import kinematic_coefficients as ki
 from .kinematics.several_drives.reach import limits as limits
 from .kinematics.several_drives.reach import Limits as Limits
 from .kinematics.several_drives.region import reachable_region as reachable_region
-from .analysis.diagrams import velocity_diagram as velocity_diagram
-from .analysis.diagrams import acceleration_diagram as acceleration_diagram
-from .analysis.diagrams import Diagram as Diagram
-from .analysis.graphic_check import graphic_check as graphic_check
-from .analysis.graphic_check import GraphicCheck as GraphicCheck
+from .analysis.graphic.diagrams import velocity_diagram as velocity_diagram
+from .analysis.graphic.diagrams import acceleration_diagram as acceleration_diagram
+from .analysis.graphic.diagrams import Diagram as Diagram
+from .analysis.graphic.checking import graphic_check as graphic_check
+from .analysis.graphic.checking import GraphicCheck as GraphicCheck
 from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles

@@ -10,10 +10,10 @@ import pytest
 from hypothesis import assume, given, settings
 
 import centrode as ct
-from centrode.analysis.board import Board, cross, meet, round_scale
-from centrode.analysis.diagrams import diagrams
-from centrode.analysis.instant import drawing_of, driven_rates
-from centrode.analysis.stage import Edge
+from centrode.analysis.graphic.board import Board, cross, meet, round_scale
+from centrode.analysis.graphic.diagrams import diagrams
+from centrode.analysis.graphic.instant import drawing_of, driven_rates
+from centrode.analysis.graphic.stage import Edge
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import solve

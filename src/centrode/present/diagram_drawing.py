@@ -19,8 +19,8 @@ from centrode.quantities import typeset_unit
 from centrode.study.graphic import sine_lines, trial_lines
 
 if TYPE_CHECKING:
-    from centrode.analysis.diagrams import Diagram, Diagrams
-    from centrode.analysis.stage import Edge
+    from centrode.analysis.graphic.diagrams import Diagram, Diagrams
+    from centrode.analysis.graphic.stage import Edge
     from centrode.model.mechanism import Mechanism
 
 CORNER, SIZE = np.array([6.0, 6.0]), np.array([128.0, 128.0])

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from centrode.analysis.board import round_scale
+from centrode.analysis.graphic.board import round_scale
 from centrode.locale import _
 from centrode.present import signs
 from centrode.present.diagram_drawing import (
@@ -37,7 +37,7 @@ from centrode.present.style import INK, MUTED, Pen, house_style, pens
 from centrode.quantities import typeset_unit
 
 if TYPE_CHECKING:
-    from centrode.analysis.diagrams import Diagrams
+    from centrode.analysis.graphic.diagrams import Diagrams
 
 SIGN = 1.1
 """Radius of a hinge's circle [mm]."""

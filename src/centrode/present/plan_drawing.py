@@ -10,7 +10,7 @@ import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
-from centrode.analysis.board import round_scale
+from centrode.analysis.graphic.board import round_scale
 from centrode.locale import _
 from centrode.present.diagram_drawing import typeset
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links

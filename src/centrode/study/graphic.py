@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from centrode.analysis.board import Board
-from centrode.analysis.diagrams import Diagrams
-from centrode.analysis.graphic_check import CheckRow, GraphicCheck
-from centrode.analysis.stage import Step
+from centrode.analysis.graphic.board import Board
+from centrode.analysis.graphic.checking import CheckRow, GraphicCheck
+from centrode.analysis.graphic.diagrams import Diagrams
+from centrode.analysis.graphic.stage import Step
 from centrode.locale import _
 from centrode.model.mechanism import Display
 from centrode.quantities import QUANTITIES, display_unit

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from centrode.analysis.board import dot
-from centrode.analysis.stage import Edge, Kind, Stage
+from centrode.analysis.graphic.board import dot
+from centrode.analysis.graphic.stage import Edge, Kind, Stage
 from centrode.structure.gearing import Round, Straight
 from centrode.structure.groups import Locus, Rail, Rod, Slot, Stop, Stroke
 from centrode.structure.positions import FRAME

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.board import Board, round_scale
-from centrode.analysis.instant import drawing_of, driven_rates, stages
-from centrode.analysis.stage import Drawing, Edge, Stage, Step
+from centrode.analysis.graphic.board import Board, round_scale
+from centrode.analysis.graphic.instant import drawing_of, driven_rates, stages
+from centrode.analysis.graphic.stage import Drawing, Edge, Stage, Step
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready

@@ -9,9 +9,9 @@ import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
-from centrode.analysis.board import Board
-from centrode.analysis.construction import construct
-from centrode.analysis.stage import Drawing, Stage
+from centrode.analysis.graphic.board import Board
+from centrode.analysis.graphic.construction import construct
+from centrode.analysis.graphic.stage import Drawing, Stage
 from centrode.geometry.plane import pose_with_point
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready

@@ -9,11 +9,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from centrode.analysis.board import cross, dot, meet
-from centrode.analysis.false_position import solve_by_trials
-from centrode.analysis.rays import Leg, Ray, carrying, letter, ray_of, turning
-from centrode.analysis.stage import Edge, Stage, Step, Triangle
-from centrode.analysis.wheel_rates import meshed_rate, rolled_rate, train_rates
+from centrode.analysis.graphic.board import cross, dot, meet
+from centrode.analysis.graphic.false_position import solve_by_trials
+from centrode.analysis.graphic.rays import Leg, Ray, carrying, letter, ray_of, turning
+from centrode.analysis.graphic.stage import Edge, Stage, Step, Triangle
+from centrode.analysis.graphic.wheel_rates import meshed_rate, rolled_rate, train_rates
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.structure.groups import (

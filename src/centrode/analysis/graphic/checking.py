@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from centrode.analysis.diagrams import Diagram, Diagrams, diagrams
-from centrode.analysis.integrated import integrated_rates
+from centrode.analysis.graphic.diagrams import Diagram, Diagrams, diagrams
+from centrode.analysis.graphic.integrated import integrated_rates
 from centrode.model.mechanism import Mechanism
 
 RATES = (("angular_velocity", "velocity"), ("angular_acceleration", "acceleration"))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from centrode.analysis.board import dot
-from centrode.analysis.stage import Stage
+from centrode.analysis.graphic.board import dot
+from centrode.analysis.graphic.stage import Stage
 from centrode.kinematics.wheels import solved_angles
 from centrode.structure.gearing import Straight
 from centrode.structure.positions import Positions

@@ -15,8 +15,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.analysis.board import cross, dot
-from centrode.analysis.stage import Edge, Stage, Step, Trial
+from centrode.analysis.graphic.board import cross, dot
+from centrode.analysis.graphic.stage import Edge, Stage, Step, Trial
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.structure.classify import classify

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
-from centrode.analysis.board import Board
+from centrode.analysis.graphic.board import Board
 from centrode.geometry.plane import place, turned
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import FRAME, Positions
