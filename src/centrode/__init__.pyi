@@ -67,7 +67,7 @@ from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures
 from .present import plan_figure as plan_figure
 from .present import transmission_figure as transmission_figure
-from .present import in_dark as in_dark
+from .present import darkened as darkened
 from .present import save_figures as save_figures
 
 # Words, failures, language

@@ -38,7 +38,7 @@ DEFAULT_FOLDER = "{name}-diagrams"
     metavar=mark("LENGTH"),
     help=mark('Read lengths on paper to this ("0.5 mm"); exactly if left out.'),
 )
-@click.option("--dark", is_flag=True, help=mark("Draw on dark ground."))
+@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -73,7 +73,7 @@ def diagrams(
             if not no_figures:
                 figures = ct.diagram_figures(check.diagrams)
                 named = {f"{name}{suffix}": figure for name, figure in figures.items()}
-                shown = {name: ct.in_dark(figure) for name, figure in named.items()} if dark else named
+                shown = {name: ct.darkened(figure) for name, figure in named.items()} if dark else named
                 ct.save_figures(shown, draft)
             texts += ["", _("at {value}").format(value=text), report(check)]
         names = sorted(path.name for path in draft.iterdir())

@@ -25,7 +25,7 @@ DEFAULT_FOLDER = "{name}-plan"
     metavar=mark("NAME"),
     help=mark("Link or guide whose velocity vanishes in position 0; a slider or rocker if left out."),
 )
-@click.option("--dark", is_flag=True, help=mark("Draw on dark ground."))
+@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -49,7 +49,7 @@ def plan(
         if not no_figures:
             progress.say(_("drawing"))
             figure = ct.plan_figure(description, found)
-            ct.save_figures({"plan": ct.in_dark(figure) if dark else figure}, draft)
+            ct.save_figures({"plan": ct.darkened(figure) if dark else figure}, draft)
         names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
     click.echo()

@@ -20,7 +20,7 @@ DEFAULT_FOLDER = "{name}-transmission"
 @click.command(help=mark("Compute transmission and pressure angles over the motion."))
 @mechanism_argument
 @click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
-@click.option("--dark", is_flag=True, help=mark("Draw on dark ground."))
+@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
@@ -41,7 +41,7 @@ def transmission(mechanism: str, samples: int | None, dark: bool, out: Path | No
         if not no_figures:
             progress.say(_("drawing"))
             figure = ct.transmission_figure(description, found)
-            ct.save_figures({"transmission": ct.in_dark(figure) if dark else figure}, draft)
+            ct.save_figures({"transmission": ct.darkened(figure) if dark else figure}, draft)
         names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
     click.echo()

@@ -14,7 +14,7 @@ from centrode.locale import _
 
 if TYPE_CHECKING:
     from centrode.present.coefficient_tables import write_coefficients_csv
-    from centrode.present.dark import in_dark
+    from centrode.present.dark import darkened
     from centrode.present.drawing import draw_mechanism
     from centrode.present.figures import motion_figures
     from centrode.present.instant_drawing import diagram_figures
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = [
     "diagram_figures",
     "draw_mechanism",
-    "in_dark",
+    "darkened",
     "motion_figures",
     "motion_table",
     "plan_figure",
@@ -48,7 +48,7 @@ __all__ = [
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "dark": ["in_dark"],
+        "dark": ["darkened"],
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
         "figures": ["motion_figures"],

@@ -1,50 +1,59 @@
-"""Figures on dark ground: the same hues, light where they were dark."""
+"""The same picture with light lines on a dark ground."""
 
 from __future__ import annotations
 
 import colorsys
 from typing import Any
 
-import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.axis import Axis, Tick
+from matplotlib.collections import Collection
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.text import Text
 
-GROUND, INK = 0.10, 0.93
-"""Lightness of what was white, and of what was black."""
-PARTS = ("color", "facecolor", "edgecolor", "markerfacecolor", "markeredgecolor")
+Colour = tuple[float, float, float, float]
+GROUND = 0.09  # lightness of what was white
+LEAST = 0.58  # lightness that a coloured line gets at least
 
 
-def in_dark(figure: Figure) -> Figure:
-    """Turn a figure to dark ground, in place: every colour keeps its hue and changes its lightness; returns it."""
-    for artist in figure.findobj(Artist):
-        if isinstance(artist, Figure | Axes | Axis | Tick):
-            continue  # their parts are met by themselves
-        for part in PARTS:
-            read, change = getattr(artist, f"get_{part}", None), getattr(artist, f"set_{part}", None)
-            if read is not None and change is not None and not _double(artist, part):
-                change(_darkened(read()))
+def darkened(figure: Figure) -> Figure:
+    """Turn the colours of a figure round: greys by their lightness, colours made light enough; returns it."""
+    for artist in figure.findobj():
+        if isinstance(artist, Line2D):
+            artist.set_color(_light(artist.get_color()))
+            for name in ("markerfacecolor", "markeredgecolor"):
+                _recolour(artist, name)
+        elif isinstance(artist, Text):
+            artist.set_color(_light(artist.get_color()))
+        elif isinstance(artist, Patch):
+            _recolour_patch(artist)
+        elif isinstance(artist, Collection):
+            artist.set_edgecolor([_light(colour) for colour in artist.get_edgecolor()])
+            artist.set_facecolor([_light(colour) for colour in artist.get_facecolor()])
     return figure
 
 
-def _double(artist: Artist, part: str) -> bool:
-    """Whether `color` of an artist is only another word for its other colours."""
-    return part == "color" and hasattr(artist, "get_facecolor")
+def _recolour(artist: Line2D, name: str) -> None:
+    colour: Any = getattr(artist, f"get_{name}")()
+    getattr(artist, f"set_{name}")(_light(colour))
 
 
-def _darkened(colour: Any) -> Any:
-    """A colour, or rows of colours, turned; "none" and "auto" stay."""
-    if isinstance(colour, str) and colour in ("none", "auto", "inherit"):
+def _recolour_patch(patch: Patch) -> None:
+    face, edge = patch.get_facecolor(), patch.get_edgecolor()
+    patch.set_alpha(None)  # the colours hold it themselves: an empty face stays empty
+    patch.set_facecolor(_light(face))
+    patch.set_edgecolor(_light(edge))
+
+
+def _light(colour: Any) -> Any:
+    """A colour as it is seen best on the dark ground; none stays none."""
+    if isinstance(colour, str) and colour in ("none", "auto"):
         return colour
-    rows = np.asarray(colour) if not isinstance(colour, str | tuple) else None
-    if rows is not None and rows.ndim == 2:
-        return [_turned(tuple(row)) for row in rows]
-    return _turned(colour)
-
-
-def _turned(colour: Any) -> tuple[float, float, float, float]:
     red, green, blue, alpha = to_rgba(colour)
-    hue, light, strength = colorsys.rgb_to_hls(red, green, blue)
-    return (*colorsys.hls_to_rgb(hue, INK + (GROUND - INK) * light, strength), alpha)
+    hue, lightness, saturation = colorsys.rgb_to_hls(red, green, blue)
+    if saturation < 0.05:
+        lightness = GROUND + (1.0 - GROUND - 0.04) * (1.0 - lightness)
+    else:
+        lightness = max(lightness, LEAST)
+    return (*colorsys.hls_to_rgb(hue, lightness, saturation), alpha)

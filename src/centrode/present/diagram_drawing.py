@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 CORNER, SIZE = np.array([6.0, 6.0]), np.array([128.0, 128.0])
 COLUMN, TOP = 138.0, 140.0
-LINE = 3.3
+LINE = 3.8
 """From line to line of the column at the right [mm]."""
 COLUMNS = 52
 """Letters in a line of it."""
