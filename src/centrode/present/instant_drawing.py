@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
 
 SIGN = 1.1
 """Radius of a hinge's circle [mm]."""
-LONGEST = 24.0
+LONGEST = 18.0
 """Most that a vector of velocity is long [mm]."""
 ARC = 3.2
 """Radius of an arc that shows a sense of rotation [mm]."""
@@ -73,14 +74,13 @@ def mechanism_page(found: Diagrams, text: str) -> Figure:
     """The mechanism with what its velocities tell."""
     page = new_page()
     factor, unit = shown_as("m", found.mechanism.display)
-    scene, view = placed(
-        scene_of(found.mechanism, found.exact), factor * found.scale, centres_of(found, factor)
-    )
+    per_mm = round_scale(max(map(abs, rates_of(found).values()), default=0.0), LONGEST)
+    scene, view = placed(found, factor, per_mm)
     axes = view.axes(page)
     draw_mechanism_in(axes, scene)
     page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))
     colours = pens(found.mechanism.link_names)
-    per_mm = draw_velocities(page, view, found, factor)
+    draw_velocities(page, view, found, factor, per_mm)
     draw_centres(page, view, found, factor, colours)
     draw_senses(page, view, scene, found, colours)
     for name, place in scene.at(0).items():
@@ -96,22 +96,33 @@ def mechanism_page(found: Diagrams, text: str) -> Figure:
     return page.figure
 
 
-def placed(scene: Scene, scale: float, centres: list[Array]) -> tuple[Scene, View]:
-    """A scene with its signs as large as on the page, and the view that holds it with as many centres as fit."""
-    low, high = scene.low, scene.high
-    chosen = np.array([low, high])
-    for centre in sorted(centres, key=lambda place: float(np.abs(place - (low + high) / 2).max())):
+def placed(found: Diagrams, factor: float, per_mm: float) -> tuple[Scene, View]:
+    """The scene with its signs as large as on the page, and a view of all but the instant centres that do not fit.
+
+    Slots are as long as their pins travel in the whole motion; the view is that of the instant.
+    """
+    scale = factor * found.scale
+    now = scene_of(found.mechanism, found.exact)
+    together = [data.drop_dims("event", errors="ignore") for data in (found.exact, found.course)]
+    whole = scene_of(found.mechanism, xarray.concat(together, dim="sample", data_vars="minimal"))
+    tips = [
+        factor * (found.places[name] + found.scale / per_mm * rate) for name, rate in rates_of(found).items()
+    ]
+    chosen = np.vstack([now.low, now.high, flat(tips)]) if tips else np.array([now.low, now.high])
+    centres = [flat([factor * place])[0] for place in found.centres.values() if place is not None]
+    for centre in sorted(centres, key=lambda at: float(np.abs(at - (now.low + now.high) / 2).max())):
         more = np.vstack([chosen, centre])
         if ((more.max(axis=0) - more.min(axis=0)) / scale > SIZE - 12.0).any():
             break
         chosen = more
-    inches = SIGN_INCHES * scene.extent / (SIGN * scale)
-    return replace(scene, inches=inches), View.about(CORNER, SIZE, chosen, scale)
+    inches = SIGN_INCHES * now.extent / (SIGN * scale)
+    scene = replace(whole, low=now.low, high=now.high, inches=inches)
+    return scene, View.about(CORNER, SIZE, chosen, scale)
 
 
-def centres_of(found: Diagrams, factor: float) -> list[Array]:
-    """Places of the instant centres that are not at infinity [display unit]."""
-    return [flat([factor * place])[0] for place in found.centres.values() if place is not None]
+def rates_of(found: Diagrams) -> dict[str, complex]:
+    """Velocities of the moving points [m/s]."""
+    return {name: found.velocity.images[name] for name in found.mechanism.moving_points}
 
 
 def draw_mechanism_in(axes: Axes, scene: Scene) -> None:
@@ -123,19 +134,15 @@ def draw_mechanism_in(axes: Axes, scene: Scene) -> None:
     draw_drive(axes, scene, 0)
 
 
-def draw_velocities(page: Page, view: View, found: Diagrams, factor: float) -> float:
-    """Velocities of the moving points as arrows; returns what a millimetre of them stands for [m/s]."""
-    rates = {name: found.velocity.images[name] for name in found.mechanism.moving_points}
-    greatest = max(map(abs, rates.values()), default=0.0)
-    per_mm = round_scale(greatest, LONGEST)
-    for name, rate in rates.items():
+def draw_velocities(page: Page, view: View, found: Diagrams, factor: float, per_mm: float) -> None:
+    """Velocities of the moving points as arrows, a millimetre standing for `per_mm` [m/s]."""
+    for name, rate in rates_of(found).items():
         start = view.mm(flat([factor * found.places[name]])[0])
         end = start + flat([rate / per_mm])[0]
         if np.hypot(*(end - start)) < 1.0:
             continue
         arrow(page, start, end, INK, width=1.1)
         page.name(end, symbol("v", name), clear=0.8, size=7.5)
-    return per_mm
 
 
 def draw_centres(page: Page, view: View, found: Diagrams, factor: float, colours: Mapping[str, Pen]) -> None:
@@ -184,14 +191,13 @@ def said(found: Diagrams) -> list[str]:
     turn_factor, turn_unit = shown_as("rad/s", found.mechanism.display)
     listed = []
     for link, turn in found.velocity.turns.items():
-        listed.append(f"ω_{link} = {turn_factor * turn + 0.0:.5g} {typeset_unit(turn_unit)}")
         centre = found.centres.get(link)
-        if link in found.centres and centre is None:
+        value = 0.0 if centre is None else turn_factor * turn
+        listed.append(f"ω_{link} = {value:.5g} {typeset_unit(turn_unit)}")
+        if centre is not None:
+            names = list(found.mechanism.links[link].coordinates)[:2]
+            apart = ", ".join(f"P{name} = {factor * found.reach(link, name):.5g}" for name in names)
+            listed.append(f"    {apart} {unit}")
+        elif link in found.centres:
             listed.append("    " + _("it translates: P at infinity"))
-        elif centre is not None:
-            apart = [
-                f"P{point} = {factor * found.reach(link, point):.5g}"
-                for point in list(found.mechanism.links[link].coordinates)[:2]
-            ]
-            listed.append(f"    {', '.join(apart)} {unit}")
     return listed

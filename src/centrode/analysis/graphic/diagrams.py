@@ -14,7 +14,7 @@ from centrode.analysis.graphic.stage import Drawing, Edge, Stage, Step
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.solve import solve
+from centrode.kinematics.solve import asked_span, solve
 from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -24,6 +24,8 @@ from centrode.structure.positions import FRAME
 
 MECHANISM, DIAGRAM = 90.0, 105.0
 """Room of the mechanism and of a diagram on a page A5 [mm]."""
+COURSE = 121
+"""Samples of the motion in which slots are measured."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ class Diagrams:
 
     Attributes
     ----------
-    exact : the motion at the instant
+    exact, course : the motion at the instant, and all of it, for what is drawn as long as something travels
     scale : metres that a millimetre of the mechanism's drawing stands for
     centres : link -> its instant centre [m]; None at infinity; links at rest are left out
     places : point -> its place [m]
@@ -69,6 +71,7 @@ class Diagrams:
 
     mechanism: Mechanism
     exact: xr.Dataset
+    course: xr.Dataset
     board: Board
     velocity: Diagram
     acceleration: Diagram
@@ -163,6 +166,7 @@ def _constructed(
     return Diagrams(
         prepared.mechanism,
         exact,
+        _course(prepared, exact),
         board,
         _diagram(velocity),
         _diagram(acceleration),
@@ -170,6 +174,14 @@ def _constructed(
         places,
         round_scale(_extent([*places.values(), *_rims(prepared.mechanism, drawing)]), MECHANISM),
     )
+
+
+def _course(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
+    """The motion as far as it is asked for by default; the instant alone where nothing says how far."""
+    try:
+        return dataset_of(solve(prepared, asked_span(prepared, COURSE, None, None)))
+    except InputError:
+        return exact
 
 
 def _diagram(stage: Stage) -> Diagram:
