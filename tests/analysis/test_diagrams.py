@@ -13,6 +13,7 @@ import centrode as ct
 from centrode.analysis.graphic.board import Board, cross, meet, round_scale
 from centrode.analysis.graphic.diagrams import diagrams
 from centrode.analysis.graphic.instant import drawing_of, driven_rates
+from centrode.analysis.graphic.integrated import STEPS
 from centrode.analysis.graphic.stage import Edge
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import ready
@@ -210,7 +211,7 @@ def test_where_the_mechanism_is_not() -> None:
     with pytest.raises(ct.MotionError, match="is open: there is nothing to construct"):
         ct.acceleration_diagram(locked, 2.5)
     (limit, *_rest) = ct.motion(locked).event_value.values
-    with pytest.raises(ct.MotionError, match="singular|open"):
+    with pytest.raises(ct.MotionError, match=r"singular|open"):
         ct.acceleration_diagram(locked, float(limit))
 
 
@@ -231,3 +232,13 @@ def test_steps_out_of_range(step: float) -> None:
         Board(step)
     with pytest.raises(ct.InputError, match="at most 10 mm"):
         Board(None, step)
+
+
+def test_integrated_velocities_stand_beside_them() -> None:
+    """To what every adaptive step may add."""
+    pytest.importorskip("centrode.equations.integrated", reason="equations are not integrated here")
+    check = ct.graphic_check(ct.example("slider-between-cranks"), 1.0)
+    for row in check.rows:
+        assert (row.integrated is None) == (row.quantity in ("angular_acceleration", "acceleration"))
+        if row.integrated is not None:
+            assert abs(row.integrated - row.closed) <= 1e-10 * STEPS
