@@ -119,6 +119,13 @@ def sine_lines(step: Step) -> list[str]:
     for k in (1, 2):
         ratio = f"{sines[k]:.4f}/{sines[0]:.4f} = {sides[k] / sides[0]:.4f}"
         lines.append(f"|{names[k]}|/|{names[0]}| = {shown[k]}/{shown[0]} = {ratio}")
+    known = names[0].removeprefix("v_")
+    for k in (1, 2):
+        arm = names[k].removeprefix("v_")
+        if arm != names[k] and arm.endswith(known) and arm != known:
+            # the link's triangle with its instant centre has the same angles: its sides are square to the velocities
+            ratio = f"{sines[0]:.4f}/{sines[k]:.4f} = {sides[0] / sides[k]:.4f}"
+            lines.append(f"P{known}/{arm} = {shown[0]}/{shown[k]} = {ratio}")
     return lines
 
 
