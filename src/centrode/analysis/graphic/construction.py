@@ -12,7 +12,7 @@ from dataclasses import replace
 from centrode.analysis.graphic.board import cross, dot, meet
 from centrode.analysis.graphic.false_position import solve_by_trials
 from centrode.analysis.graphic.rays import Leg, Ray, carrying, letter, ray_of, turning
-from centrode.analysis.graphic.stage import Edge, Stage, Step, Triangle
+from centrode.analysis.graphic.stage import ORIGIN, Edge, Stage, Step, Triangle
 from centrode.analysis.graphic.wheel_rates import meshed_rate, rolled_rate, train_rates
 from centrode.errors import InputError
 from centrode.locale import _
@@ -90,11 +90,11 @@ def _image(stage: Stage, link: str, point: str) -> list[str]:
         return []
     arm = stage.drawing.arm(stage.drawing.point(base), stage.drawing.point(point), known=True)
     if arm == 0:
-        stage.points[point] = stage.points[base]
+        stage.points[point] = stage.rate(base)
         return [f"{letter(stage)}_{point} = {letter(stage)}_{base}"]
     others = [name for name in stage.drawing.numbers.local[link] if name in stage.points and name != point]
     ray = turning(stage, arm, point, base, link)
-    rate = stage.points[point] = stage.points[base] + stage.about(link, arm)
+    rate = stage.points[point] = stage.rate(base) + stage.about(link, arm)
     if len(others) >= 2:
         first, second = others[:2]
         stage.edges += [
@@ -144,13 +144,13 @@ def _aim(stage: Stage, group: Aim) -> tuple[list[str], Triangle | None]:
 
 def _meet(stage: Stage, group: Meet) -> tuple[list[str], Triangle | None]:
     """A dyad with one unknown image: its two equations meet there."""
-    reference = group.points[0]
+    reference = group.points[0] if group.points else f"{ORIGIN}{group.carriage}"
     if group.carriage is not None and group.turning is not None:
         stage.turns[group.carriage] = _turn_of(stage, group.turning, group.carriage)
         stage.bases[group.carriage] = reference
     rays = [_moved(stage, ray_of(stage, locus, group.carriage), group, reference) for locus in group.loci]
     rate, triangle = crossing(stage, reference, *rays)
-    stage.points[reference] = rate
+    (stage.points if group.points else stage.hidden)[reference] = rate
     for point in group.points[1:]:
         if group.carriage is not None:
             _image(stage, group.carriage, point)

@@ -225,7 +225,7 @@ def instant_centres(velocity: Stage) -> dict[str, complex | None]:
     reach = _extent([velocity.drawing.point(name) for name in velocity.points])
     found: dict[str, complex | None] = {}
     for link, base in velocity.bases.items():
-        rate, turn = velocity.points[base], velocity.turns[link]
+        rate, turn = velocity.rate(base), velocity.turns[link]
         if abs(turn) * reach > AT_REST * size:
             found[link] = velocity.drawing.point(base) + 1j * rate / turn
         elif abs(rate) > AT_REST * size:

@@ -75,7 +75,7 @@ def letter(stage: Stage) -> str:
 
 def told(stage: Stage, point: str) -> str:
     """Symbol of the rate of a point; nothing of one at rest."""
-    return "" if stage.points[point] == 0 else f"{letter(stage)}_{point}"
+    return "" if stage.rate(point) == 0 else f"{letter(stage)}_{point}"
 
 
 def around(stage: Stage, point: str, centre: str, link: str, known: bool = True) -> Ray:
@@ -94,7 +94,7 @@ def turning(stage: Stage, arm: complex, point: str, centre: str, link: str) -> R
     kind: Kind = "relative" if stage.order == 1 else "tangential"
     text = f"{symbol if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
     return Ray(
-        stage.points[centre],
+        stage.rate(centre),
         told(stage, centre),
         legs,
         1j * arm / abs(arm),

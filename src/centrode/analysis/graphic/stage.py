@@ -15,6 +15,10 @@ Kind: TypeAlias = Literal[
 ]
 
 
+ORIGIN = "0"
+"""What stands before a link's name to name the origin of its axes; no point's name begins so."""
+
+
 @dataclass(frozen=True)
 class Edge:
     """A vector drawn in a diagram, from place to place [m/s or m/s^2].
@@ -77,7 +81,9 @@ class Drawing:
     board: Board
 
     def point(self, name: str) -> complex:
-        """Place of a point."""
+        """Place of a point, or of the origin of a link's axes."""
+        if name.startswith(ORIGIN):
+            return complex(*self.at.poses[name.removeprefix(ORIGIN)].origin)
         return complex(*self.at.points[name])
 
     def inside(self, link: str, local: tuple[float, float]) -> complex:
@@ -103,10 +109,11 @@ class Stage:
     ----------
     points : point -> velocity or acceleration
     turns : link -> angular velocity [rad/s] or acceleration [rad/s^2]
-    bases : link -> a point of it whose rate is known: the others follow from it
+    bases : link -> a point of it (or its origin) whose rate is known: the others follow from it
     before : the velocities, where accelerations are constructed
     driven : drive -> rate or second rate of its value
-    hidden : places of links under points that slide on them, by the point's name with a dash
+    hidden : places of links under points that slide on them, by the point's name with a dash; origins of links
+        without a point that is found with them
     grain : what the length of an edge is read to; zero reads exactly
     """
 
@@ -126,6 +133,10 @@ class Stage:
         """1 of velocities, 2 of accelerations."""
         return 1 if self.before is None else 2
 
+    def rate(self, name: str) -> complex:
+        """Rate of a point, or of the origin of a link's axes."""
+        return self.hidden[name] if name.startswith(ORIGIN) else self.points[name]
+
     def about(self, link: str, arm: complex) -> complex:
         """What turning of a link adds at the end of an arm of it: i omega arm, or (i epsilon - omega^2) arm."""
         return 1j * self.turns[link] * arm + self.inwards(link, arm)
@@ -139,7 +150,7 @@ class Stage:
         if link == FRAME:
             return 0j
         base = self.bases[link]
-        return self.points[base] + self.about(link, self.drawing.arm(self.drawing.point(base), at))
+        return self.rate(base) + self.about(link, self.drawing.arm(self.drawing.point(base), at))
 
     def coriolis(self, link: str, at: complex, velocity: complex) -> complex:
         """Coriolis acceleration at a place of a link of what passes there with a velocity; nothing of velocities."""
