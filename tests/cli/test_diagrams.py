@@ -40,6 +40,14 @@ def test_the_worked_check(centrode: Centrode, folder: Path) -> None:
         assert float(written["difference"]) == row.difference
 
 
+def test_scales_that_are_given(centrode: Centrode) -> None:
+    scales = ("--scale", "length=0.05", "--scale", "acceleration=0.02")
+    done = centrode("diagrams", "crank-rocker", "--at", "1 rad", "--no-figures", *scales)
+    assert done.code == 0, done
+    assert "μ_l = 0.05 m per mm" in done.out
+    assert "μ_a = 0.02 m/s^2 per mm" in done.out
+
+
 def test_several_instants(centrode: Centrode, folder: Path) -> None:
     done = centrode("diagrams", "shaper", "--at", "30 deg", "--at", "90 deg", "--no-figures")
     assert done.code == 0, done
@@ -69,6 +77,12 @@ def test_times_of_a_mechanism_with_several_drives(centrode: Centrode) -> None:
         (["crank-rocker", "--at", "1 rad", "--angle-step", "1 mm"], "crank-rocker"),
         (["crank-rocker", "--at", "1 rad", "--length-step", "-1 mm"], "at most 10 mm"),
         (["crank-rocker", "--at", "1 rad", "--length-step", "1 m"], "at most 10 mm"),
+        (["crank-rocker", "--at", "1 rad", "--scale", "length"], "NAME=VALUE"),
+        (["crank-rocker", "--at", "1 rad", "--scale", "length=small"], "expected a number"),
+        (["crank-rocker", "--at", "1 rad", "--scale", "length=-1"], "has to be positive"),
+        (["crank-rocker", "--at", "1 rad", "--scale", "length=nan"], "has to be positive"),
+        (["crank-rocker", "--at", "1 rad", "--scale", "length=0.001"], "take at least"),
+        (["crank-rocker", "--at", "1 rad", "--scale", "force=1"], "one of: length"),
         (["spherical-four-bar", "--at", "1 rad"], "do not apply on the sphere"),
         (["no-such-mechanism", "--at", "1 rad"], "no-such-mechanism"),
     ],

@@ -10,7 +10,9 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
+from centrode.cli.pairs import pairs
 from centrode.cli.progress import Progress
+from centrode.errors import InputError
 from centrode.locale import _, mark, ngettext
 from centrode.model.units import to_si
 from centrode.study.graphic import about_rows, graphic_csv, graphic_header, step_lines
@@ -38,6 +40,13 @@ DEFAULT_FOLDER = "{name}-diagrams"
     metavar=mark("LENGTH"),
     help=mark('Read lengths on paper to this ("0.5 mm"); exactly if left out.'),
 )
+@click.option(
+    "--scale",
+    "scales",
+    multiple=True,
+    metavar=mark("NAME=VALUE"),
+    help=mark('What a millimetre stands for in SI: length, velocity or acceleration ("length=0.02").'),
+)
 @click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
 @click.option(
     "--out",
@@ -51,6 +60,7 @@ def diagrams(
     instants: tuple[str, ...],
     angle_step: str | None,
     length_step: str | None,
+    scales: tuple[str, ...],
     dark: bool,
     out: Path | None,
     no_figures: bool,
@@ -58,17 +68,17 @@ def diagrams(
     """Construct, compare and draw."""
     description = ct.load(mechanism)
     folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    given = {name: number(value) for name, value in pairs(scales, "--scale").items()}
     texts = [_(description.title) or mechanism]
     with output.output_folder(folder) as draft, Progress() as progress:
-        for number, text in enumerate(instants, start=1):
-            progress.say(_("drawing"), number, len(instants))
+        for count, text in enumerate(instants, start=1):
+            progress.say(_("drawing"), count, len(instants))
             with about(mechanism):
                 angle = None if angle_step is None else to_si(angle_step, "angle")
                 length = None if length_step is None else to_si(length_step, "length")
-                check = ct.graphic_check(
-                    description, ct.range_value(description, text, "--at"), angle, length
-                )
-            suffix = f"-{number}" if len(instants) > 1 else ""
+                at = ct.range_value(description, text, "--at")
+                check = ct.graphic_check(description, at, angle, length, given)
+            suffix = f"-{count}" if len(instants) > 1 else ""
             (draft / f"check{suffix}.csv").write_text(graphic_csv(check), encoding="utf-8")
             if not no_figures:
                 figures = ct.diagram_figures(check.diagrams)
@@ -78,10 +88,19 @@ def diagrams(
             texts += ["", _("at {value}").format(value=text), report(check)]
         names = sorted(path.name for path in draft.iterdir())
     click.echo("\n".join(texts))
-    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
+    told = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
         n=len(names), folder=folder
     )
-    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    click.echo(f"\n{output.paragraph(f'{told}:', names)}")
+
+
+def number(text: str) -> float:
+    """A plain number; InputError for another text."""
+    try:
+        return float(text)
+    except ValueError:
+        what = _("expected a number, got {text}").format(text=f'"{text}"')
+        raise InputError("--scale", what, _('write "length=0.02"')) from None
 
 
 def report(check: ct.GraphicCheck) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from centrode.errors import InputError, MotionError
@@ -95,3 +96,10 @@ def round_scale(extent: float, room: float) -> float:
         return 1.0
     power = 10.0 ** math.floor(math.log10(extent / room))
     return next(float(f"{step * power:.3g}") for step in ROUND if step * power >= (1 - 1e-9) * extent / room)
+
+
+def extent_of(places: Iterable[complex]) -> float:
+    """The longer side of the box around places."""
+    places = list(places)
+    across, up = [place.real for place in places], [place.imag for place in places]
+    return max(max(across) - min(across), max(up) - min(up))

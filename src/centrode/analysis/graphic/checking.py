@@ -55,14 +55,18 @@ class GraphicCheck:
 
 
 def graphic_check(
-    mechanism: Mechanism, at: float, angle_step: float | None = None, length_step: float | None = None
+    mechanism: Mechanism,
+    at: float,
+    angle_step: float | None = None,
+    length_step: float | None = None,
+    scales: Mapping[str, float] | None = None,
 ) -> GraphicCheck:
     """Velocities and accelerations of an instant by the drawing, beside those of the motion.
 
     Parameters and failures are those of `diagrams`: a value of the drive or a time, a reading step of directions
-    [rad] and of lengths on paper [m].
+    [rad] and of lengths on paper [m], scales of the drawings.
     """
-    found = diagrams(mechanism, at, angle_step, length_step)
+    found = diagrams(mechanism, at, angle_step, length_step, scales)
     integrated = integrated_rates(mechanism, found.exact)
     pairs = zip(RATES, (found.velocity, found.acceleration), strict=True)
     rows = [row for names, diagram in pairs for row in _rows(found, diagram, names, integrated, length_step)]

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.graphic.board import Board, round_scale
+from centrode.analysis.graphic.board import Board, extent_of
+from centrode.analysis.graphic.centres import instant_centres
 from centrode.analysis.graphic.instant import drawing_of, driven_rates, stages
+from centrode.analysis.graphic.scales import chosen_scale
 from centrode.analysis.graphic.stage import Drawing, Edge, Stage, Step
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.dataset import dataset_of
@@ -99,7 +101,11 @@ def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | No
 
 
 def diagrams(
-    mechanism: Mechanism, at: float, angle_step: float | None = None, length_step: float | None = None
+    mechanism: Mechanism,
+    at: float,
+    angle_step: float | None = None,
+    length_step: float | None = None,
+    scales: Mapping[str, float] | None = None,
 ) -> Diagrams:
     """Both diagrams of an instant, with the instant centres.
 
@@ -111,11 +117,15 @@ def diagrams(
         Directions are read to this; exactly if left out.
     length_step : float [m], optional
         Lengths on paper are read to this.
+    scales : mapping, optional
+        What a millimetre stands for: "length" [m], "velocity" [m/s], "acceleration" [m/s^2]; round ones that make good
+        use of the page where left out.
 
     Raises
     ------
     InputError
-        The sphere, where diagrams do not apply; a group that needs more than two trials; steps out of range.
+        The sphere, where diagrams do not apply; a group that needs more than two trials; steps out of range; scales
+        with which a drawing does not go on the page.
     MotionError
         The mechanism does not close there, or stands at a limit, a change point or a dead point.
     """
@@ -130,13 +140,13 @@ def diagrams(
     span = span_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)
-    found = _constructed(prepared, exact, span, board, (0.0, 0.0))
+    found = _constructed(prepared, exact, span, board, scales or {})
     if length_step is None:
         return found
     # scales are chosen by the exact drawing, then lengths on paper are read
     coarse = replace(board, length_step=1e3 * length_step * found.scale)
     grains = tuple(1e3 * length_step * one.scale for one in (found.velocity, found.acceleration))
-    again = _constructed(prepared, exact, span, coarse, (grains[0], grains[1]))
+    again = _constructed(prepared, exact, span, coarse, {}, (grains[0], grains[1]))
     return replace(
         again,
         scale=found.scale,
@@ -158,21 +168,27 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
 
 
 def _constructed(
-    prepared: Ready, exact: xr.Dataset, span: Span, board: Board, grains: tuple[float, float]
+    prepared: Ready,
+    exact: xr.Dataset,
+    span: Span,
+    board: Board,
+    scales: Mapping[str, float],
+    grains: tuple[float, float] = (0.0, 0.0),
 ) -> Diagrams:
     drawing = drawing_of(prepared, exact, board)
     velocity, acceleration = stages(prepared.structure, drawing, driven_rates(prepared, span), grains)
     places = {name: complex(*at) for name, at in drawing.at.points.items()}
+    extent = extent_of([*places.values(), *_rims(prepared.mechanism, drawing)])
     return Diagrams(
         prepared.mechanism,
         exact,
         _course(prepared, exact),
         board,
-        _diagram(velocity),
-        _diagram(acceleration),
+        _diagram(velocity, scales),
+        _diagram(acceleration, scales),
         instant_centres(velocity),
         places,
-        round_scale(_extent([*places.values(), *_rims(prepared.mechanism, drawing)]), MECHANISM),
+        chosen_scale("length", extent, MECHANISM, scales),
     )
 
 
@@ -184,9 +200,9 @@ def _course(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
         return exact
 
 
-def _diagram(stage: Stage) -> Diagram:
+def _diagram(stage: Stage, scales: Mapping[str, float]) -> Diagram:
     ends = [end for edge in stage.edges for end in (edge.start, edge.end)]
-    extent = _extent([0j, *stage.points.values(), *stage.hidden.values(), *ends])
+    extent = extent_of([0j, *stage.points.values(), *stage.hidden.values(), *ends])
     turns = {name: turn for name, turn in stage.turns.items() if name != FRAME}
     return Diagram(
         stage.order,
@@ -195,7 +211,7 @@ def _diagram(stage: Stage) -> Diagram:
         tuple(stage.edges),
         turns,
         tuple(stage.steps),
-        round_scale(extent, DIAGRAM),
+        chosen_scale("velocity" if stage.order == 1 else "acceleration", extent, DIAGRAM, scales),
     )
 
 
@@ -207,27 +223,3 @@ def _rims(mechanism: Mechanism, drawing: Drawing) -> list[complex]:
         if isinstance(track, Round):
             rims.append((drawing.inside(wheel.on, track.centre), track.radius))
     return [centre + radius * corner for centre, radius in rims for corner in (1 + 1j, -1 - 1j)]
-
-
-def _extent(places: list[complex]) -> float:
-    """The longer side of the box around places."""
-    across = np.ptp([place.real for place in places])
-    return float(max(across, np.ptp([place.imag for place in places])))
-
-
-AT_REST = 1e-9
-"""Links that turn slower than this part of the fastest, or move so, count as translating or at rest."""
-
-
-def instant_centres(velocity: Stage) -> dict[str, complex | None]:
-    """Instant centres of velocity where perpendiculars to the velocities meet; None at infinity."""
-    size = max((abs(rate) for rate in velocity.points.values()), default=0.0)
-    reach = _extent([velocity.drawing.point(name) for name in velocity.points])
-    found: dict[str, complex | None] = {}
-    for link, base in velocity.bases.items():
-        rate, turn = velocity.rate(base), velocity.turns[link]
-        if abs(turn) * reach > AT_REST * size:
-            found[link] = velocity.drawing.point(base) + 1j * rate / turn
-        elif abs(rate) > AT_REST * size:
-            found[link] = None
-    return found
