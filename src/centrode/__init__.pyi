@@ -41,6 +41,12 @@ from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
 from .study.graphic import graphic_rows as graphic_rows
+from .study.graphic import graphic_about as graphic_about
+from .study.graphic import graphic_steps as graphic_steps
+from .study.graphic import graphic_csv as graphic_csv
+from .study.positions import plan_rows as plan_rows
+from .study.transmission import transmission_rows as transmission_rows
+from .study.transmission import transmission_csv as transmission_csv
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.limiting import limits_rows as limits_rows

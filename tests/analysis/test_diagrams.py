@@ -242,3 +242,20 @@ def test_integrated_velocities_stand_beside_them() -> None:
         assert (row.integrated is None) == (row.quantity in ("angular_acceleration", "acceleration"))
         if row.integrated is not None:
             assert abs(row.integrated - row.closed) <= 1e-10 * STEPS
+
+
+def test_a_mechanism_at_rest_has_accelerations_alone() -> None:
+    """Where the law turns back: its rate is rounding, which no scale should magnify."""
+    bars = {"OA": {"length": 1.0}, "AB": {"length": 3.0}, "DB": {"length": 2.5}}
+    drive = {"link": "OA", "start": 1.0, "law": "0.5*sin(2*t)"}
+    swinging = ct.Mechanism(
+        frame={"points": {"O": [0, 0], "D": [3, 0]}},
+        links=bars,
+        drives=[drive],
+        assembly={"sides": {"B": "left"}},
+    )
+    found = diagrams(swinging, math.pi / 4)
+    assert max(abs(image) for image in found.velocity.images.values()) < 16 * EPS
+    assert found.velocity.scale == 1.0
+    assert found.centres == {}
+    assert abs(found.acceleration.images["A"]) == pytest.approx(2.0, rel=16 * EPS)

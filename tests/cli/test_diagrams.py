@@ -1,4 +1,4 @@
-"""`centrode diagrams`, `centrode plan` and `centrode transmission`: what they write and print, and what they refuse."""
+"""`centrode diagrams`, `centrode plan` and `centrode angles`: what they write and print, and what they refuse."""
 
 from __future__ import annotations
 
@@ -68,6 +68,7 @@ def test_times_of_a_mechanism_with_several_drives(centrode: Centrode) -> None:
     ("arguments", "told"),
     [
         (["crank-rocker"], "--at"),
+        (["crank-rocker", *("--at", "1 rad") * 101], "at most 100"),
         (["crank-rocker", "--at", "fast"], "--at"),
         (["crank-rocker", "--at", "1 mm"], "--at"),
         (["crank-rocker", "--at", "inf"], "--at"),
@@ -131,7 +132,7 @@ def test_a_plan_from_a_chosen_link(centrode: Centrode) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["crank-rocker", "--positions", "1"], "2 to 72"),
+        (["crank-rocker", "--positions", "1"], "2 to 36"),
         (["crank-rocker", "--positions", "many"], "many"),
         (["crank-rocker", "--link", "OA"], "no extreme position"),
         (["crank-rocker", "--link", "piston"], "no link and no guide"),
@@ -147,7 +148,7 @@ def test_wrong_input_of_a_plan(centrode: Centrode, folder: Path, arguments: list
 
 
 def test_transmission_angles(centrode: Centrode, folder: Path) -> None:
-    done = centrode("transmission", "crank-rocker", "--samples", "37", "--out", "t")
+    done = centrode("angles", "crank-rocker", "--samples", "37", "--out", "t")
     assert done.code == 0, done
     assert sorted(file.name for file in (folder / "t").iterdir()) == [
         "transmission.csv",
@@ -183,7 +184,7 @@ def test_transmission_where_it_locks(centrode: Centrode, folder: Path) -> None:
 def test_wrong_input_of_transmission(
     centrode: Centrode, folder: Path, arguments: list[str], told: str
 ) -> None:
-    done = centrode("transmission", *arguments)
+    done = centrode("angles", *arguments)
     assert done.code == 2, done
     assert told in done.err
     assert list(folder.iterdir()) == []

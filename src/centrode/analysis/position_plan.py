@@ -17,7 +17,7 @@ from centrode.model.mechanism import FRAME, Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
-MOST = 72
+MOST = 36
 """Positions in one plan: more cannot be told apart."""
 SAMPLES = 721
 SAME = 1e-9
@@ -54,7 +54,7 @@ def plan_of_positions(mechanism: Mechanism, positions: int = 12, link: str | Non
     Parameters
     ----------
     positions : int
-        How many, 2 to 72; courseworks ask for 12 or 24.
+        How many, 2 to 36; courseworks ask for 12 or 24.
     link : str, optional
         A link, or a guide by its id, whose velocity vanishes in position 0; the last that swings to and fro if
         left out. Where the drive makes no full turn, positions run from one end of the range to the other instead.

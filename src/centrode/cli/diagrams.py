@@ -14,13 +14,12 @@ from centrode.cli.pairs import pairs
 from centrode.cli.progress import Progress
 from centrode.errors import InputError
 from centrode.locale import _, mark, ngettext
-from centrode.model.units import to_si
-from centrode.study.graphic import about_rows, graphic_csv, graphic_header, step_lines
 
 DEFAULT_FOLDER = "{name}-diagrams"
+MOST_INSTANTS = 100
 
 
-@click.command(help=mark("Check velocities and accelerations by drawing: diagrams and instant centres."))
+@click.command(help=mark("Check velocities and accelerations by drawing them."))
 @mechanism_argument
 @click.option(
     "--at",
@@ -68,18 +67,22 @@ def diagrams(
     """Construct, compare and draw."""
     description = ct.load(mechanism)
     folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    if len(instants) > MOST_INSTANTS:
+        raise InputError(
+            "--at",
+            _("{count} instants were asked for").format(count=len(instants)),
+            _("ask for at most {most}").format(most=MOST_INSTANTS),
+        )
     given = {name: number(value) for name, value in pairs(scales, "--scale").items()}
     texts = [_(description.title) or mechanism]
     with output.output_folder(folder) as draft, Progress() as progress:
         for count, text in enumerate(instants, start=1):
             progress.say(_("drawing"), count, len(instants))
             with about(mechanism):
-                angle = None if angle_step is None else to_si(angle_step, "angle")
-                length = None if length_step is None else to_si(length_step, "length")
                 at = ct.range_value(description, text, "--at")
-                check = ct.graphic_check(description, at, angle, length, given)
+                check = ct.graphic_check(description, at, angle_step, length_step, given)
             suffix = f"-{count}" if len(instants) > 1 else ""
-            (draft / f"check{suffix}.csv").write_text(graphic_csv(check), encoding="utf-8")
+            (draft / f"check{suffix}.csv").write_text(ct.graphic_csv(check), encoding="utf-8")
             if not no_figures:
                 figures = ct.diagram_figures(check.diagrams)
                 named = {f"{name}{suffix}": figure for name, figure in figures.items()}
@@ -105,5 +108,5 @@ def number(text: str) -> float:
 
 def report(check: ct.GraphicCheck) -> str:
     """What is printed of one instant."""
-    table = output.table(ct.graphic_rows(check), graphic_header(), right=(2, 3, 4, 5))
-    return "\n".join([output.table(about_rows(check)), *step_lines(check), "", table])
+    table = output.table(ct.graphic_rows(check), right=(2, 3, 4, 5))
+    return "\n".join([output.table(ct.graphic_about(check)), *ct.graphic_steps(check), "", table])

@@ -15,6 +15,7 @@ from typing import Any
 import click
 
 import centrode as ct
+from centrode.cli.angles import angles
 from centrode.cli.check import check
 from centrode.cli.diagrams import diagrams
 from centrode.cli.examples import examples
@@ -25,7 +26,6 @@ from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.sweep import sweep
 from centrode.cli.translation import language_option, translated, wished_language, with_language
-from centrode.cli.transmission import transmission
 from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
@@ -34,7 +34,7 @@ COMMANDS: tuple[click.Command, ...] = (
     check,
     diagrams,
     plan,
-    transmission,
+    angles,
     limits,
     region,
     sweep,

@@ -12,12 +12,11 @@ from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.cli.progress import Progress
 from centrode.locale import _, mark, ngettext
-from centrode.study.positions import plan_rows
 
 DEFAULT_FOLDER = "{name}-plan"
 
 
-@click.command(help=mark("Draw the mechanism in numbered positions, counted from an extreme one."))
+@click.command(help=mark("Draw the mechanism in numbered positions of its cycle."))
 @mechanism_argument
 @click.option("--positions", type=int, metavar=mark("N"), help=mark("Number of positions, else 12."))
 @click.option(
@@ -53,7 +52,7 @@ def plan(
         names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(plan_rows(description, found)))
+    click.echo(output.table(ct.plan_rows(description, found)))
     count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
         n=len(names), folder=folder
     )

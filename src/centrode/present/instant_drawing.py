@@ -74,7 +74,8 @@ def mechanism_page(found: Diagrams, text: str) -> Figure:
     """The mechanism with what its velocities tell."""
     page = new_page()
     factor, unit = shown_as("m", found.mechanism.display)
-    per_mm = round_scale(max(map(abs, rates_of(found).values()), default=0.0), LONGEST)
+    greatest = max(map(abs, rates_of(found).values()), default=0.0)
+    per_mm = max(round_scale(greatest, LONGEST), found.velocity.scale)
     scene, view = placed(found, factor, per_mm)
     axes = view.axes(page)
     draw_mechanism_in(axes, scene)

@@ -16,14 +16,10 @@ NOTHING = "-"
 
 
 def graphic_rows(check: GraphicCheck) -> list[tuple[str, ...]]:
-    """The table of a check as shown: quantity, unit, drawing, integrated, closed form, difference."""
+    """The table of a check in the units of the display, its heads first."""
+    heads = (_("quantity"), _("unit"), _("drawing"), _("integrated"), _("closed form"), _("difference"))
     display = check.diagrams.mechanism.display
-    return [_row(row, display) for row in check.rows]
-
-
-def graphic_header() -> tuple[str, ...]:
-    """Heads of that table."""
-    return _("quantity"), _("unit"), _("drawing"), _("integrated"), _("closed form"), _("difference")
+    return [heads, *(_row(row, display) for row in check.rows)]
 
 
 def _row(row: CheckRow, display: Display) -> tuple[str, ...]:
@@ -47,7 +43,7 @@ def graphic_csv(check: GraphicCheck) -> str:
     return "\n".join(lines) + "\n"
 
 
-def about_rows(check: GraphicCheck) -> list[tuple[str, str]]:
+def graphic_about(check: GraphicCheck) -> list[tuple[str, str]]:
     """Scales, how finely was read, and the instant centres."""
     found = check.diagrams
     length, unit = display_unit("m", found.mechanism.display.length, found.mechanism.display.angle)
@@ -95,7 +91,7 @@ def _reading(board: Board) -> str:
     return ", ".join(texts) or _("exactly")
 
 
-def step_lines(check: GraphicCheck) -> list[str]:
+def graphic_steps(check: GraphicCheck) -> list[str]:
     """What was done: vector equations, trials and sines, velocities first."""
     lines: list[str] = []
     for diagram in (check.diagrams.velocity, check.diagrams.acceleration):

@@ -12,20 +12,16 @@ from centrode.errors import Status
 from centrode.locale import _
 
 
-def transmission_header() -> tuple[str, ...]:
-    """Heads of the rows."""
-    return (
+def transmission_rows(angles: xr.Dataset) -> list[tuple[str, ...]]:
+    """Each group with the extremes of its angles over the samples that are reached, heads first."""
+    heads = (
         _("group"),
         _("least transmission angle, deg"),
         _("greatest, deg"),
         _("greatest pressure angle, deg"),
     )
-
-
-def transmission_rows(angles: xr.Dataset) -> list[tuple[str, ...]]:
-    """Each group with the extremes of its angles over the samples that are reached."""
     reached = angles["status"].to_numpy() == Status.OK
-    rows = []
+    rows: list[tuple[str, ...]] = [heads]
     for name in angles["group"].to_numpy().tolist():
         own = np.degrees(angles["transmission_angle"].sel(group=name).to_numpy()[reached])
         pressure = np.degrees(angles["pressure_angle"].sel(group=name).to_numpy()[reached])

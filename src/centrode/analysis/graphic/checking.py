@@ -57,8 +57,8 @@ class GraphicCheck:
 def graphic_check(
     mechanism: Mechanism,
     at: float,
-    angle_step: float | None = None,
-    length_step: float | None = None,
+    angle_step: float | str | None = None,
+    length_step: float | str | None = None,
     scales: Mapping[str, float] | None = None,
 ) -> GraphicCheck:
     """Velocities and accelerations of an instant by the drawing, beside those of the motion.
@@ -69,7 +69,7 @@ def graphic_check(
     found = diagrams(mechanism, at, angle_step, length_step, scales)
     integrated = integrated_rates(mechanism, found.exact)
     pairs = zip(RATES, (found.velocity, found.acceleration), strict=True)
-    rows = [row for names, diagram in pairs for row in _rows(found, diagram, names, integrated, length_step)]
+    rows = [row for names, diagram in pairs for row in _rows(found, diagram, names, integrated)]
     return GraphicCheck(found, tuple(rows))
 
 
@@ -78,7 +78,6 @@ def _rows(
     diagram: Diagram,
     names: tuple[str, str],
     integrated: Mapping[tuple[str, str], float],
-    length_step: float | None,
 ) -> Iterator[CheckRow]:
     turning, moving = names
     for link in found.mechanism.link_names:
@@ -86,7 +85,7 @@ def _rows(
         unit = "rad/s" if diagram.order == 1 else "rad/s^2"
         turn = diagram.turns[link] + 0.0
         yield CheckRow(turning, link, unit, turn, integrated.get((turning, link)), exact)
-    grain = 0.0 if length_step is None else 1e3 * length_step * diagram.scale
+    grain = 1e3 * (found.board.paper_step or 0.0) * diagram.scale
     for point in found.mechanism.moving_points:
         exact = float(np.hypot(*found.exact[moving].sel(point=point).to_numpy()[0]))
         length = abs(diagram.images[point])

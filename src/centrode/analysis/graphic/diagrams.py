@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -20,12 +21,14 @@ from centrode.kinematics.solve import asked_span, solve
 from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.model.units import to_si
 from centrode.quantities import status_word
 from centrode.structure.gearing import Round
 from centrode.structure.positions import FRAME
 
 MECHANISM, DIAGRAM = 90.0, 105.0
 """Room of the mechanism and of a diagram on a page A5 [mm]."""
+AT_REST = 1e-12
 COURSE = 121
 """Samples of the motion in which slots are measured."""
 
@@ -86,7 +89,7 @@ class Diagrams:
         return abs(self.velocity.images[point] / self.velocity.turns[link])
 
 
-def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | None = None) -> Diagram:
+def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | str | None = None) -> Diagram:
     """The velocity diagram at a value of the drive [rad or m], or a time [s] where that is what a motion is asked at.
 
     `angle_step` [rad] rounds the directions that are read off the drawing. Raises as `diagrams` does. Without it the
@@ -95,7 +98,7 @@ def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | None =
     return diagrams(mechanism, at, angle_step).velocity
 
 
-def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | None = None) -> Diagram:
+def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | str | None = None) -> Diagram:
     """The acceleration diagram, with normal, tangential and Coriolis parts; as `velocity_diagram`."""
     return diagrams(mechanism, at, angle_step).acceleration
 
@@ -103,8 +106,8 @@ def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | No
 def diagrams(
     mechanism: Mechanism,
     at: float,
-    angle_step: float | None = None,
-    length_step: float | None = None,
+    angle_step: float | str | None = None,
+    length_step: float | str | None = None,
     scales: Mapping[str, float] | None = None,
 ) -> Diagrams:
     """Both diagrams of an instant, with the instant centres.
@@ -113,9 +116,9 @@ def diagrams(
     ----------
     at : float [rad or m, or s]
         A value of the drive, or a time, as in `motion(at=...)`.
-    angle_step : float [rad], optional
+    angle_step : float [rad] or text ("1 deg"), optional
         Directions are read to this; exactly if left out.
-    length_step : float [m], optional
+    length_step : float [m] or text ("0.5 mm"), optional
         Lengths on paper are read to this.
     scales : mapping, optional
         What a millimetre stands for: "length" [m], "velocity" [m/s], "acceleration" [m/s^2]; round ones that make good
@@ -135,17 +138,17 @@ def diagrams(
             _("velocity and acceleration diagrams do not apply on the sphere"),
             _("take velocities from the motion"),
         )
-    board = Board(angle_step, length_step)
+    board = Board(_step(angle_step, "angle"), _step(length_step, "length"))
     prepared = ready(mechanism)
     span = span_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)
     found = _constructed(prepared, exact, span, board, scales or {})
-    if length_step is None:
+    if board.paper_step is None:
         return found
     # scales are chosen by the exact drawing, then lengths on paper are read
-    coarse = replace(board, length_step=1e3 * length_step * found.scale)
-    grains = tuple(1e3 * length_step * one.scale for one in (found.velocity, found.acceleration))
+    coarse = replace(board, length_step=1e3 * board.paper_step * found.scale)
+    grains = tuple(1e3 * board.paper_step * one.scale for one in (found.velocity, found.acceleration))
     again = _constructed(prepared, exact, span, coarse, {}, (grains[0], grains[1]))
     return replace(
         again,
@@ -153,6 +156,16 @@ def diagrams(
         velocity=replace(again.velocity, scale=found.velocity.scale),
         acceleration=replace(again.acceleration, scale=found.acceleration.scale),
     )
+
+
+def _step(step: float | str | None, kind: str) -> float | None:
+    """A reading step in SI."""
+    if step is None:
+        return None
+    try:
+        return to_si(step, kind)
+    except InputError as error:
+        raise InputError(f"{kind}_step", error.what, error.repair) from None
 
 
 def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
@@ -179,14 +192,17 @@ def _constructed(
     velocity, acceleration = stages(prepared.structure, drawing, driven_rates(prepared, span), grains)
     places = {name: complex(*at) for name, at in drawing.at.points.items()}
     extent = extent_of([*places.values(), *_rims(prepared.mechanism, drawing)])
+    moving, speeding = _size(velocity), _size(acceleration)
+    # velocities that are rounding beside what accelerations make in a moment are none
+    rests = moving <= AT_REST * math.sqrt(speeding * extent)
     return Diagrams(
         prepared.mechanism,
         exact,
         _course(prepared, exact),
         board,
-        _diagram(velocity, scales),
-        _diagram(acceleration, scales),
-        instant_centres(velocity),
+        _diagram(velocity, chosen_scale("velocity", 0.0 if rests else moving, DIAGRAM, scales)),
+        _diagram(acceleration, chosen_scale("acceleration", speeding, DIAGRAM, scales)),
+        {} if rests else instant_centres(velocity),
         places,
         chosen_scale("length", extent, MECHANISM, scales),
     )
@@ -200,19 +216,16 @@ def _course(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
         return exact
 
 
-def _diagram(stage: Stage, scales: Mapping[str, float]) -> Diagram:
+def _size(stage: Stage) -> float:
+    """The longer side of a diagram."""
     ends = [end for edge in stage.edges for end in (edge.start, edge.end)]
-    extent = extent_of([0j, *stage.points.values(), *stage.hidden.values(), *ends])
+    return extent_of([0j, *stage.points.values(), *stage.hidden.values(), *ends])
+
+
+def _diagram(stage: Stage, scale: float) -> Diagram:
     turns = {name: turn for name, turn in stage.turns.items() if name != FRAME}
-    return Diagram(
-        stage.order,
-        stage.points,
-        stage.hidden,
-        tuple(stage.edges),
-        turns,
-        tuple(stage.steps),
-        chosen_scale("velocity" if stage.order == 1 else "acceleration", extent, DIAGRAM, scales),
-    )
+    edges, steps = tuple(stage.edges), tuple(stage.steps)
+    return Diagram(stage.order, stage.points, stage.hidden, edges, turns, steps, scale)
 
 
 def _rims(mechanism: Mechanism, drawing: Drawing) -> list[complex]:

@@ -1,4 +1,4 @@
-"""`centrode transmission`: transmission and pressure angles of the dyads over a motion."""
+"""`centrode angles`: transmission and pressure angles of the dyads over a motion."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.cli.progress import Progress
 from centrode.locale import _, mark, ngettext
-from centrode.study.transmission import transmission_csv, transmission_header, transmission_rows
 
-DEFAULT_FOLDER = "{name}-transmission"
+DEFAULT_FOLDER = "{name}-angles"
 
 
 @click.command(help=mark("Compute transmission and pressure angles over the motion."))
@@ -28,7 +27,7 @@ DEFAULT_FOLDER = "{name}-transmission"
     help=mark("Folder for the results; named after the mechanism if left out."),
 )
 @click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
-def transmission(mechanism: str, samples: int | None, dark: bool, out: Path | None, no_figures: bool) -> None:
+def angles(mechanism: str, samples: int | None, dark: bool, out: Path | None, no_figures: bool) -> None:
     """Compute, write and draw."""
     description = ct.load(mechanism)
     folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
@@ -36,7 +35,7 @@ def transmission(mechanism: str, samples: int | None, dark: bool, out: Path | No
         progress.say(_("solving"))
         with about(mechanism):
             found = ct.transmission_angles(description, samples)
-        (draft / "transmission.csv").write_text(transmission_csv(found), encoding="utf-8")
+        (draft / "transmission.csv").write_text(ct.transmission_csv(found), encoding="utf-8")
         ct.write_motion_netcdf(found, draft / "transmission.nc")
         if not no_figures:
             progress.say(_("drawing"))
@@ -45,7 +44,7 @@ def transmission(mechanism: str, samples: int | None, dark: bool, out: Path | No
         names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(transmission_rows(found), transmission_header(), right=(1, 2, 3)))
+    click.echo(output.table(ct.transmission_rows(found), right=(1, 2, 3)))
     count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
         n=len(names), folder=folder
     )
