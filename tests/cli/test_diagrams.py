@@ -165,9 +165,7 @@ def test_transmission_angles(centrode: Centrode, folder: Path) -> None:
 
 
 def test_transmission_where_it_locks(centrode: Centrode, folder: Path) -> None:
-    done = centrode(
-        "transmission", "slider-between-cranks-locked", "--samples", "7", "--no-figures", "--out", "t"
-    )
+    done = centrode("angles", "slider-between-cranks-locked", "--samples", "7", "--no-figures", "--out", "t")
     assert done.code == 0, done
     assert [row["status"] for row in rows(folder / "t" / "transmission.csv")][2] == "open"
     assert "nan" not in done.out
