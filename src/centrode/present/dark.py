@@ -19,11 +19,9 @@ LEAST = 0.58  # lightness that a coloured line gets at least
 
 def darkened(figure: Figure) -> Figure:
     """Turn the colours of a figure round: greys by their lightness, colours made light enough; returns it."""
-    for artist in figure.findobj():
+    for artist in {id(one): one for one in figure.findobj()}.values():  # some are found twice
         if isinstance(artist, Line2D):
-            artist.set_color(_light(artist.get_color()))
-            for name in ("markerfacecolor", "markeredgecolor"):
-                _recolour(artist, name)
+            _recolour_line(artist)
         elif isinstance(artist, Text):
             artist.set_color(_light(artist.get_color()))
         elif isinstance(artist, Patch):
@@ -34,9 +32,11 @@ def darkened(figure: Figure) -> Figure:
     return figure
 
 
-def _recolour(artist: Line2D, name: str) -> None:
-    colour: Any = getattr(artist, f"get_{name}")()
-    getattr(artist, f"set_{name}")(_light(colour))
+def _recolour_line(line: Line2D) -> None:
+    own, face, edge = line.get_color(), line.get_markerfacecolor(), line.get_markeredgecolor()
+    line.set_color(_light(own))  # markers that follow the line would be turned round twice
+    line.set_markerfacecolor(_light(face))
+    line.set_markeredgecolor(_light(edge))
 
 
 def _recolour_patch(patch: Patch) -> None:
