@@ -36,6 +36,21 @@ from .analysis.rotatability import rotatability as rotatability
 from .analysis.rotatability import Rotatability as Rotatability
 from .analysis.repair import repair as repair
 from .analysis.repair import Repair as Repair
+from .analysis.graphic.diagrams import velocity_diagram as velocity_diagram
+from .analysis.graphic.diagrams import acceleration_diagram as acceleration_diagram
+from .analysis.graphic.diagrams import Diagram as Diagram
+from .analysis.graphic.checking import graphic_check as graphic_check
+from .analysis.graphic.checking import GraphicCheck as GraphicCheck
+from .analysis.position_plan import plan_of_positions as plan_of_positions
+from .analysis.position_plan import PositionPlan as PositionPlan
+from .analysis.transmission import transmission_angles as transmission_angles
+from .study.graphic import graphic_rows as graphic_rows
+from .study.graphic import graphic_about as graphic_about
+from .study.graphic import graphic_steps as graphic_steps
+from .study.graphic import graphic_csv as graphic_csv
+from .study.positions import plan_rows as plan_rows
+from .study.transmission import transmission_rows as transmission_rows
+from .study.transmission import transmission_csv as transmission_csv
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.limiting import limits_rows as limits_rows
@@ -54,6 +69,7 @@ from .present import equations_text as equations_text
 from .present import equations_latex as equations_latex
 from .present import equations_markdown as equations_markdown
 from .present import equations_rows as equations_rows
+
 # Instant centres, centrodes, curvature
 from .analysis.centres import instant_centres as instant_centres
 from .analysis.cases import Case as Case
@@ -93,6 +109,9 @@ from .present import curvature_figure as curvature_figure
 from .present import darkened as darkened
 from .present import motion_figures as motion_figures
 from .present import region_figure as region_figure
+from .present import diagram_figures as diagram_figures
+from .present import plan_figure as plan_figure
+from .present import transmission_figure as transmission_figure
 from .present import save_figures as save_figures
 
 # Words, failures, language

@@ -161,6 +161,8 @@ _ALL = (
         mark("acceleration coefficient along the guide"),
         by_drive=2,
     ),
+    Quantity("transmission_angle", "μ", "rad", mark("transmission angle")),
+    Quantity("pressure_angle", "α", "rad", mark("pressure angle")),
     Quantity("status", "", "1", mark("status of the sample")),
     Quantity("residual", "", "1", mark("closure residual over the greatest length")),
     Quantity("event_value", "q", "rad", mark("value of the drive at the event"), by_drive=-1),

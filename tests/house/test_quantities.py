@@ -48,7 +48,8 @@ def test_every_variable_of_a_motion_is_named() -> None:
         "path_curvature_slope",
         "curvature_centre",
     )
-    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *centres}
+    transmission = ("transmission_angle", "pressure_angle")
+    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *centres, *transmission}
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
 

@@ -15,12 +15,15 @@ from typing import Any
 import click
 
 import centrode as ct
+from centrode.cli.angles import angles
 from centrode.cli.centres import centres
 from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
+from centrode.cli.diagrams import diagrams
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.limits import limits
+from centrode.cli.plan import plan
 from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
@@ -39,6 +42,9 @@ COMMANDS: tuple[click.Command, ...] = (
     region,
     centres,
     centrodes,
+    diagrams,
+    plan,
+    angles,
     sweep,
     examples,
     schema,

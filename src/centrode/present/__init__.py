@@ -23,12 +23,15 @@ if TYPE_CHECKING:
     from centrode.present.equation_latex import equations_latex, equations_markdown
     from centrode.present.equation_text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
+    from centrode.present.instant_drawing import diagram_figures
+    from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
     from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
+    from centrode.present.transmission_curves import transmission_figure
 
 __all__ = [
     "animate_centrodes",
@@ -41,14 +44,17 @@ __all__ = [
     "equations_markdown",
     "equations_rows",
     "equations_text",
+    "diagram_figures",
     "motion_figures",
     "motion_table",
+    "plan_figure",
     "region_figure",
     "save_figures",
     "scene_of",
     "sweep_csv",
     "write_centres_csv",
     "write_centrodes_csv",
+    "transmission_figure",
     "write_coefficients_csv",
     "write_motion_csv",
     "write_motion_netcdf",
@@ -68,12 +74,15 @@ _attached, __dir__, _names = lazy_loader.attach(
         "equation_latex": ["equations_latex", "equations_markdown"],
         "equation_text": ["equations_rows", "equations_text"],
         "figures": ["motion_figures"],
+        "instant_drawing": ["diagram_figures"],
+        "plan_drawing": ["plan_figure"],
         "reading": ["scene_of"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],
         "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
+        "transmission_curves": ["transmission_figure"],
     },
 )
 
