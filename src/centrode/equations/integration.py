@@ -1,0 +1,199 @@
+"""Integration of equations in Cauchy form: fixed steps of the classical Runge-Kutta method, or adaptive ones.
+
+It knows nothing of closed forms: how far the motion goes is judged by the equations alone.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeAlias
+
+import lazy_loader
+import numpy as np
+import numpy.typing as npt
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+# slower to import than NumPy, and needed by nothing else
+_scipy = functools.partial(lazy_loader.load, "scipy.integrate")
+
+FINE = 1e-10
+"""Tolerance of the adaptive method with which a fixed step is judged."""
+MOST_STEPS = 20_000
+"""Adaptive steps after which an integration is given up."""
+LONGEST = 1 / 60
+"""Longest adaptive step as a part of the range: a determinant that is zero twice in one step would not be seen."""
+NUDGE = 1e-6
+"""Step of the differences by which the Jacobian of the constraints is formed [rad, and parts of the greatest length]."""
+LOST = 0.01
+"""Drift, as a part of the greatest length or in radians, beyond which a state is no position of the mechanism."""
+
+
+class Equations(Protocol):
+    """What is integrated: equations in Cauchy form with the constraints they were derived from."""
+
+    @property
+    def initial(self) -> Array:
+        """The state at t = 0."""
+        ...
+
+    def rates(self, time: float, state: Array) -> Array:
+        """Derivatives of the state by time."""
+        ...
+
+    def constraints(self, time: float, state: Array) -> Array:
+        """Left sides less constants: zero on the motion."""
+        ...
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """States at the times asked for, NaN where the integration does not get.
+
+    Attributes
+    ----------
+    state, rates : (n, unknowns)
+    stop : float or None
+        Time at which the determinant is zero: there the equations define no rates [s].
+    lost : float or None
+        Time of the first row that fixed steps carried away from the mechanism [s].
+    steps : int
+        Steps taken.
+    """
+
+    state: Array
+    rates: Array
+    stop: float | None
+    lost: float | None
+    steps: int
+
+
+def fixed_steps(equations: Equations, times: Array) -> Trajectory:
+    """Classical fourth-order Runge-Kutta, one step from each time to the next.
+
+    An adaptive integration goes before it and tells where the determinant is zero; rows behind that are left out,
+    and so are those after a row with another sign of the determinant or with a drift of more than `LOST`.
+    """
+    judge = _followed(equations, times, FINE)
+    state = np.full((len(times), len(equations.initial)), np.nan)
+    state[0] = equations.initial
+    with np.errstate(all="ignore"):
+        for row, (time, step) in enumerate(zip(times[:-1], np.diff(times), strict=True)):
+            state[row + 1] = _runge_kutta(equations, float(time), float(step), state[row])
+    beyond = _beyond(times, judge.stop)
+    lost = _lost(equations, times, state, beyond)
+    if lost is not None:
+        beyond |= np.arange(len(times)) >= lost
+    state[beyond] = np.nan
+    when = None if lost is None else float(times[lost])
+    return Trajectory(state, _rates(equations, times, state), judge.stop, when, len(times) - 1)
+
+
+def adaptive_steps(equations: Equations, times: Array, tolerance: float) -> Trajectory:
+    """Dormand and Prince's method of eighth order with error control; rows come from its dense output."""
+    found = _followed(equations, times, tolerance)
+    return Trajectory(found.state, _rates(equations, times, found.state), found.stop, None, found.steps)
+
+
+def determinant(equations: Equations, time: float, state: Array) -> float:
+    """Determinant of the Jacobian of the constraints by the unknowns, NaN where there are not as many of both."""
+    columns = []
+    for shift in NUDGE * np.eye(len(state)):
+        ahead = np.asarray(equations.constraints(time, state + shift))
+        columns.append((ahead - equations.constraints(time, state - shift)) / (2 * NUDGE))
+    matrix = np.array(columns)
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or not np.isfinite(matrix).all():
+        return float("nan")
+    return float(np.linalg.det(matrix))
+
+
+def _runge_kutta(equations: Equations, time: float, step: float, state: Array) -> Array:
+    first = equations.rates(time, state)
+    second = equations.rates(time + step / 2, state + step / 2 * first)
+    third = equations.rates(time + step / 2, state + step / 2 * second)
+    fourth = equations.rates(time + step, state + step * third)
+    return np.asarray(state + step / 6 * (first + 2 * second + 2 * third + fourth))
+
+
+@dataclass(frozen=True)
+class _Followed:
+    state: Array
+    stop: float | None
+    steps: int
+
+
+def _followed(equations: Equations, times: Array, tolerance: float) -> _Followed:
+    """States at the times by adaptive steps, as far as the determinant keeps its sign."""
+    initial = np.asarray(equations.initial, dtype=np.float64)
+    state = np.full((len(times), len(initial)), np.nan)
+    first, last = float(times[0]), float(times[-1])
+    state[times == first] = initial
+    if first == last or not len(initial):
+        return _Followed(np.broadcast_to(initial, state.shape).copy(), None, 0)
+    sign = np.sign(determinant(equations, first, initial))
+    with np.errstate(all="ignore"):
+        if sign == 0 or not np.isfinite(equations.rates(first, initial)).all():
+            return _Followed(state, first, 0)
+        solver = _scipy().DOP853(
+            equations.rates, first, initial, last, rtol=tolerance, atol=tolerance,
+            max_step=LONGEST * abs(last - first),
+        )  # fmt: skip
+        for steps in range(1, MOST_STEPS + 1):
+            if not solver.step() is None or not np.isfinite(solver.y).all():
+                return _Followed(state, float(solver.t), steps)
+            course = solver.dense_output()
+            stop = None
+            if sign * determinant(equations, solver.t, solver.y) < 0:
+                stop = _crossing(lambda time: determinant(equations, time, course(time)), course.t_old, course.t)
+            _fill(state, times, course, course.t if stop is None else stop)
+            if stop is not None or solver.status == "finished":
+                return _Followed(state, stop, steps)
+    return _Followed(state, float(solver.t), MOST_STEPS)
+
+
+def _fill(state: Array, times: Array, course: Any, stop: float) -> None:
+    """Rows between the last step's ends, from its polynomial."""
+    forward = np.sign(course.t - course.t_old)
+    inside = (forward * times > forward * course.t_old) & (forward * times <= forward * stop)
+    if inside.any():
+        state[inside] = course(times[inside]).T
+
+
+def _crossing(function: Callable[[float], float], low: float, high: float) -> float:
+    """Where a function changes its sign, by halving: it may be anything but smooth there."""
+    sign = np.sign(function(low))
+    while low != (middle := 0.5 * (low + high)) != high:
+        if sign * function(middle) > 0:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+def _beyond(times: Array, stop: float | None) -> npt.NDArray[np.bool_]:
+    if stop is None:
+        return np.zeros(len(times), dtype=bool)
+    return np.sign(times[-1] - times[0]) * (times - stop) > 0
+
+
+def _lost(equations: Equations, times: Array, state: Array, beyond: npt.NDArray[np.bool_]) -> int | None:
+    """First row that is no position of the mechanism any more, or one of another assembly."""
+    sign = np.sign(determinant(equations, float(times[0]), state[0]))
+    for row in np.flatnonzero(~beyond):
+        if not np.isfinite(state[row]).all():
+            return int(row)
+        drift = np.abs(equations.constraints(float(times[row]), state[row])).max(initial=0.0)
+        if drift > LOST or sign * determinant(equations, float(times[row]), state[row]) < 0:
+            return int(row)
+    return None
+
+
+def _rates(equations: Equations, times: Array, state: Array) -> Array:
+    """Rates at the rows that have a state."""
+    found = np.full(state.shape, np.nan)
+    with np.errstate(all="ignore"):
+        for row in np.flatnonzero(np.isfinite(state).all(axis=1)):
+            found[row] = equations.rates(float(times[row]), state[row])
+    return found
