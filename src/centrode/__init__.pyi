@@ -40,6 +40,13 @@ from .study.regions import region_rows as region_rows
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
+# Integration, variants, words
+from .equations.integrated import integrate as integrate
+from .study.integrating import integration_rows as integration_rows
+from .study.variants import variants as variants
+from .study.variants import variant_rows as variant_rows
+from .study.describing import describe as describe
+
 # Many mechanisms
 from .sweeps.sweeping import sweep as sweep
 from .sweeps.designs import grid as grid
@@ -53,7 +60,10 @@ from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
 from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_region_csv as write_region_csv
+from .present import write_integration_csv as write_integration_csv
+from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
+from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import save_figures as save_figures
 

@@ -21,6 +21,10 @@ class Worked:
     def initial(self) -> Array:
         return np.array(self.start)
 
+    @property
+    def sizes(self) -> Array:
+        return np.ones(3)
+
     def rates(self, time: float, state: Array) -> Array:
         two, three, four = state
         common = np.sin(time - two) / (np.cos(two) * np.sin(three - four))
@@ -39,4 +43,4 @@ class Worked:
         return np.array([height, across, height + L3 * np.sin(three) + L4 * np.sin(four)])
 
     def constraints(self, time: float, state: Array) -> Array:
-        return self.left(time, state) - self.left(0.0, self.initial)
+        return (self.left(time, state) - self.left(0.0, self.initial)) / L3

@@ -29,7 +29,8 @@ def test_every_variable_of_a_motion_is_named() -> None:
     ]
     others = ("time", "drive_value", "position", "velocity", "acceleration", "contact", "status", "residual")
     events = ("event_value", "event_kind", "event_group")
-    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events}
+    integrated = ("drift", "angle_difference", "position_difference")
+    assert set(QUANTITIES) == {*bases, *coefficients, *others, *integrated, *events}
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
 

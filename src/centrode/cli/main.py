@@ -16,17 +16,22 @@ import click
 
 import centrode as ct
 from centrode.cli.check import check
+from centrode.cli.describe import describe
 from centrode.cli.examples import examples
+from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
 from centrode.cli.region import region
 from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.sweep import sweep
 from centrode.cli.translation import language_option, translated, wished_language, with_language
+from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
-COMMANDS: tuple[click.Command, ...] = (run, check, limits, region, sweep, examples, schema)
+COMMANDS: tuple[click.Command, ...] = (
+    run, check, describe, limits, region, sweep, integrate, variants, examples, schema
+)  # fmt: skip
 """In the order that `centrode --help` lists them."""
 
 FAULT, INTERRUPTED, READER_GONE = 70, 130, 141

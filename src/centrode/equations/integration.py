@@ -6,18 +6,17 @@ It knows nothing of closed forms: how far the motion goes is judged by the equat
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+import importlib
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
-import lazy_loader
 import numpy as np
 import numpy.typing as npt
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
 # slower to import than NumPy, and needed by nothing else
-_scipy = functools.partial(lazy_loader.load, "scipy.integrate")
+_scipy = functools.partial(importlib.import_module, "scipy.integrate")
 
 FINE = 1e-10
 """Tolerance of the adaptive method with which a fixed step is judged."""
@@ -26,7 +25,7 @@ MOST_STEPS = 20_000
 LONGEST = 1 / 60
 """Longest adaptive step as a part of the range: a determinant that is zero twice in one step would not be seen."""
 NUDGE = 1e-6
-"""Step of the differences by which the Jacobian of the constraints is formed [rad, and parts of the greatest length]."""
+"""Step of the differences that form the Jacobian of the constraints [rad, and parts of the greatest length]."""
 LOST = 0.01
 """Drift, as a part of the greatest length or in radians, beyond which a state is no position of the mechanism."""
 
@@ -36,7 +35,12 @@ class Equations(Protocol):
 
     @property
     def initial(self) -> Array:
-        """The state at t = 0."""
+        """The state at t = 0 [rad, and m for slides]."""
+        ...
+
+    @property
+    def sizes(self) -> Array:
+        """What a great change of each unknown is: 1 for an angle, the greatest length for a slide."""
         ...
 
     def rates(self, time: float, state: Array) -> Array:
@@ -44,7 +48,7 @@ class Equations(Protocol):
         ...
 
     def constraints(self, time: float, state: Array) -> Array:
-        """Left sides less constants: zero on the motion."""
+        """Left sides less constants, lengths over the greatest length: zero on the motion."""
         ...
 
 
@@ -100,7 +104,7 @@ def adaptive_steps(equations: Equations, times: Array, tolerance: float) -> Traj
 def determinant(equations: Equations, time: float, state: Array) -> float:
     """Determinant of the Jacobian of the constraints by the unknowns, NaN where there are not as many of both."""
     columns = []
-    for shift in NUDGE * np.eye(len(state)):
+    for shift in NUDGE * np.diag(equations.sizes):
         ahead = np.asarray(equations.constraints(time, state + shift))
         columns.append((ahead - equations.constraints(time, state - shift)) / (2 * NUDGE))
     matrix = np.array(columns)
@@ -137,16 +141,15 @@ def _followed(equations: Equations, times: Array, tolerance: float) -> _Followed
         if sign == 0 or not np.isfinite(equations.rates(first, initial)).all():
             return _Followed(state, first, 0)
         solver = _scipy().DOP853(
-            equations.rates, first, initial, last, rtol=tolerance, atol=tolerance,
+            equations.rates, first, initial, last, rtol=tolerance, atol=tolerance * equations.sizes,
             max_step=LONGEST * abs(last - first),
         )  # fmt: skip
         for steps in range(1, MOST_STEPS + 1):
-            if not solver.step() is None or not np.isfinite(solver.y).all():
+            if solver.step() is not None or not np.isfinite(solver.y).all():
                 return _Followed(state, float(solver.t), steps)
             course = solver.dense_output()
-            stop = None
-            if sign * determinant(equations, solver.t, solver.y) < 0:
-                stop = _crossing(lambda time: determinant(equations, time, course(time)), course.t_old, course.t)
+            crosses = sign * determinant(equations, solver.t, solver.y) < 0
+            stop = _crossing(equations, course) if crosses else None
             _fill(state, times, course, course.t if stop is None else stop)
             if stop is not None or solver.status == "finished":
                 return _Followed(state, stop, steps)
@@ -161,11 +164,12 @@ def _fill(state: Array, times: Array, course: Any, stop: float) -> None:
         state[inside] = course(times[inside]).T
 
 
-def _crossing(function: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function changes its sign, by halving: it may be anything but smooth there."""
-    sign = np.sign(function(low))
+def _crossing(equations: Equations, course: Any) -> float:
+    """Where the determinant changes its sign within a step, by halving: it may be anything but smooth there."""
+    low, high = float(course.t_old), float(course.t)
+    sign = np.sign(determinant(equations, low, course(low)))
     while low != (middle := 0.5 * (low + high)) != high:
-        if sign * function(middle) > 0:
+        if sign * determinant(equations, middle, course(middle)) > 0:
             low = middle
         else:
             high = middle

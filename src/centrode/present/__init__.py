@@ -16,15 +16,19 @@ if TYPE_CHECKING:
     from centrode.present.coefficient_tables import write_coefficients_csv
     from centrode.present.drawing import draw_mechanism
     from centrode.present.figures import motion_figures
+    from centrode.present.integration_tables import write_integration_csv
+    from centrode.present.integrations import integration_figures
     from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
     from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
+    from centrode.present.variant_folders import write_variants
 
 __all__ = [
     "draw_mechanism",
+    "integration_figures",
     "motion_figures",
     "motion_table",
     "region_figure",
@@ -32,9 +36,11 @@ __all__ = [
     "scene_of",
     "sweep_csv",
     "write_coefficients_csv",
+    "write_integration_csv",
     "write_motion_csv",
     "write_motion_netcdf",
     "write_region_csv",
+    "write_variants",
 ]
 
 _attached, __dir__, _names = lazy_loader.attach(
@@ -43,12 +49,15 @@ _attached, __dir__, _names = lazy_loader.attach(
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
         "figures": ["motion_figures"],
+        "integration_tables": ["write_integration_csv"],
+        "integrations": ["integration_figures"],
         "reading": ["scene_of"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],
         "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
+        "variant_folders": ["write_variants"],
     },
 )
 

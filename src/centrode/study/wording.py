@@ -75,10 +75,15 @@ class Words:
 
     def limit(self, at: float) -> str:
         """Where a limit lies, and which group locks there."""
-        groups = [e.group for e in self.solved.branches.events if e.kind == "limit" and e.at == at]
-        names = dict.fromkeys(name_of(self.solved.ready.structure.groups[group]) for group in groups)
         return _("limit at {value}, where {group} is a dead point").format(
-            value=self.value(at), group=", ".join(names)
+            value=self.value(at), group=self.group(at)
+        )
+
+    def group(self, at: float) -> str:
+        """The group that locks at a limit, or several."""
+        groups = [e.group for e in self.solved.branches.events if e.kind == "limit" and e.at == at]
+        return ", ".join(
+            dict.fromkeys(name_of(self.solved.ready.structure.groups[group]) for group in groups)
         )
 
     def period(self) -> list[str]:
