@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import textwrap
+
 import click
 
 import centrode as ct
+from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.locale import _, mark
@@ -19,4 +22,4 @@ def describe(mechanism: str) -> None:
         text = ct.describe(description)
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(text)
+    click.echo("\n\n".join(textwrap.fill(paragraph, output.WIDTH) for paragraph in text.split("\n\n")))
