@@ -1,0 +1,67 @@
+"""What is found while the vector chains of a mechanism are laid: unknowns and constraints, group by group."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from centrode.equations.letters import Angle, Letter
+from centrode.equations.sums import Sum
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A quantity that the constraints determine.
+
+    Attributes
+    ----------
+    name : "angle.AC", "slide.C", "bearing.wheel"
+    letter, rate, second : it and its derivatives by time
+    """
+
+    name: str
+    letter: Letter
+    rate: Letter
+    second: Letter
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One constraint: left = right, with what is left of it when earlier constraints are put in.
+
+    Attributes
+    ----------
+    name : "y_C", "x_D", ...
+    left : the chain, earlier constraints put in
+    full : the chain in angles and lengths alone
+    right : a constant, or another chain
+    pair : number of the vector equation of which it is a component; -1 for a single one
+    closing : direction of the link that closes the chain
+    """
+
+    name: str
+    left: Sum
+    full: Sum
+    right: Sum
+    pair: int = -1
+    closing: Angle | None = None
+
+    @property
+    def residual(self) -> Sum:
+        """Left side less right side."""
+        return self.left - self.right
+
+
+@dataclass
+class Draft:
+    """A group in the making: what the plan has in it, and what was found so far."""
+
+    links: list[str] = field(default_factory=list)
+    points: list[str] = field(default_factory=list)
+    plan: list[int] = field(default_factory=list)
+    unknowns: list[Unknown] = field(default_factory=list)
+    conditions: list[Condition] = field(default_factory=list)
+
+    @property
+    def balance(self) -> int:
+        """Constraints less unknowns."""
+        return len(self.conditions) - len(self.unknowns)

@@ -1,0 +1,137 @@
+"""Gears and rolling wheels as equations between angles: phi2 - u phi1 = C."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+from centrode.equations.alphabet import BEARING, LENGTH, RATIO
+from centrode.equations.board import Board
+from centrode.equations.draft import Condition, Draft, Unknown
+from centrode.equations.letters import Angle, Letter
+from centrode.equations.sums import ZERO, Sum, Term
+from centrode.structure.gearing import Round, Straight
+from centrode.structure.positions import FRAME
+from centrode.structure.wheels import GearRatio, NoSlip
+
+Meshing: TypeAlias = GearRatio | NoSlip
+
+
+def meshings_of(board: Board) -> list[Meshing]:
+    """Gears and wheels that do not slip."""
+    structure = board.ready.structure
+    return [
+        c
+        for c in structure.constraints
+        if isinstance(c, (GearRatio, NoSlip)) and c not in structure.redundant
+    ]
+
+
+def mesh(board: Board, waiting: list[Meshing], draft: Draft) -> None:
+    """Write down the equations of gears and wheels whose bodies all have their angles and places."""
+    for meshing in list(waiting):
+        if isinstance(meshing, GearRatio):
+            if all(link in board.angles for link in meshing.links):
+                waiting.remove(meshing)
+                draft.conditions.append(_gear(board, meshing))
+        elif _stands(board, meshing):
+            waiting.remove(meshing)
+            draft.conditions.append(_rolling(board, meshing, draft))
+
+
+def _stands(board: Board, wheel: NoSlip) -> bool:
+    return wheel.link in board.angles and wheel.centre in board.points and wheel.on in board.placed
+
+
+def _gear(board: Board, gear: GearRatio) -> Condition:
+    ratio = Sum.letter(_factor(board, "u", "ratio", gear.gear, float(board.numbers.gearing.ratio[gear.gear])))
+    first, second, carrier = (_variable(board, board.angles[link]) for link in gear.links)
+    left = second - ratio * first + (ratio - Sum.number(1)) * carrier
+    return _angular(board, f"gear {gear.gear}", left)
+
+
+def _rolling(board: Board, wheel: NoSlip, draft: Draft) -> Condition:
+    turn, base = (_variable(board, board.angles[link]) for link in (wheel.link, wheel.on))
+    track = board.numbers.gearing.track[wheel.rolling]
+    if isinstance(track, Straight):
+        radius = board.alphabet.letter(
+            LENGTH + 800_000, f"r_{wheel.link}", "radius", (wheel.link,),
+            float(board.numbers.gearing.radius[wheel.rolling]), "m",
+        )  # fmt: skip
+        way = _way(board, wheel, track).divided(Term(((radius, 1),)))
+        return _angular(board, f"rolling {wheel.rolling}", turn - base + way)
+    spin = Sum.letter(
+        _factor(board, "k", "spin", wheel.rolling, float(board.numbers.gearing.spin(wheel.rolling)))
+    )
+    bearing = _variable(board, _bearing(board, wheel, track, draft))
+    left = turn - spin * bearing + (spin - Sum.number(1)) * base
+    return _angular(board, f"rolling {wheel.rolling}", left)
+
+
+def _way(board: Board, wheel: NoSlip, track: Straight) -> Sum:
+    """Way of the wheel's centre along its track, up to a constant."""
+    x, y = (float(v) for v in track.direction)
+    turn = board.alphabet.angle(f"beta_{wheel.rolling}", (wheel.rolling, wheel.on), (x, y))
+    at = board.points[wheel.centre]
+    if wheel.on != FRAME:
+        at = at.plus(board.points[next(iter(board.local(wheel.on)))], -1)
+    return _moving(board, at.along(board.angles[wheel.on].plus(turn)))
+
+
+def _bearing(board: Board, wheel: NoSlip, track: Round, draft: Draft) -> Angle:
+    """Direction from the circle's centre to that of the wheel: of an arm between them, else a letter of its own."""
+    centre = (float(track.centre[0]), float(track.centre[1]))
+    hub = next((p for p, at in board.local(wheel.on).items() if at == centre), None)
+    for link in board.ready.mechanism.links:
+        own = board.local(link)
+        if hub in own and wheel.centre in own and link in board.angles and link not in (wheel.link, wheel.on):
+            return board.angles[link]
+    known = next((name for name in board.alphabet.rates if name.name == f"psi_{wheel.rolling}"), None)
+    return Angle.of(known) if known is not None else _across(board, wheel, centre, draft)
+
+
+def _across(board: Board, wheel: NoSlip, centre: tuple[float, float], draft: Draft) -> Angle:
+    """A bearing of its own for a wheel that other links keep on its circle, with the equation that gives it."""
+    way = board.at(wheel.centre) - board.world(wheel.on, centre)
+    name = f"psi_{wheel.rolling}"
+    letter = board.alphabet.moving(
+        BEARING + len(board.alphabet.meanings), name, "bearing", (wheel.rolling,), math.atan2(way.imag, way.real),
+        "rad", f"omega_{wheel.rolling}",
+    )  # fmt: skip
+    rate = board.alphabet.rates[letter]
+    draft.unknowns.append(Unknown(f"bearing.{wheel.rolling}", letter, rate, board.alphabet.seconds[rate]))
+    line = Angle.of(letter)
+    at = board.points[wheel.centre].plus(board.spot(wheel.on, centre, wheel.rolling), -1)
+    full = board.full[wheel.centre].plus(board.spot(wheel.on, centre, wheel.rolling, full=True), -1)
+    draft.conditions.append(Condition(f"bearing {wheel.rolling}", at.across(line), full.across(line), ZERO))
+    return line
+
+
+def _angular(board: Board, name: str, left: Sum) -> Condition:
+    """An equation between angles; its constant is what the left side is in the initial position."""
+    values = board.alphabet.values
+    value = left.value(math, lambda letter: values[letter])
+    return Condition(name, left, left, Sum.letter(board.alphabet.constant(value, "rad")))
+
+
+def _variable(board: Board, angle: Angle) -> Sum:
+    """What moves of an angle, as a sum; the rest goes into the constant."""
+    total = ZERO
+    for letter, count in angle.parts:
+        if letter in board.alphabet.rates:
+            total += Sum.letter(letter).scaled(count)
+    return total
+
+
+def _moving(board: Board, total: Sum) -> Sum:
+    """A sum without its constant terms."""
+    moving = board.alphabet.rates.keys()
+    return Sum({term: x for term, x in total.terms.items() if Sum({term: x}).letters & moving})
+
+
+def _factor(board: Board, letter: str, kind: str, name: str, value: float) -> Letter:
+    several = len(meshings_of(board)) > 1
+    number = sum(one.kind == kind for one in board.alphabet.meanings.values()) + 1
+    return board.alphabet.letter(
+        RATIO + number, f"{letter}{number}" if several else letter, kind, (name,), value, "1"
+    )
