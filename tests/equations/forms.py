@@ -25,22 +25,24 @@ class Worked:
     def sizes(self) -> Array:
         return np.ones(3)
 
-    def rates(self, time: float, state: Array) -> Array:
-        two, three, four = state
+    def rates(self, time: npt.ArrayLike, state: Array) -> Array:
+        two, three, four = np.moveaxis(state, -1, 0)
         common = np.sin(time - two) / (np.cos(two) * np.sin(three - four))
-        return np.array(
+        return np.stack(
             [
                 -L1 / L2 * np.cos(time) / np.cos(two),
                 -L1 / L3 * np.cos(four) * common,
                 L1 / L4 * np.cos(three) * common,
-            ]
+            ],
+            axis=-1,
         )
 
-    def left(self, time: float, state: Array) -> Array:
-        two, three, four = state
+    def left(self, time: npt.ArrayLike, state: Array) -> Array:
+        two, three, four = np.moveaxis(state, -1, 0)
         height = L1 * np.sin(time) + L2 * np.sin(two)
         across = L1 * np.cos(time) + L2 * np.cos(two) + L3 * np.cos(three) + L4 * np.cos(four)
-        return np.array([height, across, height + L3 * np.sin(three) + L4 * np.sin(four)])
+        up = height + L3 * np.sin(three) + L4 * np.sin(four)
+        return np.stack([height, across, up], axis=-1)
 
-    def constraints(self, time: float, state: Array) -> Array:
+    def constraints(self, time: npt.ArrayLike, state: Array) -> Array:
         return (self.left(time, state) - self.left(0.0, self.initial)) / L3

@@ -49,12 +49,11 @@ def course_of(prepared: Ready, closed: xr.Dataset, form: CauchyForm, found: Traj
     )
     names = [str(name) for name in closed["point"].to_numpy()]
     places = _places(form, names, prepared.kinematics.numbers)
-    points = _by_rows(found.state, lambda row: places(float(times[row]), found.state[row]), (len(names), 2))
-    velocities = _by_rows(
-        found.state,
-        lambda row: _speeds(places, float(times[row]), found.state[row], found.rates[row]),
-        (len(names), 2),
-    )
+    reached = np.isfinite(found.state).all(axis=1)
+    points, velocities = np.full((2, len(times), len(names), 2), np.nan)
+    if reached.any():
+        points[reached] = places(times[reached], found.state[reached])
+        velocities[reached] = _speeds(places, times[reached], found.state[reached], found.rates[reached])
     seen = _Seen(prepared.mechanism, prepared.kinematics.numbers, names, angles, spins, points, velocities)
     slides, slips = np.full((2, len(times), len(prepared.mechanism.guides)), np.nan)
     for column, guide in enumerate(prepared.mechanism.guides):
@@ -97,41 +96,30 @@ def base_of(mechanism: Mechanism, link: str) -> str:
     return next((guide.on for guide in mechanism.guides if guide.link == link), FRAME)
 
 
-Places: TypeAlias = Callable[[float, Array], Array]
+Places: TypeAlias = Callable[[Array, Array], Array]
 
 
 def _places(form: CauchyForm, names: list[str], numbers: Dimensions) -> Places:
-    """Places of all points of a state, in the order of the names; those of the frame stand still."""
+    """Places of all points of states, in the order of the names; those of the frame stand still."""
     frame = {name: np.array(place) for name, place in numbers.frame.items()}
     nowhere = np.full(2, np.nan)
 
-    def places(time: float, state: Array) -> Array:
-        known = form.positions(time, state)
-        return np.array(
-            [known.get(name, frame.get(name, nowhere)) for name in names], dtype=np.float64
-        ).reshape(-1, 2)
+    def places(times: Array, states: Array) -> Array:
+        known = form.positions(times, states)
+        every = [known.get(name, frame.get(name, nowhere)) for name in names]
+        return np.stack([np.broadcast_to(one, (len(times), 2)) for one in every], axis=1)
 
     return places
 
 
-def _by_rows(states: Array, value: Callable[[int], Array], shape: tuple[int, ...]) -> Array:
-    """A value for every row that has a state."""
-    found = np.full((len(states), *shape), np.nan)
-    for row in np.flatnonzero(np.isfinite(states).all(axis=1)):
-        found[row] = value(int(row))
-    return found
-
-
-def _speeds(places: Places, time: float, state: Array, rates: Array) -> Array:
+def _speeds(places: Places, times: Array, states: Array, rates: Array) -> Array:
     """Velocities of all points: derivatives of their places along the rates."""
-    step = STRIDE / max(1.0, float(np.abs(rates).max(initial=0.0)))
-    return np.asarray(
-        sum(
-            weight * places(time + shift * step, state + shift * step * rates)
-            for shift, weight in zip(STENCIL, WEIGHTS, strict=True)
-        )
-        / step
+    step = STRIDE / np.maximum(1.0, np.abs(rates).max(axis=1, initial=0.0))
+    moved = sum(
+        weight * places(times + shift * step, states + (shift * step)[:, None] * rates)
+        for shift, weight in zip(STENCIL, WEIGHTS, strict=True)
     )
+    return np.asarray(moved / step[:, None, None])
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.equations.cauchy import CauchyForm, cauchy_form
+from centrode.equations.cauchy import CauchyForm, form_of
 from centrode.equations.courses import course_of
 from centrode.equations.integration import FINE, Trajectory, adaptive_steps, fixed_steps
 from centrode.errors import InputError, Status
@@ -71,7 +72,7 @@ def integrate(
     """
     _check(method, steps, tolerance)
     prepared = ready(mechanism)
-    form = cauchy_form(mechanism)
+    form = form_of(prepared)
     start = prepared.kinematics.path.initial if is_uniform(prepared.kinematics.path) else 0.0
     solved = solve(prepared, asked_span(prepared, steps + 1, start, stop))
     scaled = _Scaled(form, float(prepared.kinematics.numbers.scale))
@@ -112,13 +113,21 @@ class _Scaled:
 
     @property
     def sizes(self) -> Array:
-        return np.array([1.0 if name.startswith("angle.") else self.scale for name in self.form.names])
+        return np.array([self.scale if name.startswith("slide.") else 1.0 for name in self.form.names])
 
-    def rates(self, time: float, state: Array) -> Array:
+    def rates(self, time: Any, state: Array) -> Array:
         return np.asarray(self.form.rates(time, state), dtype=np.float64)
 
-    def constraints(self, time: float, state: Array) -> Array:
-        return np.asarray(self.form.constraints(time, state), dtype=np.float64) / self.scale
+    def constraints(self, time: Any, state: Array) -> Array:
+        return np.asarray(self.form.constraints(time, state), dtype=np.float64) / self._units
+
+    @cached_property
+    def _units(self) -> Array:
+        """What each constraint is compared with: those of wheels are angles."""
+        angular = ("gear ", "rolling ")
+        return np.array(
+            [1.0 if name.startswith(angular) else self.scale for name in self.form.constraint_names]
+        )
 
 
 def _dataset(
@@ -134,8 +143,8 @@ def _dataset(
     status = _status(found, times)
     course = course_of(prepared, closed, form, found)
     drift = np.full((len(status), len(form.constraint_names)), np.nan)
-    for row in np.flatnonzero(status == Status.OK):
-        drift[row] = scaled.constraints(float(times[row]), found.state[row])
+    rows = status == Status.OK
+    drift[rows] = scaled.constraints(times[rows], found.state[rows])
     off = course.angles - closed["angle"].to_numpy()
     apart = np.linalg.norm(course.points - closed["position"].to_numpy(), axis=-1)
     judged = judgements_of(solved, ())["status"]
@@ -150,6 +159,7 @@ def _dataset(
         "angle_difference": named("angle_difference", ("sample", "link"), off),
         "position_difference": named("position_difference", ("sample", "point"), apart),
         "status": (judged[0], status, judged[2]),
+        **{name: closed[name] for name in ("event_value", "event_kind", "event_group")},
     }
     coordinates = {**coordinates_of(solved), "constraint": labels_of(form.constraint_names)}
     attributes = {name: told for name, told in attributes_of(solved).items() if "residual" not in name}

@@ -31,7 +31,10 @@ LOST = 0.01
 
 
 class Equations(Protocol):
-    """What is integrated: equations in Cauchy form with the constraints they were derived from."""
+    """What is integrated: equations in Cauchy form with the constraints they were derived from.
+
+    Times are numbers or (...), states (..., unknowns): many states are computed at once.
+    """
 
     @property
     def initial(self) -> Array:
@@ -43,11 +46,11 @@ class Equations(Protocol):
         """What a great change of each unknown is: 1 for an angle, the greatest length for a slide."""
         ...
 
-    def rates(self, time: float, state: Array) -> Array:
+    def rates(self, time: Any, state: Array) -> Array:
         """Derivatives of the state by time."""
         ...
 
-    def constraints(self, time: float, state: Array) -> Array:
+    def constraints(self, time: Any, state: Array) -> Array:
         """Left sides less constants, lengths over the greatest length: zero on the motion."""
         ...
 
@@ -101,16 +104,16 @@ def adaptive_steps(equations: Equations, times: Array, tolerance: float) -> Traj
     return Trajectory(found.state, _rates(equations, times, found.state), found.stop, None, found.steps)
 
 
-def determinant(equations: Equations, time: float, state: Array) -> float:
-    """Determinant of the Jacobian of the constraints by the unknowns, NaN where there are not as many of both."""
+def determinant(equations: Equations, time: Any, state: Array) -> Array:
+    """Determinant of the Jacobian of the constraints by the unknowns (...), NaN where there are not as many of both."""
     columns = []
     for shift in NUDGE * np.diag(equations.sizes):
         ahead = np.asarray(equations.constraints(time, state + shift))
         columns.append((ahead - equations.constraints(time, state - shift)) / (2 * NUDGE))
-    matrix = np.array(columns)
-    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or not np.isfinite(matrix).all():
-        return float("nan")
-    return float(np.linalg.det(matrix))
+    matrix = np.stack(columns, axis=-1)
+    if matrix.shape[-1] != matrix.shape[-2]:
+        return np.full(matrix.shape[:-2], np.nan)
+    return np.asarray(np.linalg.det(matrix))
 
 
 def _runge_kutta(equations: Equations, time: float, step: float, state: Array) -> Array:
@@ -184,20 +187,22 @@ def _beyond(times: Array, stop: float | None) -> npt.NDArray[np.bool_]:
 
 def _lost(equations: Equations, times: Array, state: Array, beyond: npt.NDArray[np.bool_]) -> int | None:
     """First row that is no position of the mechanism any more, or one of another assembly."""
-    sign = np.sign(determinant(equations, float(times[0]), state[0]))
-    for row in np.flatnonzero(~beyond):
-        if not np.isfinite(state[row]).all():
-            return int(row)
-        drift = np.abs(equations.constraints(float(times[row]), state[row])).max(initial=0.0)
-        if drift > LOST or sign * determinant(equations, float(times[row]), state[row]) < 0:
-            return int(row)
-    return None
+    rows = np.flatnonzero(~beyond)
+    if not rows.size or not state.shape[1]:
+        return None
+    with np.errstate(all="ignore"):
+        drift = np.abs(equations.constraints(times[rows], state[rows])).max(axis=1)
+        signs = np.sign(determinant(equations, times[rows], state[rows]))
+    # a row that is no number drifts by no number
+    wrong = ~(drift <= LOST) | (signs * signs[0] < 0)
+    return int(rows[np.argmax(wrong)]) if wrong.any() else None
 
 
 def _rates(equations: Equations, times: Array, state: Array) -> Array:
     """Rates at the rows that have a state."""
     found = np.full(state.shape, np.nan)
-    with np.errstate(all="ignore"):
-        for row in np.flatnonzero(np.isfinite(state).all(axis=1)):
-            found[row] = equations.rates(float(times[row]), state[row])
+    rows = np.isfinite(state).all(axis=1)
+    if rows.any() and state.shape[1]:
+        with np.errstate(all="ignore"):
+            found[rows] = equations.rates(times[rows], state[rows])
     return found
