@@ -29,8 +29,8 @@ class Meaning:
     Attributes
     ----------
     symbol : its name ("phi2")
-    kind : "link angle", "relative angle", "bearing", "fixed angle", "length", "stroke", "slide", "offset",
-        "coordinate", "ratio", "radius", "constant"
+    kind : "link angle", "relative angle", "bearing", "angle in link", "angle of guide", "angle of pair", "length",
+        "reach", "stroke", "slide", "offset along", "offset beside", "coordinate", "ratio", "spin", "radius", "constant"
     names : links, points or guides it belongs to
     value : its number; of what moves, that in the initial position
     unit : "m", "rad" or "1"
@@ -85,13 +85,13 @@ class Alphabet:
         self.meanings[new] = Meaning(new.name, "constant", (), float(value), unit)
         return new
 
-    def angle(self, name: str, names: tuple[str, ...], direction: Vector) -> Angle:
+    def angle(self, name: str, kind: str, names: tuple[str, ...], direction: Vector) -> Angle:
         """A constant angle by its cosine and sine: right angles as such, another one by a letter."""
         quarters = quarters_of(direction)
         if quarters is not None:
             return Angle((), quarters)
         value = math.atan2(direction[1], direction[0])
-        return Angle.of(self.letter(FIXED + len(self.meanings), name, "fixed angle", names, value, "rad"))
+        return Angle.of(self.letter(FIXED + len(self.meanings), name, kind, names, value, "rad"))
 
     def size(self, rank: int, name: str, kind: str, names: tuple[str, ...], value: float) -> Sum:
         """A constant length, or nothing where it is zero."""

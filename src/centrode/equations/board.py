@@ -18,7 +18,7 @@ from centrode.equations.alphabet import (
 )
 from centrode.equations.draft import Draft, Unknown
 from centrode.equations.letters import Angle, Letter
-from centrode.equations.lines import Line, Rod
+from centrode.equations.lines import Line, Rod, lines_of
 from centrode.equations.places import ORIGIN, Place, polar
 from centrode.equations.sums import Sum
 from centrode.kinematics.ready import Ready
@@ -44,8 +44,20 @@ class Board:
         self.moving: list[str] = []
         """Moving points in the order in which they were placed."""
         self.placed: set[str] = {FRAME}
+        self.guides = lines_of(ready)
         for name, at in self.numbers.frame.items():
             self.points[name] = self.full[name] = self._fixed(name, (float(at[0]), float(at[1])))
+
+    @property
+    def moves(self) -> Mapping[Letter, Sum]:
+        """Rate of every letter that moves."""
+        return {letter: Sum.letter(rate) for letter, rate in self.alphabet.rates.items()}
+
+    @property
+    def moves_twice(self) -> Mapping[Letter, Sum]:
+        """Rates of letters and of their rates."""
+        seconds = {rate: Sum.letter(second) for rate, second in self.alphabet.seconds.items()}
+        return {**self.moves, **seconds}
 
     # numbers of the initial position
 
@@ -155,7 +167,7 @@ class Board:
         if not size:
             return ORIGIN
         name = f"alpha{number}" if main else f"alpha_{index}"
-        turn = self.alphabet.angle(name, (link, first, second), (bx - ax, by - ay))
+        turn = self.alphabet.angle(name, "angle in link", (link, first, second), (bx - ax, by - ay))
         return polar(size, self.angles[link].plus(turn))
 
     def spot(self, body: str, local: Vector, label: str, full: bool = False) -> Place:
@@ -173,7 +185,7 @@ class Board:
         size = self.alphabet.size(
             LENGTH + self.order[body], f"l_{index}", "length", (body, first, label), math.hypot(x, y)
         )
-        turn = self.alphabet.angle(f"alpha_{index}", (body, first, label), (x, y))
+        turn = self.alphabet.angle(f"alpha_{index}", "angle in link", (body, first, label), (x, y))
         return places[first].plus(polar(size, self.angles[body].plus(turn)))
 
     def _fixed(self, label: str, at: Vector) -> Place:
@@ -193,7 +205,9 @@ class Board:
 
     def heading(self, line: Line) -> Angle:
         """Direction of a line in the frame."""
-        turn = self.alphabet.angle(f"beta_{line.name}", (line.name, line.on), line.direction)
+        turn = self.alphabet.angle(
+            f"beta_{line.name}", "angle of guide", (line.name, line.on), line.direction
+        )
         return self.angles[line.on].plus(turn)
 
     def base(self, line: Line) -> str | None:

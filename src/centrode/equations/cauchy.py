@@ -131,10 +131,9 @@ def form_of(made: Ready) -> CauchyForm:
     """The normal form of a mechanism made ready."""
     board, drafts = laid(made)
     letters = board.alphabet
-    moves = {letter: Sum.letter(rate) for letter, rate in letters.rates.items()}
     systems = tuple(
         system_of(
-            [one.residual.rate(moves) for one in draft.conditions],
+            [one.residual.rate(board.moves) for one in draft.conditions],
             [one.rate for one in draft.unknowns],
             [one.pair for one in draft.conditions],
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -71,6 +72,10 @@ class Spelling:
         """A product."""
         return " ".join(factors)
 
+    def derivative(self, letter: Letter) -> str:
+        """Derivative of a letter by time."""
+        return f"d{self.letter(letter)}/dt"
+
     def number(self, number: int) -> str:
         """A whole number."""
         return str(number)
@@ -88,7 +93,7 @@ class Spelling:
 def order_of(term: Term) -> tuple[object, ...]:
     """Where a term stands in a sum: by its angles, then by its letters."""
     waves = [(one.parts, one.kind) for one, _power in sorted(term.waves, key=lambda wave: wave[0].order)]
-    return (not waves, [parts for parts, _kind in waves], term.letters, waves)
+    return (bool(waves), [parts for parts, _kind in waves], term.letters, waves)
 
 
 def spelled_sum(total: Sum, spelling: Spelling) -> str:
@@ -101,57 +106,82 @@ def spelled_sum(total: Sum, spelling: Spelling) -> str:
         number = total.terms[term]
         sign = ("- " if number < 0 else "+ ") if text else ("-" if number < 0 else "")
         text += (" " if text else "") + sign.replace("-", spelling.minus)
-        text += _product(size_of(number), term, None, spelling, False)
+        text += _Product(spelling).text(size_of(number), term, None)
     return text or spelling.number(0)
 
 
-def spelled(formula: Formula, spelling: Spelling, differences_first: bool = False) -> str:
-    """A formula; with `differences_first` sines of differences stand before those of angles, as in determinants."""
+def spelled(
+    formula: Formula, spelling: Spelling, differences_first: bool = False, turned: bool = False
+) -> str:
+    """A formula.
+
+    With `differences_first` sines of differences stand before those of angles, as in determinants; with `turned` a
+    minus goes into the sine of a difference.
+    """
     if not formula.number:
         return spelling.number(0)
     if formula.product == Term() and abs(formula.number) == 1 and not formula.single:
         return spelled_sum(formula.total, spelling)
     rest = None if formula.single else formula.rest
-    sign = spelling.minus if formula.number < 0 else ""
-    return sign + _product(size_of(formula.number), formula.product, rest, spelling, differences_first)
+    other = _turnable(formula) if turned and formula.number < 0 else None
+    sign = spelling.minus if formula.number < 0 and other is None else ""
+    pieces = _Product(spelling, differences_first, other)
+    return sign + pieces.text(size_of(formula.number), formula.product, rest)
 
 
-def _product(
-    size: Fraction, term: Term, rest: Sum | None, spelling: Spelling, differences_first: bool
-) -> str:
-    above, below = _letters(term, 1, spelling), _letters(term, -1, spelling)
-    if size.numerator != 1:
-        above.insert(0, spelling.number(size.numerator))
-    if size.denominator != 1:
-        below.insert(0, spelling.number(size.denominator))
-    top = _waves(term, 1, spelling, differences_first)
-    if rest is not None:
-        top.insert(0, spelling.bracket(spelled_sum(rest, spelling)))
-    bottom = _waves(term, -1, spelling, differences_first)
-    if not below and not bottom:
-        return spelling.join([*above, *top]) or spelling.number(1)
-    if rest is None and below and bottom and top:
-        front = spelling.ratio(above, below)
-        return spelling.join([front, spelling.fraction(top, bottom)])
-    if rest is None and below and not bottom and top:
-        return spelling.join([spelling.ratio(above, below), *top])
-    return spelling.fraction([*above, *top], [*below, *bottom])
+def _turnable(formula: Formula) -> Wave | None:
+    """The sine of a difference into which a sign may go."""
+    for one, power in formula.product.waves:
+        if power == 1 and one.kind == "sin" and len(one.parts) > 1:
+            return one
+    return None
 
 
-def _letters(term: Term, sign: int, spelling: Spelling) -> list[str]:
-    return [
-        spelling.power(spelling.letter(letter), abs(power))
-        for letter, power in term.letters
-        if power * sign > 0
-    ]
+@dataclass(frozen=True)
+class _Product:
+    """Writes products; the wave `turned` with the opposite sign of its angle."""
 
+    spelling: Spelling
+    differences_first: bool = False
+    turned: Wave | None = None
 
-def _waves(term: Term, sign: int, spelling: Spelling, differences_first: bool) -> list[str]:
-    chosen = [(one, abs(power)) for one, power in term.waves if power * sign > 0]
-    chosen.sort(key=lambda wave: wave[0].order)
-    if differences_first:
-        chosen.sort(key=lambda wave: len(wave[0].parts) == 1)
-    return [spelling.wave(one, power) for one, power in chosen]
+    def text(self, size: Fraction, term: Term, rest: Sum | None) -> str:
+        spelling = self.spelling
+        above, below = self._letters(term, 1), self._letters(term, -1)
+        if size.numerator != 1:
+            above.insert(0, spelling.number(size.numerator))
+        if size.denominator != 1:
+            below.insert(0, spelling.number(size.denominator))
+        top, bottom = self._waves(term, 1), self._waves(term, -1)
+        if rest is not None:
+            top.insert(0, spelling.bracket(spelled_sum(rest, spelling)))
+        if not below and not bottom:
+            return spelling.join([*above, *top]) or spelling.number(1)
+        if rest is None and below and top:
+            front = spelling.ratio(above, below)
+            return spelling.join([front, spelling.fraction(top, bottom)] if bottom else [front, *top])
+        return spelling.fraction([*above, *top], [*below, *bottom])
+
+    def _letters(self, term: Term, sign: int) -> list[str]:
+        spelling = self.spelling
+        return [
+            spelling.power(spelling.letter(letter), abs(power))
+            for letter, power in term.letters
+            if power * sign > 0
+        ]
+
+    def _waves(self, term: Term, sign: int) -> list[str]:
+        chosen = [(one, abs(power)) for one, power in term.waves if power * sign > 0]
+        chosen.sort(key=lambda wave: wave[0].order)
+        if self.differences_first:
+            chosen.sort(key=lambda wave: len(wave[0].parts) == 1)
+        return [self.spelling.wave(self._side(one), power) for one, power in chosen]
+
+    def _side(self, one: Wave) -> Wave:
+        if one != self.turned:
+            return one
+        parts = [(letter, -count) for letter, count in one.parts]
+        return Wave(tuple(sorted(parts, key=lambda part: part[1] < 0)), one.kind)
 
 
 def size_of(number: Coefficient) -> Fraction:

@@ -63,7 +63,7 @@ def _tied(board: Board, tie: Tie, link: str, draft: Draft) -> Angle:
     else:
         cosine, sine = board.numbers.turn[tie.guide]
         turn = board.alphabet.angle(
-            f"gamma_{tie.guide}", (tie.guide, tie.link, tie.on), (float(cosine), float(sine))
+            f"gamma_{tie.guide}", "angle of pair", (tie.guide, tie.link, tie.on), (float(cosine), float(sine))
         )
     known = board.angles[base if link == tie.link else tie.link]
     return known.plus(turn, 1 if link == tie.link else -1)

@@ -71,7 +71,7 @@ def _rolling(board: Board, wheel: NoSlip, draft: Draft) -> Condition:
 def _way(board: Board, wheel: NoSlip, track: Straight) -> Sum:
     """Way of the wheel's centre along its track, up to a constant."""
     x, y = (float(v) for v in track.direction)
-    turn = board.alphabet.angle(f"beta_{wheel.rolling}", (wheel.rolling, wheel.on), (x, y))
+    turn = board.alphabet.angle(f"beta_{wheel.rolling}", "angle of guide", (wheel.rolling, wheel.on), (x, y))
     at = board.points[wheel.centre]
     if wheel.on != FRAME:
         at = at.plus(board.points[next(iter(board.local(wheel.on)))], -1)

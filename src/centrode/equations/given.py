@@ -1,0 +1,63 @@
+"""What the drives give: their letters, and where time itself can be written for one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from centrode.equations.board import Board
+from centrode.equations.letters import Letter
+from centrode.equations.sums import Sum
+from centrode.laws import Uniform
+
+
+@dataclass(frozen=True)
+class Drivenness:
+    """A letter that a drive gives, with its derivatives.
+
+    `law` is "t" where it is time itself, "uniform" at constant speed, else "law".
+    """
+
+    letter: Letter
+    rate: Letter
+    second: Letter
+    drive: str
+    law: str
+    start: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class Given:
+    """What the drives give.
+
+    `names` has letters that are written otherwise (phi1 as t), `values` rates that are numbers (omega1 = 1).
+    """
+
+    drives: tuple[Drivenness, ...]
+    names: Mapping[Letter, Letter]
+    values: Mapping[Letter, Sum]
+
+    def put(self, total: Sum) -> Sum:
+        """A sum with what is given put in."""
+        return total.replaced(self.values).renamed(self.names)
+
+
+def given_of(board: Board) -> Given:
+    """What the drives of a mechanism give; with one drive at 1 rad/s from 0 its angle is time."""
+    found, names, values = [], {}, {}
+    path = {one.drive.id: one for one in board.ready.kinematics.path.driven}
+    for letter, drive in board.driven.items():
+        rate = board.alphabet.rates[letter]
+        second = board.alphabet.seconds[rate]
+        law, start = path[drive].law, path[drive].start
+        word, speed = "law", 0.0
+        if isinstance(law, Uniform):
+            word, speed = "uniform", law.speed
+            values[second] = Sum({})
+            if (start, speed, len(path)) == (0.0, 1.0, 1) and path[drive].drive.kind == "angle":
+                word = "t"
+                names[letter] = Letter(letter.rank, "t")
+                values[rate] = Sum.number(1)
+        found.append(Drivenness(letter, rate, second, drive, word, start, speed))
+    return Given(tuple(found), names, values)
