@@ -1,0 +1,239 @@
+"""Whether a mechanism turns fully: limits with their causes, extreme positions, dead points, transmission angles.
+
+Everything follows from the geometry: limits and change points are the zeros of the groups' radicands, extreme
+positions the zeros of rates, both found as roots and not among samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+from centrode.analysis.turning.causes import cause_of
+from centrode.analysis.turning.circuits import Circuits, circuits_of
+from centrode.analysis.turning.four_bars import FourBar, four_bars_of
+from centrode.analysis.turning.swings import Swing, swings_of, watched_members
+from centrode.analysis.turning.tours import Tour, tour_of
+from centrode.analysis.turning.transmission import Transmission, transmissions_of, watched_dyads
+from centrode.analysis.turning.watched import course_of
+from centrode.kinematics.branches import Event
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.several_drives.holding import initial_values
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.structure.groups import links_of
+from centrode.structure.steps import name_of
+
+
+@dataclass(frozen=True)
+class LimitFound:
+    """Where the drive is stopped, which group stops it, and why.
+
+    Attributes
+    ----------
+    value : of the drive [rad or m], equal to that of `limits` and of the motion's events
+    drive : its name
+    end : "low" or "high": the side of the initial position on which it lies
+    group : name of the group
+    links : its links
+    cause : a sentence
+    condition : what holds there, in the angles phi of the links by their numbers in the description
+    """
+
+    value: float
+    drive: str
+    end: Literal["low", "high"]
+    group: str
+    links: tuple[str, ...]
+    cause: str
+    condition: str
+
+
+@dataclass(frozen=True)
+class ChangePoint:
+    """Where both assemblies of a group meet and the mechanism can go on in either."""
+
+    value: float
+    drive: str
+    group: str
+    cause: str
+    condition: str
+
+
+@dataclass(frozen=True)
+class DeadPoint:
+    """Where a member, were it the drive, could not move the present drive: its own rate is zero there.
+
+    Attributes
+    ----------
+    driver : link or guide
+    value : its own value there [rad or m]
+    at : value of the present drive [rad or m]
+    in_line : pairs of links that fall in line
+    """
+
+    driver: str
+    value: float
+    at: float
+    in_line: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Turning:
+    """What is found for one drive, the others held at their initial values.
+
+    Attributes
+    ----------
+    drive, unit : its name; "rad" or "m"
+    held : values of the others
+    turns_fully : None for a displacement, which cannot turn
+    period : turns of the drive after which the mechanism is back; None where it does not turn fully or is not
+        back after two turns
+    limits, change_points : those that bound the motion; those on the stretch that is looked at
+    swings : of every link and slider
+    dead_points : of every member as the drive
+    transmissions : of every dyad whose transmission angle is defined
+    circuits : None where it is not computed, for the reason in `circuits_missing`
+    """
+
+    drive: str
+    unit: str
+    held: Mapping[str, float]
+    initial: float
+    turns_fully: bool | None
+    period: int | None
+    limits: tuple[LimitFound, ...]
+    change_points: tuple[ChangePoint, ...]
+    swings: tuple[Swing, ...]
+    dead_points: tuple[DeadPoint, ...]
+    transmissions: tuple[Transmission, ...]
+    circuits: Circuits | None
+    circuits_missing: str
+
+
+@dataclass(frozen=True)
+class Rotatability:
+    """What a mechanism's geometry says of its turning.
+
+    Attributes
+    ----------
+    turns_fully : whether the one drive turns fully; None with several drives, and for displacements
+    limits : of all drives
+    drives : Turning of each drive, the others held
+    four_bars : every four-bar and slider-crank loop with its type
+    """
+
+    turns_fully: bool | None
+    limits: tuple[LimitFound, ...]
+    drives: tuple[Turning, ...]
+    four_bars: tuple[FourBar, ...]
+
+    @property
+    def one(self) -> Turning:
+        """What is found for the first drive."""
+        return self.drives[0]
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON, in SI."""
+        return asdict(self)
+
+
+def rotatability(mechanism: Mechanism) -> Rotatability:
+    """Whether a mechanism turns fully, what stops it and why, and how its members move.
+
+    Returns
+    -------
+    Rotatability
+        Angles in rad, lengths in m. Limits and change points are exact to rounding, extreme positions to half
+        the digits of the drive's value and all digits of their own. Limits are looked for within two turns (four
+        times the greatest length) on both sides.
+
+    Raises
+    ------
+    InputError
+        As `motion` does.
+
+    Notes
+    -----
+    With several drives each is moved with the others held at their initial values.
+    """
+    prepared = ready(mechanism)
+    values = initial_values(prepared)
+    turnings = []
+    for drive in mechanism.drives:
+        held = {name: value for name, value in values.items() if name != drive.id}
+        turnings.append(_turning(prepared, tour_of(prepared, drive.id, held)))
+    alone = len(turnings) == 1
+    return Rotatability(
+        turnings[0].turns_fully if alone else None,
+        tuple(limit for turning in turnings for limit in turning.limits),
+        tuple(turnings),
+        four_bars_of(prepared),
+    )
+
+
+def _turning(prepared: Ready, tour: Tour) -> Turning:
+    members, dyads = watched_members(tour), watched_dyads(tour)
+    course = course_of(tour, [*(one for one, _kind in members), *(one for one, _group in dyads)])
+    swings = swings_of(course, [kind for _one, kind in members])
+    circuits, missing = circuits_of(tour)
+    return Turning(
+        tour.drive.id,
+        tour.unit,
+        tour.held,
+        tour.initial,
+        tour.unlimited if tour.angular else None,
+        tour.turns,
+        _limits(prepared, tour),
+        _change_points(prepared, tour),
+        tuple(swings),
+        tuple(_dead_points(swings)),
+        tuple(transmissions_of(course, [group for _one, group in dyads], len(members))),
+        circuits,
+        missing,
+    )
+
+
+def _limits(prepared: Ready, tour: Tour) -> tuple[LimitFound, ...]:
+    events = [event for event in tour.continuation.branches.events if event.kind == "limit"]
+    found = [
+        _limit(prepared, tour, event, end)
+        for end, value in (("low", tour.low), ("high", tour.high))
+        for event in events
+        if event.at == value
+    ]
+    if tour.drive.kind == "distance" and tour.low == 0.0 and not any(limit.value == 0.0 for limit in found):
+        name = _("cylinder {name} of no length").format(name=tour.drive.id)
+        found.insert(0, LimitFound(0.0, tour.drive.id, "low", name, (), name, f"{tour.drive.id} = 0"))
+    return tuple(found)
+
+
+def _limit(prepared: Ready, tour: Tour, event: Event, end: str) -> LimitFound:
+    group = prepared.structure.groups[event.group]
+    cause = cause_of(tour, group, event.group, event.at)
+    side: Literal["low", "high"] = "low" if end == "low" else "high"
+    return LimitFound(
+        event.at, tour.drive.id, side, name_of(group), links_of(group), cause.sentence, cause.condition
+    )
+
+
+def _change_points(prepared: Ready, tour: Tour) -> tuple[ChangePoint, ...]:
+    found = []
+    for event in tour.events("change point"):
+        if tour.low <= event.at <= tour.high:
+            group = prepared.structure.groups[event.group]
+            cause = cause_of(tour, group, event.group, event.at)
+            found.append(
+                ChangePoint(event.at, tour.drive.id, name_of(group), cause.sentence, cause.condition)
+            )
+    return tuple(found)
+
+
+def _dead_points(swings: list[Swing]) -> list[DeadPoint]:
+    return [
+        DeadPoint(swing.name, extreme.value, extreme.at, extreme.in_line)
+        for swing in swings
+        for extreme in swing.extremes
+        if not extreme.at_limit
+    ]

@@ -1,0 +1,244 @@
+"""How many ways of assembling a mechanism there are that do not pass into each other: its circuits and branches.
+
+Every combination of signs of the dyads is followed over the drive at once. Where one of them closes between two
+limits it is a branch; two branches that differ in the sign of one group are joined where that group is at a limit
+(or at a change point), and what hangs together is a circuit (Chase and Mirth, Circuits and branches of single-
+degree-of-freedom planar linkages, Journal of Mechanical Design 115, 1993).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from math import tau
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.analysis.turning.tours import Tour
+from centrode.kinematics.branches import Branches, Event
+from centrode.kinematics.continuation import Continuation
+from centrode.kinematics.events import Scan
+from centrode.kinematics.pace import OFF_GRID
+from centrode.kinematics.sides import side_names, side_words
+from centrode.locale import _
+from centrode.structure.groups import Newton
+from centrode.structure.positions import Positions
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+
+MOST_DYADS = 10
+"""More signs would be more than a thousand combinations."""
+NODES = 720
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A stretch of the drive between limits on which the mechanism closes with the same sides.
+
+    Attributes
+    ----------
+    sides : point (or guide) -> "left", "right", "ahead", "behind", as [assembly] sides names them
+    low, high : values of the drive [rad or m]; None where it goes on over all of the turn
+    """
+
+    sides: dict[str, str]
+    low: float | None
+    high: float | None
+
+
+@dataclass(frozen=True)
+class Circuits:
+    """All circuits, and the one of the initial position.
+
+    Attributes
+    ----------
+    circuits : each with its branches
+    own : number of the one in which the mechanism is assembled, from 0
+    joined : whether circuits hang together at change points only
+    """
+
+    circuits: tuple[tuple[Branch, ...], ...]
+    own: int
+    joined: bool
+
+    @property
+    def branches(self) -> int:
+        """Number of branches of the mechanism's own circuit."""
+        return len(self.circuits[self.own])
+
+
+def circuits_of(tour: Tour) -> tuple[Circuits | None, str]:
+    """Circuits of a mechanism for a drive, or why they are not counted."""
+    structure, mechanism = tour.prepared.structure, tour.prepared.mechanism
+    signed = [index for index, group in enumerate(structure.groups) if group.signed]
+    if any(isinstance(group, Newton) for group in structure.groups):
+        return None, _("not counted: a group of higher class has assemblies that no sign tells")
+    if mechanism.gears or mechanism.rolling:
+        return None, _("not counted: wheels may mesh in any position")
+    if len(signed) > MOST_DYADS:
+        return None, _("not counted: more than {most} groups with two sides").format(most=MOST_DYADS)
+    return _Search(tour, signed).run(), ""
+
+
+class _Search:
+    """All combinations of signs on the nodes of the drive, and which stretches of them hang together."""
+
+    def __init__(self, tour: Tour, signed: list[int]) -> None:
+        self.tour, self.signed = tour, signed
+        self.signs = np.array(list(product((1.0, -1.0), repeat=len(signed)))).reshape(
+            2 ** len(signed), len(signed)
+        )
+        first = tour.initial if tour.angular else tour.initial - tour.extent
+        length = tau if tour.angular else 2.0 * tour.extent
+        self.nodes = first + (np.arange(NODES) + OFF_GRID) * (length / NODES)
+        self.length = length
+        self.closed, self.cuts = self._followed()
+        self.parent: dict[tuple[int, int], tuple[int, int]] = {}
+        self.runs = [
+            _numbered(row, cut, tour.angular) for row, cut in zip(self.closed, self._cut(), strict=True)
+        ]
+
+    def _followed(self) -> tuple[Mask, list[Event]]:
+        """Where every combination closes at the nodes, and all events."""
+        tour = self.tour
+        lanes = len(self.signs)
+        signs = {group: self.signs[:, k].copy() for k, group in enumerate(self.signed)}
+        start = tour.continuation.branches
+        branches = Branches(start.initial, start.forward, start.unit, lanes, signs, False, start.angles)
+        continuation = Continuation(
+            tour.continuation.kinematics, branches, tour.continuation.start, tour.continuation.nominal
+        )
+        ends = [self.nodes[-1] + self.length / NODES] if tour.angular else []
+        at = Scan(continuation, np.concatenate([self.nodes, ends])).run()
+        closed = np.ones((lanes, NODES), dtype=bool)
+        for x in _numbers(at):
+            closed &= np.isfinite(np.broadcast_to(x, (lanes, NODES + len(ends)))[:, :NODES])
+        return closed, branches.events
+
+    def _cells(self, event: Event) -> tuple[int, int]:
+        """Nodes before and behind an event."""
+        before = int(np.searchsorted(self.nodes, event.at, side="right")) - 1
+        behind = before + 1
+        if self.tour.angular:
+            return before % NODES, behind % NODES
+        return max(before, 0), min(behind, NODES - 1)
+
+    def _cut(self) -> Mask:
+        """Cells, by the node before them, that hold a limit."""
+        cut = np.zeros((len(self.signs), NODES), dtype=bool)
+        for event in self.cuts:
+            if event.kind == "limit":
+                cut[event.lane, self._cells(event)[0]] = True
+        return cut
+
+    def run(self) -> Circuits:
+        """Join what hangs together."""
+        joined = False
+        for event in self._nearest():
+            if event.group not in self.signed:
+                continue
+            partner = self._partner(event)
+            for node in self._cells(event):
+                one, other = self._run(event.lane, node), self._run(partner, node)
+                if one is not None and other is not None:
+                    joined |= event.kind == "change point" and self._root(one) != self._root(other)
+                    self._join(one, other)
+        return self._circuits(joined)
+
+    def _nearest(self) -> list[Event]:
+        """Limits first, so that change points join only what limits do not."""
+        return sorted(self.cuts, key=lambda event: event.kind != "limit")
+
+    def _partner(self, event: Event) -> int:
+        """The combination that differs in the sign of one group."""
+        place = len(self.signed) - 1 - self.signed.index(event.group)
+        return event.lane ^ (1 << place)
+
+    def _run(self, lane: int, node: int) -> tuple[int, int] | None:
+        run = int(self.runs[lane][node])
+        return None if run < 0 else (lane, run)
+
+    def _root(self, run: tuple[int, int]) -> tuple[int, int]:
+        while run in self.parent:
+            run = self.parent[run]
+        return run
+
+    def _join(self, one: tuple[int, int], other: tuple[int, int]) -> None:
+        one, other = self._root(one), self._root(other)
+        if one != other:
+            self.parent[max(one, other)] = min(one, other)
+
+    def _circuits(self, joined: bool) -> Circuits:
+        found: dict[tuple[int, int], list[Branch]] = {}
+        own_signs = [self.tour.prepared.assembled.signs[group] for group in self.signed]
+        lane = next(k for k, row in enumerate(self.signs) if list(row) == own_signs)
+        own = self._root((lane, int(self.runs[lane][self._start(lane)])))
+        for k, runs in enumerate(self.runs):
+            for run in range(int(runs.max(initial=-1)) + 1):
+                found.setdefault(self._root((k, run)), []).append(self._branch(k, run))
+        order = list(found)
+        return Circuits(tuple(tuple(found[root]) for root in order), order.index(own), joined)
+
+    def _start(self, lane: int) -> int:
+        """The node of the mechanism's own branch that is nearest to the initial position."""
+        way = np.abs(self.nodes - self.tour.initial)
+        if self.tour.angular:
+            way = np.minimum(way, tau - way)
+        inside = self.closed[lane] & self._reached()
+        return int(np.argmin(np.where(inside, way, np.inf)))
+
+    def _reached(self) -> Mask:
+        low, high = self.tour.low, self.tour.high
+        turns = (0.0, -tau) if self.tour.angular else (0.0,)
+        return np.any([(low <= self.nodes + turn) & (self.nodes + turn <= high) for turn in turns], axis=0)
+
+    def _branch(self, lane: int, run: int) -> Branch:
+        groups = self.tour.prepared.structure.groups
+        space = self.tour.continuation.kinematics.numbers.space
+        sides = {
+            side_names(groups[g])[0]: side_words(space, groups[g])[0 if self.signs[lane, k] > 0 else 1]
+            for k, g in enumerate(self.signed)
+        }
+        inside = np.nonzero(self.runs[lane] == run)[0]
+        limits = [e for e in self.cuts if e.lane == lane and e.kind == "limit"]
+        if not limits and len(inside) == NODES:
+            return Branch(sides, None, None)
+        low, high = self._edges(inside)
+        return Branch(sides, self._edge(limits, low, -1), self._edge(limits, high, 0))
+
+    def _edges(self, inside: npt.NDArray[np.intp]) -> tuple[int, int]:
+        """First and last node of a run that may go on over the end of the nodes."""
+        gaps = np.nonzero(np.diff(inside) > 1)[0]
+        if len(gaps) and inside[0] == 0 and inside[-1] == NODES - 1:
+            return int(inside[gaps[-1] + 1]), int(inside[gaps[0]])
+        return int(inside[0]), int(inside[-1])
+
+    def _edge(self, limits: list[Event], node: int, which: int) -> float | None:
+        """The limit in the cell before a node (which = -1) or behind it (0), the nearest to the node."""
+        before = node - 1 if which == -1 else node
+        cell = before % NODES if self.tour.angular else before
+        found = sorted(e.at for e in limits if self._cells(e)[0] == cell)
+        return found[which] if found else None
+
+
+def _numbers(at: Positions) -> list[Array]:
+    """Every coordinate of points."""
+    return [np.atleast_2d(np.asarray(x, dtype=np.float64)) for place in at.points.values() for x in place]
+
+
+def _numbered(closed: Mask, cut: Mask, round_: bool) -> npt.NDArray[np.intp]:
+    """Number of the run of closed nodes that each node belongs to, -1 where it does not close."""
+    numbers = np.full(len(closed), -1, dtype=np.intp)
+    run = -1
+    for k in range(len(closed)):
+        if not closed[k]:
+            continue
+        if k == 0 or not closed[k - 1] or cut[k - 1]:
+            run += 1
+        numbers[k] = run
+    if round_ and run > 0 and closed[0] and closed[-1] and not cut[-1]:
+        numbers[numbers == run] = 0
+    return numbers

@@ -1,0 +1,131 @@
+"""Transmission angles of the dyads: how well each passes motion on, from 0 (it locks) to a right angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from centrode.analysis.turning.tours import Tour
+from centrode.analysis.turning.watched import Course, Pair, Watched
+from centrode.geometry.plane import cross as plane_cross
+from centrode.geometry.plane import dot as plane_dot
+from centrode.geometry.plane import place, subtract, turned
+from centrode.geometry.sphere import cross, dot, tangent
+from centrode.kinematics.evaluate import Kinematics
+from centrode.kinematics.groups import aim_curve
+from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Slot, Stroke
+from centrode.structure.positions import Positions
+from centrode.structure.steps import name_of
+
+Number: TypeAlias = Any
+
+
+@dataclass(frozen=True)
+class Transmission:
+    """Extremes of a dyad's transmission angle over a tour.
+
+    Attributes
+    ----------
+    group : its name
+    kind : "RRR", "RRP", "RPR"
+    least, least_at : the least acute angle [rad] (between lines: 0 to pi/2), and the drive's value there
+    extremes : (drive's value, angle [rad] between 0 and pi) of all its minima and maxima
+    """
+
+    group: str
+    kind: str
+    least: float
+    least_at: float
+    extremes: tuple[tuple[float, float], ...]
+
+
+def watched_dyads(tour: Tour) -> list[tuple[Watched, int]]:
+    """The transmission angles of a plan's dyads, each with the number of its group."""
+    kinematics = tour.continuation.kinematics
+    found = []
+    for index, group in enumerate(kinematics.structure.groups):
+        watched = _watched(kinematics, group)
+        if watched is not None:
+            found.append((watched, index))
+    return found
+
+
+def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
+    """RRR: between the two rods; RRP: between the rod and the normal of the line; RPR: between arm and normal."""
+    name = name_of(group)
+    sphere = kinematics.numbers.space.name == "sphere"
+    if isinstance(group, Aim) and group.contact is None and not sphere:
+        return Watched(name, "rad", lambda at: _of_aim(kinematics, group, at))
+    if not isinstance(group, Meet):
+        return None
+    centres = [locus for locus in group.loci if isinstance(locus, (Rod, Stroke))]
+    if len(centres) == 2:
+        return Watched(name, "rad", lambda at: _between_rods(sphere, centres, at))
+    line = next((locus for locus in group.loci if isinstance(locus, (Rail, Slot))), None)
+    if len(centres) == 1 and line is not None and not sphere:
+        return Watched(name, "rad", lambda at: _to_normal(kinematics, centres[0], line, group.carriage, at))
+    return None
+
+
+def _between_rods(sphere: bool, rods: list[Any], at: Positions) -> Pair:
+    one, other = ((at.points[rod.point], at.points[rod.centre]) for rod in rods)
+    if sphere:
+        first, second = (tangent(pin, centre) for pin, centre in (one, other))
+        return dot(first, second), dot(one[0], cross(first, second))
+    first, second = (subtract(centre, pin) for pin, centre in (one, other))
+    return plane_dot(first, second), plane_cross(first, second)
+
+
+def _to_normal(kinematics: Kinematics, rod: Any, line: Locus, carriage: str | None, at: Positions) -> Pair:
+    """The rod's share along the line is the sine; that along the normal the cosine."""
+    assert isinstance(line, (Rail, Slot))
+    body = line.on if isinstance(line, Rail) else carriage
+    rotor = at.poses[body or "frame"].rotor
+    direction = turned(kinematics.numbers.direction[line.guide], rotor)
+    arm = subtract(at.points[rod.point], at.points[rod.centre])
+    return plane_cross(direction, arm), plane_dot(direction, arm)
+
+
+def _of_aim(kinematics: Kinematics, group: Aim, at: Positions) -> Pair:
+    """The target's way along the line from the pivot's foot is the sine, the pivot's distance from it the cosine."""
+    _through, direction = aim_curve(group, kinematics.numbers)
+    pose = at.poses[group.link]
+    pivot = place(pose, kinematics.numbers.local[group.link][group.pivot])
+    along = turned(direction, pose.rotor)
+    arm = subtract(at.points[group.target], pivot)
+    return plane_cross(along, arm), plane_dot(along, arm)
+
+
+def transmissions_of(course: Course, groups: list[int], first: int = 0) -> list[Transmission]:
+    """Extremes of the watched transmission angles, from number `first` on."""
+    found = []
+    for k, index in enumerate(groups, first):
+        extremes = [(float(at), _between(float(value))) for at, value in zip(*course.turned[k], strict=True)]
+        least, at = _least(course, k, index, extremes)
+        group = course.tour.prepared.structure.groups[index]
+        found.append(Transmission(course.watched[k].name, group.kind, least, at, tuple(extremes)))
+    return found
+
+
+def _between(value: float) -> float:
+    """An angle between two lines, in [0, pi]."""
+    folded = abs(value) % (2.0 * pi)
+    return min(folded, 2.0 * pi - folded)
+
+
+def _least(course: Course, k: int, index: int, extremes: list[tuple[float, float]]) -> tuple[float, float]:
+    """The least acute angle; zero at the group's own limits and change points."""
+    tour = course.tour
+    if not isinstance(tour.prepared.structure.groups[index], Aim):
+        for event in tour.events("limit") + tour.events("change point"):
+            if event.group == index and (event.kind == "change point" or event.at in (tour.low, tour.high)):
+                return 0.0, event.at
+    acute = [(min(value, pi - value), at) for at, value in extremes]
+    nodes = np.abs(np.sin(course.values[k]))
+    if not acute or not tour.comes_round:
+        node = int(np.nanargmin(nodes))
+        acute.append((float(np.arcsin(nodes[node])), float(course.nodes[node])))
+    return min(acute)
