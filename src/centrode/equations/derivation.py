@@ -12,14 +12,14 @@ from centrode.equations.board import Board
 from centrode.equations.draft import Condition, Draft, Unknown
 from centrode.equations.expressions import expression, matrix
 from centrode.equations.formulas import Formula, formula_of
+from centrode.equations.given import Given, given_of
 from centrode.equations.laying import laid
 from centrode.equations.letters import Letter
 from centrode.equations.places import Place
+from centrode.equations.points import PointVelocity, shortest, velocity_of
 from centrode.equations.sums import Sum
 from centrode.equations.systems import LinearSystem, system_of
-from centrode.equations.given import Given, given_of
 from centrode.errors import InputError
-from centrode.equations.points import PointVelocity, shortest, velocity_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

@@ -9,6 +9,7 @@ from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.study.roles import Roles, roles_of
 from centrode.study.rotation import rotation_of
+from centrode.study.wording import value_text
 from centrode.study.words_on_joints import sentences_on_joints
 from centrode.study.words_on_motion import sentences_on_motion
 
@@ -43,6 +44,10 @@ def _on_freedom(prepared: Ready, roles: Roles) -> Iterator[str]:
         )
     rotation = rotation_of(prepared)
     if rotation.turns_fully:
-        yield _("The drive turns fully.")
-    elif rotation.turns_fully is False:
-        yield _("The drive cannot turn fully: {cause}.").format(cause=rotation.cause)
+        yield _("The drive can turn fully.")
+    elif rotation.turns_fully is False and rotation.limit is not None:
+        at = value_text(rotation.limit, rotation.unit, prepared.mechanism.display)
+        # Translators: {cause} is a sentence without its full stop
+        yield _("The drive cannot turn fully; it stops at {value}: {cause}.").format(
+            value=at, cause=rotation.cause
+        )

@@ -1,13 +1,11 @@
-"""Whether a drive turns fully, and what stops it."""
+"""Whether a drive turns fully, and what stops it first: what a summary in one row says of it."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+from centrode.analysis.rotatability import LimitFound, rotatability
 from centrode.kinematics.ready import Ready
-from centrode.kinematics.solve import asked_span, solve
-from centrode.study.wording import Words
 
 
 @dataclass(frozen=True)
@@ -16,31 +14,42 @@ class Rotation:
 
     Attributes
     ----------
-    turns_fully : None where the drive is no angle of constant speed
+    turns_fully : None where there are several drives, or the drive is no angle
     limit : float or None
-        Value of the drive at which it locks first, in the sense in which it moves [rad or m].
-    group, cause : which group locks there, and how, in words; empty where nothing locks
+        Value of the drive at which it stops first, in the sense in which it moves; where it is free in that sense,
+        the limit in the other one [rad or m].
+    unit : of the limit
+    group, cause, condition : which group stops it, why in words, and in symbols; empty where nothing does
     """
 
     turns_fully: bool | None
-    limit: float | None
-    group: str
-    cause: str
+    limit: float | None = None
+    unit: str = ""
+    group: str = ""
+    cause: str = ""
+    condition: str = ""
 
 
 def rotation_of(prepared: Ready) -> Rotation:
-    """What a full turn of the drive meets, by the events of the motion."""
-    path = prepared.kinematics.path
-    turning = (
-        not path.by_time and path.driven[0].drive.kind == "angle" and path.driven[0].drive.speed is not None
+    """What a drive meets on its way."""
+    found = rotatability(prepared.mechanism)
+    if len(found.drives) != 1:
+        return Rotation(found.turns_fully)
+    forward = "high" if prepared.kinematics.path.forward > 0 else "low"
+    limits = sorted(found.limits, key=lambda limit: limit.end != forward)
+    if not limits:
+        return Rotation(found.turns_fully)
+    first = limits[0].value
+    met = [limit for limit in limits if limit.value == first]
+    return Rotation(
+        found.turns_fully,
+        first,
+        found.one.unit,
+        _joined(met, "group"),
+        _joined(met, "cause"),
+        _joined(met, "condition"),
     )
-    full = path.initial + path.forward * math.tau if turning else None
-    solved = solve(prepared, asked_span(prepared, None, path.initial if turning else None, full))
-    words = Words(solved)
-    low, high = solved.branches.reach(0)
-    ahead, behind = (high, low) if path.forward > 0 else (low, high)
-    met = [at for at in (ahead, behind) if math.isfinite(at)]
-    if not met:
-        return Rotation(True if turning else None, None, "", "")
-    limit = met[0]
-    return Rotation(False if turning else None, limit, words.group(limit), words.limit(limit))
+
+
+def _joined(limits: list[LimitFound], attribute: str) -> str:
+    return "; ".join(dict.fromkeys(getattr(limit, attribute) for limit in limits))

@@ -119,10 +119,10 @@ def computed(topology: Mechanism, variant: Variant) -> VariantResults:
 
 
 def _row(name: str, rotation: Rotation, results: StudyResults) -> VariantRow:
-    unit = "" if rotation.limit is None else str(results.motion["event_value"].attrs["units"])
     status = COMPUTED if results.failure is None else LOCKS
+    cause = f"{rotation.cause} ({rotation.condition})" if rotation.condition else rotation.cause
     return VariantRow(
-        name, rotation.turns_fully, rotation.limit, unit, rotation.group, rotation.cause, status
+        name, rotation.turns_fully, rotation.limit, rotation.unit, rotation.group, cause, status
     )
 
 

@@ -75,15 +75,10 @@ class Words:
 
     def limit(self, at: float) -> str:
         """Where a limit lies, and which group locks there."""
-        return _("limit at {value}, where {group} is a dead point").format(
-            value=self.value(at), group=self.group(at)
-        )
-
-    def group(self, at: float) -> str:
-        """The group that locks at a limit, or several."""
         groups = [e.group for e in self.solved.branches.events if e.kind == "limit" and e.at == at]
-        return ", ".join(
-            dict.fromkeys(name_of(self.solved.ready.structure.groups[group]) for group in groups)
+        names = dict.fromkeys(name_of(self.solved.ready.structure.groups[group]) for group in groups)
+        return _("limit at {value}, where {group} is a dead point").format(
+            value=self.value(at), group=", ".join(names)
         )
 
     def period(self) -> list[str]:
