@@ -75,7 +75,7 @@ def integrate(
     form = form_of(prepared)
     start = prepared.kinematics.path.initial if is_uniform(prepared.kinematics.path) else 0.0
     solved = solve(prepared, asked_span(prepared, steps + 1, start, stop))
-    scaled = _Scaled(form, float(prepared.kinematics.numbers.scale))
+    scaled = Scaled(form, float(prepared.kinematics.numbers.scale))
     times = solved.span.time
     if method == "rk4":
         found = fixed_steps(scaled, times)
@@ -101,7 +101,7 @@ def _check(method: str, steps: int, tolerance: float) -> None:
 
 
 @dataclass(frozen=True)
-class _Scaled:
+class Scaled:
     """Equations whose constraints are compared with the greatest length."""
 
     form: CauchyForm
@@ -134,7 +134,7 @@ def _dataset(
     prepared: Ready,
     solved: Solved,
     form: CauchyForm,
-    scaled: _Scaled,
+    scaled: Scaled,
     found: Trajectory,
     told: Mapping[str, Any],
 ) -> xr.Dataset:

@@ -22,7 +22,7 @@ FINE = 1e-10
 """Tolerance of the adaptive method with which a fixed step is judged."""
 MOST_STEPS = 20_000
 """Adaptive steps after which an integration is given up."""
-LONGEST = 1 / 60
+LONGEST = 1 / 24
 """Longest adaptive step as a part of the range: a determinant that is zero twice in one step would not be seen."""
 NUDGE = 1e-6
 """Step of the differences that form the Jacobian of the constraints [rad, and parts of the greatest length]."""

@@ -42,6 +42,7 @@ def integration_rows(mechanism: Mechanism, integration: xr.Dataset) -> Rows:
         (_("range"), _("{first} to {last}").format(first=shown[0], last=shown[1])),
         (_("rows"), f"{len(status)}: {said}"),
         (_("stops"), stop_text(mechanism, integration) or _("nowhere")),
+        (_("closed forms"), _events(mechanism, integration)),
         (_("greatest drift"), _drift(integration)),
         (_("greatest difference"), _difference(mechanism, integration)),
         (_("last row"), _return(integration)),
@@ -72,16 +73,39 @@ def stop_text(mechanism: Mechanism, integration: xr.Dataset) -> str:
     if np.isfinite(lost):
         sentences.append(
             _("fixed steps leave the mechanism at {time}: ask for more steps").format(
-                time=value_text(lost, "s", mechanism.display)
+                time=_at(mechanism, integration, lost)
             )
         )
     if np.isfinite(stop):
         sentences.append(
             _("at {time} the determinant of the equations is zero, so they give no velocities").format(
-                time=value_text(stop, "s", mechanism.display)
+                time=_at(mechanism, integration, stop)
             )
         )
     return "; ".join(sentences)
+
+
+def _at(mechanism: Mechanism, integration: xr.Dataset, time: float) -> str:
+    """A time, with the value of the only drive where it is even."""
+    text = value_text(time, "s", mechanism.display)
+    drive = mechanism.drives[0]
+    if len(mechanism.drives) > 1 or drive.speed is None:
+        return text
+    values = integration["drive_value"].to_numpy()[:, 0]
+    value = float(values[0]) + drive.speed * time
+    unit = str(integration["drive_value"].attrs["units"])
+    return _("{time} ({drive} at {value})").format(
+        time=text, drive=drive.id, value=value_text(value, unit, mechanism.display)
+    )
+
+
+def _events(mechanism: Mechanism, integration: xr.Dataset) -> str:
+    """Limits and change points of the closed forms in the range, each once."""
+    unit = str(integration["event_value"].attrs["units"])
+    words = (_("limit at {value}"), _("change point at {value}"))
+    places = zip(integration["event_value"].to_numpy(), integration["event_kind"].to_numpy(), strict=True)
+    told = [words[kind].format(value=value_text(float(at), unit, mechanism.display)) for at, kind in places]
+    return "; ".join(dict.fromkeys(told)) or _("nothing that stops it")
 
 
 def _drift(integration: xr.Dataset) -> str:
