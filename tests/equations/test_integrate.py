@@ -29,7 +29,8 @@ ROUNDED = 1 + 1e-9
 """A printed value is one of its decimals off by half a unit at most; the decimal fraction itself is not exact."""
 
 SEVERAL = (
-    "cardan-gear", "chebyshev-straight-line", "crank-rocker", "elliptic-trammel", "excavator-arm", "five-bar-two-drives",
+    "cardan-gear", "chebyshev-straight-line", "crank-rocker", "elliptic-trammel", "excavator-arm",
+    "five-bar-two-drives",
     "four-bar-and-slider", "fourth-class-group", "geared-five-bar", "oscillating-cylinder", "parallelogram",
     "planetary-gear-train", "planetary-hypocycloid", "rack-and-pinion", "rolling-wheel-rod", "scotch-yoke", "shaper",
     "slider-between-cranks-locked", "slider-between-cranks-vertical", "tangent-mechanism", "two-link-arm", "wiper",

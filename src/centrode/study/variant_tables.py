@@ -64,13 +64,13 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
     found = [
         _variant(columns, row, _("{table}, row {number}").format(table=where, number=n)) for n, row in rows
     ]
-    seen: dict[str, str] = {}
+    seen: set[str] = set()
     for variant in found:
         # folders are named after variants, and some file systems know no capital letters
-        other = seen.setdefault(variant.name.casefold(), variant.name)
-        if other is not variant.name:
+        if variant.name.casefold() in seen:
             what = _("variant {name} is there twice").format(name=shown(variant.name))
             raise InputError(where, what, _("give each a name of its own"))
+        seen.add(variant.name.casefold())
     return tuple(found)
 
 
