@@ -87,7 +87,7 @@ def integrate(
     return _dataset(prepared, solved, form, scaled, found, told)
 
 
-def _check(method: str, steps: int, tolerance: float) -> None:
+def _check(method: object, steps: object, tolerance: object) -> None:
     if method not in METHODS:
         what = _("there is no method {name}").format(name=shown(method))
         raise InputError("method", what, nearest(str(method), METHODS))

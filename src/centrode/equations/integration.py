@@ -182,7 +182,7 @@ def _crossing(equations: Equations, course: Any) -> float:
 def _beyond(times: Array, stop: float | None) -> npt.NDArray[np.bool_]:
     if stop is None:
         return np.zeros(len(times), dtype=bool)
-    return np.sign(times[-1] - times[0]) * (times - stop) > 0
+    return np.asarray(np.sign(times[-1] - times[0]) * (times - stop) > 0)
 
 
 def _lost(equations: Equations, times: Array, state: Array, beyond: npt.NDArray[np.bool_]) -> int | None:

@@ -85,9 +85,7 @@ def write_variants(
     InputError
         The table is wrong, the folder cannot be written, another run writes into it, or a process was ended.
     """
-    if isinstance(jobs, bool) or not isinstance(jobs, int) or not 1 <= jobs <= MOST_JOBS:
-        what = _("{jobs} processes were asked for").format(jobs=jobs)
-        raise InputError("jobs", what, _("ask for 1 to {most}").format(most=MOST_JOBS))
+    _check_jobs(jobs)
     folder = Path(folder)
     text = mechanism_text(topology)
     tasks = [
@@ -104,6 +102,12 @@ def write_variants(
         what = _("cannot be written: {reason}").format(reason=reason)
         raise InputError(str(folder), what, _("name another place")) from refusal
     return tuple(rows)
+
+
+def _check_jobs(jobs: object) -> None:
+    if isinstance(jobs, bool) or not isinstance(jobs, int) or not 1 <= jobs <= MOST_JOBS:
+        what = _("{jobs} processes were asked for").format(jobs=jobs)
+        raise InputError("jobs", what, _("ask for 1 to {most}").format(most=MOST_JOBS))
 
 
 def _all(tasks: Sequence[Task], jobs: int, progress: Progress | None) -> list[VariantRow]:

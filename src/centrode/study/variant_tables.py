@@ -134,7 +134,8 @@ def _mappings(table: Sequence[Mapping[str, object]], where: str) -> tuple[list[s
 
 
 def _variant(columns: Sequence[Column | None], row: list[object], where: str) -> Variant:
-    name, values = "", {}
+    name = ""
+    values: dict[str, float] = {}
     for column, cell in zip(columns, row, strict=True):
         if column is None:
             name = _name(cell, where)
