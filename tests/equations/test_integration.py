@@ -7,7 +7,8 @@ import numpy.typing as npt
 import pytest
 
 from centrode.equations.integration import LOST, adaptive_steps, determinant, fixed_steps
-from worked_form import L1, L2, L3, L4, Worked
+from centrode.errors import InputError
+from worked_form import L2, L3, L4, Worked
 
 Array = npt.NDArray[np.float64]
 
@@ -123,4 +124,9 @@ def test_a_start_at_a_dead_point() -> None:
 def test_one_row() -> None:
     found = fixed_steps(TURNING, np.zeros(1))
     assert np.array_equal(found.state, TURNING.initial[None])
-    assert L1 == 0.5
+
+
+def test_too_many_steps_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("centrode.equations.integration.MOST_STEPS", 10)
+    with pytest.raises(InputError, match="more than 10 steps"):
+        adaptive_steps(TURNING, turn(4), 1e-10)

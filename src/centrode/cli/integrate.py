@@ -13,7 +13,6 @@ from centrode.cli.arguments import mechanism_argument
 from centrode.cli.progress import Progress
 from centrode.errors import MotionError
 from centrode.locale import _, mark, ngettext
-from centrode.study.integrating import closed_motion, stop_text
 
 DEFAULT_FOLDER = "{name}-integration"
 
@@ -70,7 +69,7 @@ def integrate(
         ct.write_motion_netcdf(found, draft / "integration.nc")
         if not no_figures:
             progress.say(_("drawing"))
-            drawn = ct.integration_figures(description, found, closed_motion(description, found))
+            drawn = ct.integration_figures(description, found, ct.closed_motion(description, found))
             ct.save_figures(drawn, draft)
         names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
@@ -80,8 +79,8 @@ def integrate(
         n=len(names), folder=folder
     )
     click.echo(f"\n{output.paragraph(f'{count}:', names)}")
-    stopped = stop_text(description, found)
-    if stopped:
+    stopped = ct.integration_failure(description, found)
+    if stopped is not None:
         raise MotionError(
             mechanism, stopped, _("ask for a range that ends before it, or change the dimensions")
         )

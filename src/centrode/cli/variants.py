@@ -10,8 +10,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.progress import Progress
 from centrode.errors import MotionError
-from centrode.locale import _, mark, ngettext
-from centrode.study.variants import NOT_COMPUTED, STATUS_WORDS, counts
+from centrode.locale import _, mark
 
 DEFAULT_FOLDER = "{name}-variants"
 
@@ -51,16 +50,7 @@ def variants(table: str, topology: str, out: Path | None, jobs: int, figures: bo
         raise
     header = (_("variant"), _("turns fully"), _("limit"), _("group"), _("status"))
     click.echo(output.table(ct.variant_rows(rows), header))
-    found = counts(rows)
-    said = ", ".join(f"{_(word)} {found[status]}" for status, word in STATUS_WORDS.items() if found[status])
-    number = ngettext("{n} variant", "{n} variants", len(rows)).format(n=len(rows))
-    click.echo(f"\n{number}: {said}\n" + _("wrote {file}").format(file=folder / "summary.csv"))
-    missing = [row for row in rows if row.status in NOT_COMPUTED]
-    if missing:
-        what = ngettext("{n} variant was not computed", "{n} variants were not computed", len(missing))
-        causes = "\n".join(f"{row.variant}: {row.cause}" for row in missing[:SHOWN])
-        raise MotionError(table, what.format(n=len(missing)), _("correct its row:") + "\n" + causes)
-
-
-SHOWN = 5
-"""Causes told on the terminal; all stand in the summary."""
+    summary, failure = ct.variants_summary(rows)
+    click.echo(f"\n{summary}\n" + _("wrote {file}").format(file=folder / "summary.csv"))
+    if failure is not None:
+        raise MotionError(table, failure)

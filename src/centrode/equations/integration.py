@@ -13,6 +13,9 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.errors import InputError
+from centrode.locale import _
+
 Array: TypeAlias = npt.NDArray[np.float64]
 
 # slower to import than NumPy, and needed by nothing else
@@ -21,7 +24,7 @@ _scipy = functools.partial(importlib.import_module, "scipy.integrate")
 FINE = 1e-10
 """Tolerance of the adaptive method with which a fixed step is judged."""
 MOST_STEPS = 20_000
-"""Adaptive steps after which an integration is given up."""
+"""Adaptive steps after which an integration is refused."""
 LONGEST = 1 / 24
 """Longest adaptive step as a part of the range: a determinant that is zero twice in one step would not be seen."""
 NUDGE = 1e-6
@@ -132,7 +135,10 @@ class _Followed:
 
 
 def _followed(equations: Equations, times: Array, tolerance: float) -> _Followed:
-    """States at the times by adaptive steps, as far as the determinant keeps its sign."""
+    """States at the times by adaptive steps, as far as the determinant keeps its sign.
+
+    Raises InputError where too many steps would be needed.
+    """
     initial = np.asarray(equations.initial, dtype=np.float64)
     state = np.full((len(times), len(initial)), np.nan)
     first, last = float(times[0]), float(times[-1])
@@ -156,7 +162,11 @@ def _followed(equations: Equations, times: Array, tolerance: float) -> _Followed
             _fill(state, times, course, course.t if stop is None else stop)
             if stop is not None or solver.status == "finished":
                 return _Followed(state, stop, steps)
-    return _Followed(state, float(solver.t), MOST_STEPS)
+    raise InputError(
+        "",
+        _("the integration needs more than {most} steps").format(most=MOST_STEPS),
+        _("ask for a shorter range, or a coarser tolerance"),
+    )
 
 
 def _fill(state: Array, times: Array, course: Any, stop: float) -> None:

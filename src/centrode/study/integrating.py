@@ -41,7 +41,7 @@ def integration_rows(mechanism: Mechanism, integration: xr.Dataset) -> Rows:
         (_("method"), _method(integration)),
         (_("range"), _("{first} to {last}").format(first=shown[0], last=shown[1])),
         (_("rows"), f"{len(status)}: {said}"),
-        (_("stops"), stop_text(mechanism, integration) or _("nowhere")),
+        (_("stops"), integration_failure(mechanism, integration) or _("nowhere")),
         (_("closed forms"), _events(mechanism, integration)),
         (_("greatest drift"), _drift(integration)),
         (_("greatest difference"), _difference(mechanism, integration)),
@@ -66,8 +66,8 @@ def _method(integration: xr.Dataset) -> str:
     ).format(n=taken, tolerance=told["tolerance"])
 
 
-def stop_text(mechanism: Mechanism, integration: xr.Dataset) -> str:
-    """Where and why the integration stopped, in a sentence; empty where it did not."""
+def integration_failure(mechanism: Mechanism, integration: xr.Dataset) -> str | None:
+    """Where and why the integration stopped, in a sentence; None where it did not."""
     stop, lost = integration.attrs["stop_time"], integration.attrs["lost_time"]
     sentences = []
     if np.isfinite(lost):
@@ -82,7 +82,7 @@ def stop_text(mechanism: Mechanism, integration: xr.Dataset) -> str:
                 time=_at(mechanism, integration, stop)
             )
         )
-    return "; ".join(sentences)
+    return "; ".join(sentences) or None
 
 
 def _at(mechanism: Mechanism, integration: xr.Dataset, time: float) -> str:

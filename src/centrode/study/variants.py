@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.equations.integrated import integrate
 from centrode.errors import InputError
 from centrode.kinematics.ready import ready
-from centrode.locale import _, mark, speaking
+from centrode.locale import _, mark, ngettext, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.rotation import Rotation, rotation_of
 from centrode.study.running import StudyResults, study
@@ -25,6 +25,8 @@ STEPS = 100
 """Fixed steps of the integration beside the motion, as the assignment has them."""
 COMPUTED, LOCKS, REFUSED, FAULT = "ok", "locks", "refused", "fault"
 NOT_COMPUTED = (REFUSED, FAULT)
+SHOWN = 5
+"""Causes told together; all stand in the summary."""
 STATUS_WORDS: Mapping[str, str] = {
     COMPUTED: mark("ok"),
     LOCKS: mark("locks"),
@@ -126,9 +128,17 @@ def _row(name: str, rotation: Rotation, results: StudyResults) -> VariantRow:
     )
 
 
-def counts(rows: Iterable[VariantRow]) -> Mapping[str, int]:
-    """How many variants have each status."""
-    return Counter(row.status for row in rows)
+def variants_summary(rows: Sequence[VariantRow]) -> tuple[str, str | None]:
+    """How many variants there are of each status; and why some were not computed, None where all were."""
+    found = Counter(row.status for row in rows)
+    said = ", ".join(f"{_(word)} {found[status]}" for status, word in STATUS_WORDS.items() if found[status])
+    summary = ngettext("{n} variant", "{n} variants", len(rows)).format(n=len(rows)) + f": {said}"
+    missing = [row for row in rows if row.status in NOT_COMPUTED]
+    if not missing:
+        return summary, None
+    what = ngettext("{n} variant was not computed", "{n} variants were not computed", len(missing))
+    causes = [f"{row.variant}: {row.cause}" for row in missing[:SHOWN]]
+    return summary, "\n".join([what.format(n=len(missing)), *causes])
 
 
 def variant_rows(rows: Iterable[VariantRow]) -> list[tuple[str, str, str, str, str]]:

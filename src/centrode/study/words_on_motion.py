@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterator
 
 from centrode.locale import _, mark
-from centrode.model.mechanism import FRAME, Drive, Mechanism
-from centrode.quantities import display_unit, typeset_unit
+from centrode.model.mechanism import FRAME, Mechanism
 from centrode.structure.assur import assur_groups, is_input
 from centrode.structure.groups import (
     Aim,
@@ -27,25 +26,10 @@ from centrode.structure.plan import Structure
 from centrode.structure.wheel_groups import Train
 from centrode.study.roles import Roles
 from centrode.study.word_lists import called, links_listed
+from centrode.study.words_on_drives import sentence_on_drive
 from centrode.study.words_on_joints import links_at
 
 # Translators: {link}, {coupler}, {follower} are names of links, {pivot} and {point} of points; names do not change.
-DRIVEN = {
-    ("crank", True): mark("Crank {link} is driven: it turns about {pivot} at a constant {speed}."),
-    ("crank", False): mark("Crank {link} is driven: it turns about {pivot} by a given law."),
-    ("link", True): mark("Link {link} is driven: it turns about {pivot} at a constant {speed}."),
-    ("link", False): mark("Link {link} is driven: it turns about {pivot} by a given law."),
-    ("free", True): mark("Link {link} is driven: its angle changes at a constant {speed}."),
-    ("free", False): mark("Link {link} is driven: its angle follows a given law."),
-    ("relative", True): mark("Link {link} is driven against link {base} at a constant {speed}."),
-    ("relative", False): mark("Link {link} is driven against link {base} by a given law."),
-    ("slider", True): mark("The slider in {point} is driven along its guide at a constant {speed}."),
-    ("slider", False): mark("The slider in {point} is driven along its guide by a given law."),
-    ("guided", True): mark("Link {link} is driven along its guide at a constant {speed}."),
-    ("guided", False): mark("Link {link} is driven along its guide by a given law."),
-    ("cylinder", True): mark("Cylinder {name} is driven: its length changes at a constant {speed}."),
-    ("cylinder", False): mark("Cylinder {name} is driven: its length follows a given law."),
-}
 FOLLOWERS = {
     "turns": mark(
         "Coupler {coupler} passes the motion on to crank {follower}, which turns fully about {pivot}."
@@ -86,7 +70,7 @@ def sentences_on_motion(structure: Structure, roles: Roles) -> Iterator[str]:
     """What is driven, then what follows it, in the order of the plan."""
     told: set[str] = set()
     for drive in structure.mechanism.drives:
-        yield _on_drive(drive, roles)
+        yield sentence_on_drive(drive, roles)
         told.update([drive.link] if drive.link else [])
     classes = {group.members: group.roman for group in assur_groups(structure)}
     for group in structure.groups:
@@ -100,37 +84,6 @@ def sentences_on_motion(structure: Structure, roles: Roles) -> Iterator[str]:
         elif not isinstance(group, RigidPoint):
             yield from _on_group(structure, roles, group, told)
         told.update(links_of(group))
-
-
-def _on_drive(drive: Drive, roles: Roles) -> str:
-    mechanism = roles.mechanism
-    constant = drive.speed is not None
-    angular = drive.kind == "angle" or mechanism.space == "sphere"
-    speed = "" if drive.speed is None else _speed(mechanism, abs(drive.speed), angular=angular)
-    if drive.kind == "distance":
-        return _(DRIVEN["cylinder", constant]).format(name=drive.id, speed=speed)
-    if drive.guide is not None:
-        guide = mechanism.guide(drive.guide)
-        kind = "slider" if guide.link is None else "guided"
-        return _(DRIVEN[kind, constant]).format(point=guide.point, link=called(guide.link or ""), speed=speed)
-    link = drive.link or ""
-    pivot = roles.pivot(link)
-    if drive.relative_to != FRAME:
-        kind = "relative"
-    elif pivot is None:
-        kind = "free"
-    else:
-        kind = "crank" if roles.turns_fully(link) else "link"
-    return _(DRIVEN[kind, constant]).format(
-        link=called(link), pivot=pivot, base=called(drive.relative_to), speed=speed
-    )
-
-
-def _speed(mechanism: Mechanism, speed: float, *, angular: bool) -> str:
-    display = mechanism.display
-    unit = "rad/s" if angular else "m/s"
-    factor, shown = display_unit(unit, str(display.length), str(display.angle))
-    return f"{speed * factor:.4g} {typeset_unit(shown)}"
 
 
 def _on_group(structure: Structure, roles: Roles, group: Group, told: set[str]) -> Iterator[str]:
