@@ -40,6 +40,13 @@ from .study.regions import region_rows as region_rows
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
+# Equations in symbols
+from .equations.derivation import equations as equations
+from .present import equations_text as equations_text
+from .present import equations_latex as equations_latex
+from .present import equations_markdown as equations_markdown
+from .present import equations_rows as equations_rows
+
 # Integration, variants, words
 from .equations.integrated import integrate as integrate
 from .study.integrating import closed_motion as closed_motion

@@ -17,6 +17,7 @@ import click
 import centrode as ct
 from centrode.cli.check import check
 from centrode.cli.describe import describe
+from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
@@ -30,7 +31,7 @@ from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
 COMMANDS: tuple[click.Command, ...] = (
-    run, check, describe, limits, region, sweep, integrate, variants, examples, schema
+    run, check, describe, equations, limits, region, sweep, integrate, variants, examples, schema
 )  # fmt: skip
 """In the order that `centrode --help` lists them."""
 

@@ -124,7 +124,7 @@ class Board:
         letter = self.alphabet.moving(
             rank,
             f"psi_{index}",
-            "bearing",
+            "bearing" if rod.drive is None else "cylinder",
             (rod.name,),
             math.atan2(way.imag, way.real),
             "rad",

@@ -133,7 +133,7 @@ def form_of(made: Ready) -> CauchyForm:
     letters = board.alphabet
     systems = tuple(
         system_of(
-            [one.residual.rate(board.moves) for one in draft.conditions],
+            [one.rate(board.moves) for one in draft.conditions],
             [one.rate for one in draft.unknowns],
             [one.pair for one in draft.conditions],
         )

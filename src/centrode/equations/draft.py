@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from centrode.equations.letters import Angle, Letter
+from centrode.equations.places import Place
 from centrode.equations.sums import Sum
 
 
@@ -36,6 +38,7 @@ class Condition:
     right : a constant, or another chain
     pair : number of the vector equation of which it is a component; -1 for a single one
     closing : direction of the link that closes the chain
+    vector : of a component across that link, the vector equation it was taken of
     """
 
     name: str
@@ -44,11 +47,28 @@ class Condition:
     right: Sum
     pair: int = -1
     closing: Angle | None = None
+    vector: Place | None = None
 
     @property
     def residual(self) -> Sum:
         """Left side less right side."""
         return self.left - self.right
+
+    def rate(self, moves: Mapping[Letter, Sum], times: int = 1) -> Sum:
+        """First or second derivative of the residual by time, zero where the constraint holds.
+
+        Of a vector equation across a link, the vector is differentiated and then its component is taken: what is
+        left out is a multiple of the vector itself.
+        """
+        if self.vector is None or self.closing is None:
+            total = self.residual
+            for _time in range(times):
+                total = total.rate(moves)
+            return total
+        x, y = self.vector
+        for _time in range(times):
+            x, y = x.rate(moves), y.rate(moves)
+        return Place(x, y).across(self.closing)
 
 
 @dataclass

@@ -12,7 +12,7 @@ from typing import Any
 from centrode.equations.expressions import expression
 from centrode.equations.letters import Letter
 from centrode.equations.merging import merged
-from centrode.equations.spelling import Spelling, spelled
+from centrode.equations.spelling import Spelling, ordered, spelled
 from centrode.equations.sums import Coefficient, Sum, Term
 
 
@@ -93,7 +93,7 @@ def _number(total: Sum) -> tuple[Coefficient, Sum]:
         return 0, Sum.number(1)
     numbers = [Fraction(x) for x in total.terms.values()]
     size = Fraction(gcd(*(x.numerator for x in numbers)), lcm(*(x.denominator for x in numbers)))
-    first = min(total.terms, key=lambda term: (term.waves and term.waves[0][0].order, term.letters))
+    first = ordered(total)[0]
     number: Coefficient = size if total.terms[first] > 0 else -size
     if number.denominator == 1:
         number = int(number)

@@ -11,6 +11,7 @@ from centrode.equations.board import Board
 from centrode.equations.chains import Chains
 from centrode.equations.draft import Condition, Draft
 from centrode.equations.places import Place
+from centrode.equations.shortcuts import shorten
 from centrode.equations.sums import ZERO
 from centrode.equations.wheels import mesh, meshings_of
 from centrode.errors import InputError
@@ -42,6 +43,7 @@ def laid(ready: Ready) -> tuple[Board, tuple[Draft, ...]]:
             if draft.unknowns:
                 groups.append(draft)
             draft = Draft()
+            shorten(board)
     if draft.balance or chains.lines or chains.rods or waiting:
         raise InputError(
             "",
@@ -74,9 +76,17 @@ def _project(draft: Draft, pair: int) -> None:
     line = both[0].closing
     place = draft.conditions.index(x)
     draft.conditions = [one for one in draft.conditions if one.pair != pair]
-    left = Place(x.left, y.left).plus(Place(x.right, y.right), -1).across(line)
+    vector = Place(x.residual, y.residual)
     full = Place(x.full, y.full).plus(Place(x.right, y.right), -1).across(line)
-    one = replace(x, name=x.name.replace("x_", "n_", 1), left=left, full=full, right=ZERO, pair=-1)
+    one = replace(
+        x,
+        name=x.name.replace("x_", "n_", 1),
+        left=vector.across(line),
+        full=full,
+        right=ZERO,
+        pair=-1,
+        vector=vector,
+    )
     draft.conditions.insert(place, one)
 
 

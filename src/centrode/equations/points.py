@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -66,33 +65,3 @@ def velocity_of(
 
     squared = formula_of(rates.x * rates.x + rates.y * rates.y)
     return PointVelocity(point, place, x, y, along, squared, short(x), short(y), short(along))
-
-
-def shortest(board: Board) -> dict[str, Place]:
-    """Coordinates of every point by the chain with the fewest links: B of a rocker DB from D, not through the coupler."""
-    cost = {name: len(at.x.terms) + len(at.y.terms) for name, at in board.points.items()}
-    way: dict[str, tuple[str, str] | None] = dict.fromkeys(cost)
-    waiting = [(far, name) for name, far in cost.items()]
-    heapq.heapify(waiting)
-    while waiting:
-        far, name = heapq.heappop(waiting)
-        if far > cost[name]:
-            continue
-        for link in board.order:
-            if name not in board.local(link):
-                continue
-            for other in board.local(link):
-                if other not in board.numbers.frame and far + 2 < cost[other]:
-                    cost[other], way[other] = far + 2, (link, name)
-                    heapq.heappush(waiting, (far + 2, other))
-    found: dict[str, Place] = {}
-
-    def place(name: str) -> Place:
-        if name not in found:
-            step = way[name]
-            found[name] = (
-                board.points[name] if step is None else place(step[1]).plus(board.arm(step[0], step[1], name))
-            )
-        return found[name]
-
-    return {name: place(name) for name in board.points}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -21,7 +22,7 @@ GREEK = {
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 POWERS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 DOTS = {"": "", "dot": "\u0307", "ddot": "\u0308"}
-NAME = re.compile(r"([A-Za-z]+?)(\d*)(?:_(.+?))?(?:_(dot|ddot))?")
+NAME = re.compile(r"([A-Za-z]+?)(\d*)(?:_(?!d?dot$)(.+?))?(?:_(dot|ddot))?")
 
 
 def parts_of(name: str) -> tuple[str, str, str]:
@@ -42,7 +43,7 @@ class Spelling:
         """A letter with its index."""
         base, below, dots = parts_of(letter.name)
         index = below.translate(SUBSCRIPTS) if below.isdecimal() else f"_{below}" if below else ""
-        return f"{GREEK.get(base, base)}{DOTS[dots]}{index}"
+        return unicodedata.normalize("NFC", f"{GREEK.get(base, base)}{DOTS[dots]}") + index
 
     def power(self, base: str, power: int) -> str:
         """A letter to a power."""
@@ -68,6 +69,22 @@ class Spelling:
         """Something in round brackets."""
         return f"({text})"
 
+    def math(self, text: str) -> str:
+        """A formula inside of a sentence."""
+        return text
+
+    def bars(self, text: str) -> str:
+        """The size of something."""
+        return f"|{text}|"
+
+    def initial(self, text: str) -> str:
+        """The value of a function at time zero."""
+        return f"{text}(0)"
+
+    def decimal(self, number: float) -> str:
+        """A number that was given."""
+        return f"{number:.6g}"
+
     def join(self, factors: Sequence[str]) -> str:
         """A product."""
         return " ".join(factors)
@@ -75,6 +92,10 @@ class Spelling:
     def derivative(self, letter: Letter) -> str:
         """Derivative of a letter by time."""
         return f"d{self.letter(letter)}/dt"
+
+    def times(self, front: str, other: str) -> str:
+        """A fraction in front of something."""
+        return self.join([front, other])
 
     def number(self, number: int) -> str:
         """A whole number."""
@@ -96,13 +117,18 @@ def order_of(term: Term) -> tuple[object, ...]:
     return (bool(waves), [parts for parts, _kind in waves], term.letters, waves)
 
 
-def spelled_sum(total: Sum, spelling: Spelling) -> str:
-    """A sum, each term a product or a fraction."""
-    text = ""
+def ordered(total: Sum) -> list[Term]:
+    """Terms in the order in which they are written; those without angles begin with a positive one."""
     order = sorted(total.terms, key=order_of)
     if not any(term.waves for term in order):
         order.sort(key=lambda term: total.terms[term] < 0)  # phi2 - u phi1
-    for term in order:
+    return order
+
+
+def spelled_sum(total: Sum, spelling: Spelling) -> str:
+    """A sum, each term a product or a fraction."""
+    text = ""
+    for term in ordered(total):
         number = total.terms[term]
         sign = ("- " if number < 0 else "+ ") if text else ("-" if number < 0 else "")
         text += (" " if text else "") + sign.replace("-", spelling.minus)
@@ -159,7 +185,7 @@ class _Product:
             return spelling.join([*above, *top]) or spelling.number(1)
         if rest is None and below and top:
             front = spelling.ratio(above, below)
-            return spelling.join([front, spelling.fraction(top, bottom)] if bottom else [front, *top])
+            return spelling.times(front, spelling.fraction(top, bottom) if bottom else spelling.join(top))
         return spelling.fraction([*above, *top], [*below, *bottom])
 
     def _letters(self, term: Term, sign: int) -> list[str]:

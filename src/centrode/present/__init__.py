@@ -15,6 +15,8 @@ from centrode.locale import _
 if TYPE_CHECKING:
     from centrode.present.coefficient_tables import write_coefficients_csv
     from centrode.present.drawing import draw_mechanism
+    from centrode.present.equation_latex import equations_latex, equations_markdown
+    from centrode.present.equation_text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
@@ -28,6 +30,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "draw_mechanism",
+    "equations_latex",
+    "equations_markdown",
+    "equations_rows",
+    "equations_text",
     "integration_figures",
     "motion_figures",
     "motion_table",
@@ -48,6 +54,8 @@ _attached, __dir__, _names = lazy_loader.attach(
     submod_attrs={
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
+        "equation_latex": ["equations_latex", "equations_markdown"],
+        "equation_text": ["equations_rows", "equations_text"],
         "figures": ["motion_figures"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],

@@ -84,11 +84,11 @@ def _term(mechanism: Mechanism, group: Group, members: tuple[str, ...]) -> Assur
         return AssurGroup("II", 2, group.kind, members)
     if isinstance(group, Newton):
         contours = contours_of(mechanism, group)
-        return AssurGroup(_roman(contours.highest), contours.outer, _("higher class"), members)
+        return AssurGroup(roman(contours.highest), contours.outer, _("higher class"), members)
     return AssurGroup("0", 0, group.kind, members)
 
 
-def _roman(number: int) -> str:
+def roman(number: int) -> str:
     """A small number in Roman figures."""
     figures = ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I"))
     found = ""

@@ -1,0 +1,74 @@
+"""Velocities of points as lines of a page."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+from centrode.equations.formulas import Formula
+from centrode.equations.letters import Letter
+from centrode.equations.spelling import Spelling, spelled, spelled_sum
+from centrode.equations.sums import Sum, Term
+
+if TYPE_CHECKING:
+    from centrode.equations.points import PointVelocity
+
+Line: TypeAlias = tuple[str, ...]
+
+LONGEST = 3
+"""Terms of the longest square of a speed that tells more than the components."""
+
+
+def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
+    """Coordinates, then the velocity along its guide, or both components and the speed.
+
+    In the rates, and with these put in where that is short.
+    """
+    point = velocity.point
+    lines: list[Line] = [
+        (spelling.letter(Letter(0, f"{axis}_{point}")), spelled_sum(total, spelling))
+        for axis, total, rate in zip("xy", velocity.place, (velocity.x, velocity.y), strict=True)
+        if rate.number
+    ]
+    if velocity.along is not None:
+        return [*lines, _line(f"v_{point}", velocity.along, velocity.closed_along, spelling)]
+    lines += [
+        _line(f"v_{point}x", velocity.x, velocity.closed_x, spelling),
+        _line(f"v_{point}y", velocity.y, velocity.closed_y, spelling),
+    ]
+    speed = spelling.letter(Letter(0, f"v_{point}"))
+    square = velocity.squared
+    if _is_square(square):
+        lines.append((speed, _root(square, spelling)))
+    elif square.size <= LONGEST:
+        lines.append((spelling.power(speed, 2), spelled(square, spelling)))
+    return lines
+
+
+def _line(name: str, formula: Formula, closed: Formula | None, spelling: Spelling) -> Line:
+    parts = [spelling.letter(Letter(0, name)), spelled(formula, spelling, turned=formula.single)]
+    if closed is not None:
+        short = spelled(closed, spelling, turned=True)
+        parts += [short] if short != parts[1] else []
+    return tuple(parts)
+
+
+def _is_square(formula: Formula) -> bool:
+    return (
+        formula.single
+        and formula.number == 1
+        and not formula.product.waves
+        and all(power % 2 == 0 for _letter, power in formula.product.letters)
+    )
+
+
+def _root(formula: Formula, spelling: Spelling) -> str:
+    """Square root of a product of squares; rates may be negative, so they stand between bars."""
+    halves = [(letter, power // 2) for letter, power in formula.product.letters]
+    texts = []
+    for letter, power in halves:
+        factor = spelled(Formula(1, Term(((letter, power),)), Sum.number(1)), spelling)
+        rate = letter.name.startswith("omega") or letter.name.endswith("_dot")
+        texts.append((rate, spelling.bars(factor) if rate else factor))
+    return spelling.join([text for _rate, text in sorted(texts, key=lambda one: one[0])]) or spelling.number(
+        1
+    )

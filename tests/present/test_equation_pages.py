@@ -1,0 +1,125 @@
+"""The equations as text, LaTeX and Markdown: complete, balanced, and mathematics that a second reader understands."""
+
+from __future__ import annotations
+
+import re
+
+import matplotlib.mathtext
+import pytest
+
+import centrode as ct
+from centrode.present.equation_latex import LatexSpelling, escaped
+from centrode.present.equation_page import LONGEST, Relation, System, sections
+
+WIDTH = 110
+"""Columns of a relation that can be broken."""
+SAMPLE = (
+    "slider-between-cranks",
+    "excavator-arm",
+    "third-class-triad",
+    "planetary-gear-train",
+    "scissor-lift-cylinder",
+)
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_every_formula_is_mathematics_to_matplotlib(name: str) -> None:
+    found = ct.equations(ct.example(name))
+    parser = matplotlib.mathtext.MathTextParser("path")
+    for section in sections(found, LatexSpelling(), found.board.moving[:3]):
+        for entry in section.entries:
+            texts: list[str] = []
+            if isinstance(entry, Relation):
+                texts = list(entry.parts)
+            if isinstance(entry, System):
+                texts = [*entry.unknowns, *entry.right, *(x for row in entry.matrix for x in row)]
+            for text in texts:
+                # what matplotlib spells otherwise
+                known = text.replace(r"\text{", r"\mathrm{").replace(r"\lvert", "|").replace(r"\rvert", "|")
+                parser.parse(f"${known}$")
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_documents_are_balanced(name: str) -> None:
+    found = ct.equations(ct.example(name))
+    latex, markdown = ct.equations_latex(found), ct.equations_markdown(found)
+    for text in (latex, markdown):
+        assert text.count("{") - text.count(r"\{") == text.count("}") - text.count(r"\}")
+        assert text.count(r"\left(") == text.count(r"\right)")
+        opened = re.findall(r"\\begin\{(.+?)\}", text)
+        assert sorted(opened) == sorted(re.findall(r"\\end\{(.+?)\}", text))
+    assert latex.startswith(r"\documentclass")
+    assert latex.endswith("\\end{document}\n")
+    assert markdown.count("$$") % 2 == 0
+    headings = [line[3:] for line in markdown.splitlines() if line.startswith("## ")]
+    assert headings == re.findall(r"\\subsection\*\{(.+?)\}", latex.replace(r"\_", "_"))
+
+
+@pytest.mark.parametrize("name", SAMPLE)
+def test_lines_of_text_are_broken_at_signs(name: str) -> None:
+    text = ct.equations_text(ct.equations(ct.example(name)))
+    long = [
+        line for line in text.splitlines() if len(line) > WIDTH + 24 and not line.lstrip().startswith("|")
+    ]
+    assert long == []
+    assert not any(line != line.rstrip() for line in text.splitlines())
+
+
+def test_rows_hold_every_relation() -> None:
+    found = ct.equations(ct.example("slider-between-cranks"))
+    rows = ct.equations_rows(found, ["A", "C"])
+    assert ("Constraints", "y_C", "l₁ sin φ₁ + l₂ sin φ₂ = C₁") in rows
+    assert ("Symbols", "l₂", "1 m, A-C of link AC") in rows
+    assert ("Velocity of point A", "v_A", "l₁") in rows
+    text = ct.equations_text(found, ["A", "C"])
+    assert all(left in text for _heading, left, _right in rows)
+
+
+def test_only_letters_that_are_used_are_explained() -> None:
+    found = ct.equations(ct.example("slider-between-cranks"))
+    symbols = {left for heading, left, _right in ct.equations_rows(found) if heading == "Symbols"}
+    assert symbols == {
+        *(f"φ{i}(0)" for i in "₁₂₃₄"), *(f"l{i}" for i in "₁₂₃₄"), *(f"C{i}" for i in "₁₂₃"),
+    }  # fmt: skip
+
+
+def test_units_of_the_description_are_shown() -> None:
+    text = ct.equations_text(ct.equations(ct.example("excavator-arm")))
+    assert re.search(r"l₃ += 620 mm +G-N of link GN", text)
+    assert re.search(r"φ₁\(0\) += 10.3324 deg +angle of link boom", text)
+
+
+def test_latex_shows_names_as_they_are() -> None:
+    assert escaped("a_b & 5 % \\ ~") == r"a\_b \& 5 \% \char92{} \char126{}"
+
+
+def test_velocities_are_told_in_rates_and_put_in() -> None:
+    found = ct.equations(ct.example("slider-between-cranks"))
+    lines = [line.strip() for line in ct.equations_text(found, ["B"]).splitlines()]
+    start = lines.index("Velocity of point B")
+    assert lines[start + 1 : start + 6] == [
+        "x_B = x_D - l₄ cos φ₄",
+        "y_B = y_D - l₄ sin φ₄",
+        "v_Bx = ω₄ l₄ sin φ₄ = l₁ cos φ₃ sin φ₄ sin(t - φ₂)/(cos φ₂ sin(φ₃ - φ₄))",
+        "v_By = -ω₄ l₄ cos φ₄ = l₁ cos φ₃ cos φ₄ sin(φ₂ - t)/(cos φ₂ sin(φ₃ - φ₄))",
+        "v_B = l₄ |ω₄|",
+    ]
+
+
+def test_long_formulas_are_left_out_of_the_page_alone() -> None:
+    found = ct.equations(ct.example("watt-driven-second-loop"))
+    (group,) = found.groups
+    assert group.seconds.formulas is not None
+    longest = max(formula.size for formula in group.seconds.formulas)
+    assert longest > LONGEST
+    text = ct.equations_text(found)
+    written = [one.second for one, formula in zip(group.unknowns, group.seconds.formulas, strict=True)
+               if formula.size <= LONGEST]  # fmt: skip
+    assert text.count("as a number, from") == len(group.unknowns) - len(written)
+    assert r"$\varepsilon_{1}$: as a number" in ct.equations_latex(found)
+
+
+def test_groups_too_large_for_determinants_say_so() -> None:
+    text = ct.equations_text(ct.equations(ct.example("scissor-lift-cylinder")))
+    assert "too many terms to be read" in text
+    assert "ω₁: as a number, from the system of group IV(OC, AB, BE, CF, slider A)" in text
