@@ -32,11 +32,19 @@ from .kinematics.several_drives.coefficients import kinematic_coefficients as ki
 from .kinematics.several_drives.reach import limits as limits
 from .kinematics.several_drives.reach import Limits as Limits
 from .kinematics.several_drives.region import reachable_region as reachable_region
+from .analysis.rotatability import rotatability as rotatability
+from .analysis.rotatability import Rotatability as Rotatability
+from .analysis.repair import repair as repair
+from .analysis.repair import Repair as Repair
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.limiting import limits_rows as limits_rows
 from .study.limiting import limits_text as limits_text
 from .study.regions import region_rows as region_rows
+from .study.turning import rotatability_rows as rotatability_rows
+from .study.turning import rotatability_text as rotatability_text
+from .study.repairing import repair_rows as repair_rows
+from .study.repairing import repair_text as repair_text
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 

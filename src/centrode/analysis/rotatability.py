@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from centrode.analysis.turning.causes import cause_of
 from centrode.analysis.turning.circuits import Circuits, circuits_of
 from centrode.analysis.turning.four_bars import FourBar, four_bars_of
@@ -163,7 +165,8 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
     turnings = []
     for drive in mechanism.drives:
         held = {name: value for name, value in values.items() if name != drive.id}
-        turnings.append(_turning(prepared, tour_of(prepared, drive.id, held)))
+        with np.errstate(all="ignore"):  # places may go to infinity at a limit
+            turnings.append(_turning(prepared, tour_of(prepared, drive.id, held)))
     alone = len(turnings) == 1
     return Rotatability(
         turnings[0].turns_fully if alone else None,

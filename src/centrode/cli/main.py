@@ -22,6 +22,7 @@ from centrode.cli.examples import examples
 from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
 from centrode.cli.region import region
+from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.sweep import sweep
@@ -31,7 +32,7 @@ from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
 COMMANDS: tuple[click.Command, ...] = (
-    run, check, describe, equations, limits, region, sweep, integrate, variants, examples, schema
+    run, check, describe, equations, rotatability, limits, region, sweep, integrate, variants, examples, schema
 )  # fmt: skip
 """In the order that `centrode --help` lists them."""
 

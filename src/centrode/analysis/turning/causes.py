@@ -98,7 +98,7 @@ def bearing_of_locus(
     if isinstance(locus, Rod):
         return bearing_between(mechanism, numbers, locus.link, locus.centre, locus.point)
     if isinstance(locus, Stroke):
-        return Bearing((f"phi({locus.drive})",))
+        return Bearing(("psi_" + locus.drive.replace("-", ""),))
     if isinstance(locus, Rail):
         return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
     if isinstance(locus, Slot):
@@ -132,7 +132,7 @@ def _of_two_rods(about: _About, group: Meet) -> Cause:
     how = _("stretched out") if stretched else _("folded over each other")
     sentence = _("{line}, {how}").format(line=line.format(one=one, other=other), how=how)
     if first and second and not group.carriage:
-        sentence = _("{sentence}: {first} and {second} are {apart} apart").format(
+        sentence = _("{sentence} ({first} and {second} are {apart} apart)").format(
             sentence=sentence, first=first, second=second, apart=about.length(apart)
         )
     return Cause(sentence, condition)

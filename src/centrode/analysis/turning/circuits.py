@@ -193,7 +193,10 @@ class _Search:
     def _reached(self) -> Mask:
         low, high = self.tour.low, self.tour.high
         turns = (0.0, -tau) if self.tour.angular else (0.0,)
-        return np.any([(low <= self.nodes + turn) & (self.nodes + turn <= high) for turn in turns], axis=0)
+        reached: Mask = np.any(
+            [(low <= self.nodes + turn) & (self.nodes + turn <= high) for turn in turns], axis=0
+        )
+        return reached
 
     def _branch(self, lane: int, run: int) -> Branch:
         groups = self.tour.prepared.structure.groups
@@ -206,8 +209,11 @@ class _Search:
         limits = [e for e in self.cuts if e.lane == lane and e.kind == "limit"]
         if not limits and len(inside) == NODES:
             return Branch(sides, None, None)
-        low, high = self._edges(inside)
-        return Branch(sides, self._edge(limits, low, -1), self._edge(limits, high, 0))
+        first, last = self._edges(inside)
+        low, high = self._edge(limits, first, -1), self._edge(limits, last, 0)
+        if low is not None and high is not None and low > high:
+            low -= tau  # it runs through the end of the turn
+        return Branch(sides, low, high)
 
     def _edges(self, inside: npt.NDArray[np.intp]) -> tuple[int, int]:
         """First and last node of a run that may go on over the end of the nodes."""
@@ -220,7 +226,13 @@ class _Search:
         """The limit in the cell before a node (which = -1) or behind it (0), the nearest to the node."""
         before = node - 1 if which == -1 else node
         cell = before % NODES if self.tour.angular else before
-        found = sorted(e.at for e in limits if self._cells(e)[0] == cell)
+        first, last = float(self.nodes[0]), float(self.nodes[-1])
+        ends = [e for e in limits if self._cells(e)[0] == cell]
+        if self.tour.angular:
+            turns = [tau * np.floor((e.at - first) / tau) for e in ends]
+            found = sorted(e.at - float(turn) for e, turn in zip(ends, turns, strict=True))
+        else:
+            found = sorted(e.at for e in ends if first <= e.at <= last)
         return found[which] if found else None
 
 

@@ -76,19 +76,26 @@ def _points(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
 def _loops(mechanism: Mechanism) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
     """Loops of four bodies and the pins between them: pins[k] joins body k and the next one."""
     points = _points(mechanism)
-    bodies = list(points)
-    shared = {(a, b): [p for p in points[a] if p in points[b]] for a in bodies for b in bodies if a != b}
-    for chosen in combinations([b for b in bodies if any(shared[b, o] for o in bodies if o != b)], 4):
-        for order in permutations(chosen[1:]):
-            if bodies.index(order[0]) > bodies.index(order[2]):
-                continue  # the same loop the other way round
-            loop = (chosen[0], *order)
-            pins = [shared[loop[k], loop[(k + 1) % 4]] for k in range(4)]
-            opposite = shared[loop[0], loop[2]] or shared[loop[1], loop[3]]
-            if all(len(pin) == 1 for pin in pins) and not opposite:
-                names = tuple(pin[0] for pin in pins)
-                if len(set(names)) == 4:
-                    yield loop, names
+    at_point: dict[str, list[str]] = {}
+    for body, names in points.items():
+        for name in names:
+            at_point.setdefault(name, []).append(body)
+    shared: dict[str, dict[str, list[str]]] = {body: {} for body in points}
+    for name, bodies in at_point.items():
+        for one, other in permutations(bodies, 2):
+            shared[one].setdefault(other, []).append(name)
+    rank = {body: k for k, body in enumerate(points)}
+    for first in points:
+        behind = [body for body in shared[first] if rank[body] > rank[first]]
+        for second, last in combinations(sorted(behind, key=rank.__getitem__), 2):
+            if last in shared[second]:
+                continue
+            for third in shared[second]:
+                if rank[third] > rank[first] and third in shared[last] and third not in shared[first]:
+                    loop = (first, second, third, last)
+                    pins = [shared[loop[k]][loop[(k + 1) % 4]] for k in range(4)]
+                    if all(len(pin) == 1 for pin in pins) and len({pin[0] for pin in pins}) == 4:
+                        yield loop, tuple(pin[0] for pin in pins)
 
 
 def _hinged(
@@ -143,7 +150,7 @@ def _kind(mechanism: Mechanism, bodies: tuple[str, ...], shortest: int, verdict:
 
 def _distance(numbers: Dimensions, body: str, first: str, second: str) -> float:
     """Distance of two points of a body [m], on the sphere their arc [rad]."""
-    local: Mapping[str, tuple[float, float]] = numbers.frame if body == FRAME else numbers.local[body]  # type: ignore[assignment]
+    local: Mapping[str, tuple[float, float]] = numbers.frame if body == FRAME else numbers.local[body]
     space = numbers.space
     one, other = (space.place(ARRAYS, space.at_rest, local[point]) for point in (first, second))
     return float(space.distance(ARRAYS, one, other))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import tau
@@ -11,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.analysis.turning.alignments import in_line
+from centrode.analysis.turning.alignments import Pairs, in_line
 from centrode.analysis.turning.tours import Tour
 from centrode.analysis.turning.watched import STILL, Course, Watched
 from centrode.kinematics.layout import rotor_of_angle, slide_of
@@ -103,10 +104,14 @@ def watched_members(tour: Tour) -> list[tuple[Watched, Literal["link", "guide"]]
 
 def swings_of(course: Course, members: Sequence[Literal["link", "guide"]], first: int = 0) -> list[Swing]:
     """The swings of the watched numbers from number `first` on, one for each kind of member."""
-    return [_swing(course, first + k, member) for k, member in enumerate(members)]
+    chosen = range(first, first + len(members))
+    places = [course.turned[k][0] for k in chosen]
+    lined = iter(in_line(course.tour, np.concatenate([np.zeros(0), *places])))
+    pairs = [[next(lined) for _place in some] for some in places]
+    return [_swing(course, k, member, mine) for k, member, mine in zip(chosen, members, pairs, strict=True)]
 
 
-def _swing(course: Course, k: int, member: Literal["link", "guide"]) -> Swing:
+def _swing(course: Course, k: int, member: Literal["link", "guide"], lined: Sequence[Pairs]) -> Swing:
     tour, one = course.tour, course.watched[k]
     values = course.values[k]
     shift = _shift(course, k, member)
@@ -119,8 +124,8 @@ def _swing(course: Course, k: int, member: Literal["link", "guide"]) -> Swing:
     if moved <= STILL * scale:
         return Swing(one.name, member, "still", one.unit, turns, None, None, 0.0, None, (), ())
     extremes = [
-        Extreme(float(value) + shift, float(place), in_line(tour, float(place)))
-        for place, value in zip(*course.turned[k], strict=True)
+        Extreme(float(value) + shift, float(place), pairs)
+        for place, value, pairs in zip(*course.turned[k], lined, strict=True)
     ]
     ends = [] if tour.comes_round else _ends(course, k, shift)
     extremes = sorted([*extremes, *(end for end in ends if end is not None)], key=lambda extreme: extreme.at)
@@ -189,6 +194,8 @@ def _time_ratio(tour: Tour, extremes: Sequence[Extreme]) -> float | None:
 def _dwells(course: Course, k: int, shift: float, stroke: float) -> list[Dwell]:
     """Longest stretches of nodes within the band that do not overlap, each at least as long as a dwell is."""
     nodes, values = course.nodes, course.values[k]
+    if not np.isfinite(values).all():
+        return []
     band = DWELL_BAND * stroke
     tour = course.tour
     least = LEAST_DWELL * (1.0 if tour.angular else tour.continuation.branches.unit)
@@ -217,13 +224,29 @@ def _dwells(course: Course, k: int, shift: float, stroke: float) -> list[Dwell]:
 
 
 def _windows(values: Array, band: float) -> list[tuple[int, int]]:
-    """For every first node the longest stretch within the band; only those that are not part of another."""
+    """For every first node the longest stretch within the band; only those that are not part of another.
+
+    Two queues hold what may still become the greatest and the least value, so each node is looked at once.
+    """
     found: list[tuple[int, int]] = []
-    last = 0
-    for first in range(len(values)):
-        last = max(last, first)
-        while last + 1 < len(values) and np.ptp(values[first : last + 2]) <= band:
-            last += 1
-        if not found or last > found[-1][1]:
-            found.append((first, last))
-    return found
+    numbers, first = values.tolist(), 0
+    high: deque[int] = deque()
+    low: deque[int] = deque()
+    for last, value in enumerate(numbers):
+        before = first
+        while high and not numbers[high[-1]] > value:
+            high.pop()
+        while low and not numbers[low[-1]] < value:
+            low.pop()
+        high.append(last)
+        low.append(last)
+        while not numbers[high[0]] - numbers[low[0]] <= band:
+            first += 1
+            for queue in (high, low):
+                if queue[0] < first:
+                    queue.popleft()
+            if first == last:
+                break
+        if first > before:
+            found.append((before, last - 1))
+    return [*found, (first, len(numbers) - 1)]

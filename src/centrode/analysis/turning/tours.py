@@ -16,6 +16,7 @@ from centrode.kinematics.branches import Event
 from centrode.kinematics.continuation import Continuation, Smooth
 from centrode.kinematics.events import Scan
 from centrode.kinematics.mesh import mesh_of
+from centrode.kinematics.pace import OFF_GRID
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.several_drives.holding import check_closed, held_path, starting_at, unit_of_value
@@ -104,7 +105,7 @@ class Tour:
         first, last = self.span
         if self.angular and self.unlimited:
             count = NODES_PER_TURN * round((last - first) / tau)
-            return first + (np.arange(count + 1) + 0.381966) * ((last - first) / count)
+            return np.asarray(first + (np.arange(count + 1) + OFF_GRID) * ((last - first) / count))
         share = 0.5 - 0.5 * np.cos(pi * (np.arange(NODES_PER_TURN) + 0.5) / NODES_PER_TURN)
         return np.asarray(first + (last - first) * share)
 

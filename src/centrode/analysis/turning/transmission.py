@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.analysis.turning.tours import Tour
 from centrode.analysis.turning.watched import Course, Pair, Watched
 from centrode.geometry.plane import cross as plane_cross
@@ -16,6 +17,7 @@ from centrode.geometry.plane import place, subtract, turned
 from centrode.geometry.sphere import cross, dot, tangent
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.groups import aim_curve
+from centrode.kinematics.paths import JETS
 from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Slot, Stroke
 from centrode.structure.positions import Positions
 from centrode.structure.steps import name_of
@@ -65,6 +67,8 @@ def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
     if len(centres) == 2:
         return Watched(name, "rad", lambda at: _between_rods(sphere, centres, at))
     line = next((locus for locus in group.loci if isinstance(locus, (Rail, Slot))), None)
+    if len(centres) == 1 and isinstance(line, Rail) and sphere:
+        return Watched(name, "rad", lambda at: _to_pole(kinematics, centres[0], line, at))
     if len(centres) == 1 and line is not None and not sphere:
         return Watched(name, "rad", lambda at: _to_normal(kinematics, centres[0], line, group.carriage, at))
     return None
@@ -73,10 +77,19 @@ def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
 def _between_rods(sphere: bool, rods: list[Any], at: Positions) -> Pair:
     one, other = ((at.points[rod.point], at.points[rod.centre]) for rod in rods)
     if sphere:
-        first, second = (tangent(pin, centre) for pin, centre in (one, other))
-        return dot(first, second), dot(one[0], cross(first, second))
-    first, second = (subtract(centre, pin) for pin, centre in (one, other))
-    return plane_dot(first, second), plane_cross(first, second)
+        arc, next_arc = (tangent(pin, centre) for pin, centre in (one, other))
+        return dot(arc, next_arc), dot(one[0], cross(arc, next_arc))
+    line, next_line = (subtract(centre, pin) for pin, centre in (one, other))
+    return plane_dot(line, next_line), plane_cross(line, next_line)
+
+
+def _to_pole(kinematics: Kinematics, rod: Any, line: Rail, at: Positions) -> Pair:
+    """Between the rod's arc and the arc to the pole of the guide's circle."""
+    space, numbers = kinematics.numbers.space, kinematics.numbers
+    pin, centre = at.points[rod.point], at.points[rod.centre]
+    pole = space.place(JETS, at.poses[line.on], numbers.through[line.guide])
+    arc, to_pole = tangent(pin, centre), tangent(pin, pole)
+    return dot(arc, to_pole), dot(pin, cross(arc, to_pole))
 
 
 def _to_normal(kinematics: Kinematics, rod: Any, line: Locus, carriage: str | None, at: Positions) -> Pair:
@@ -124,8 +137,21 @@ def _least(course: Course, k: int, index: int, extremes: list[tuple[float, float
             if event.group == index and (event.kind == "change point" or event.at in (tour.low, tour.high)):
                 return 0.0, event.at
     acute = [(min(value, pi - value), at) for at, value in extremes]
-    nodes = np.abs(np.sin(course.values[k]))
     if not acute or not tour.comes_round:
-        node = int(np.nanargmin(nodes))
-        acute.append((float(np.arcsin(nodes[node])), float(course.nodes[node])))
+        acute += _at_ends(course, k)
+    if not acute:
+        sines = np.abs(np.sin(course.values[k]))
+        node = int(np.nanargmin(sines))
+        acute.append((float(np.arcsin(sines[node])), float(course.nodes[node])))
     return min(acute)
+
+
+def _at_ends(course: Course, k: int) -> list[tuple[float, float]]:
+    """The acute angle at the ends of the stretch: the drive's limits, or the initial position."""
+    found = []
+    for at in (end for end in course.tour.span if np.isfinite(end)):
+        value = float(course.watched[k].value(course.tour.stopped(at, ARRAYS), 1)[0])
+        if np.isfinite(value):
+            between = _between(value)
+            found.append((min(between, pi - between), at))
+    return found

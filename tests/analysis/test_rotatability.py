@@ -1,0 +1,318 @@
+"""Limits, extreme positions, strokes, time ratios and transmission angles against textbook closed forms."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.analysis.turning.swings import DWELL_BAND, Swing
+from growing import DYADS, grown, mechanism_of
+from mechanisms import EPS, four_bar
+
+LIMITED = [
+    "slider-between-cranks-locked",
+    "double-rocker",
+    "triple-rocker",
+    "elliptic-trammel",
+    "tangent-mechanism",
+    "stephenson-driven-at-coupler",
+    "stephenson-driven-at-rocker",
+    "scissor-lift-cylinder",
+]
+
+
+def swing_of(found: ct.Rotatability, name: str) -> Swing:
+    return next(swing for swing in found.one.swings if swing.name == name)
+
+
+def crank_rockers() -> Iterator[tuple[float, float, float, float]]:
+    """Crank, coupler, rocker, ground: the crank is the shortest, and the rule of Grashof holds with room to spare."""
+    random = np.random.default_rng(7)
+    while True:
+        a, b, c, d = 0.5 + random.random(4) * np.array([0.5, 3.0, 3.0, 3.0])
+        longest = max(b, c, d)
+        if a < 0.9 * min(b, c, d) and a + longest < 0.95 * (b + c + d - longest):
+            yield float(a), float(b), float(c), float(d)
+
+
+@pytest.mark.parametrize("name", LIMITED)
+def test_limits_are_those_of_ct_limits_to_the_last_bit(name: str) -> None:
+    mechanism = ct.example(name)
+    found = ct.rotatability(mechanism)
+    low, high = ct.limits(mechanism).interval
+    assert {limit.value for limit in found.limits if limit.end == "low"} == {low} - {-math.inf}
+    assert {limit.value for limit in found.limits if limit.end == "high"} == {high} - {math.inf}
+    assert found.turns_fully is (False if mechanism.drives[0].kind == "angle" else None)
+    events = set(ct.motion(mechanism, samples=2).event_value.values.tolist())
+    inside = {limit.value for limit in found.limits} & events
+    assert inside or mechanism.study.start is not None or name == "scissor-lift-cylinder"
+
+
+def test_the_locked_mechanism_of_the_source() -> None:
+    """CB and BD fall in line where C is 2 m away from D, C on its guide and D where the initial angles put it."""
+    found = ct.rotatability(ct.example("slider-between-cranks-locked"))
+    height = math.sin(0.5)
+    c0 = complex(0.5 + math.cos(0.5), height)
+    d = c0 + 1.2 * np.exp(4.7j) + 0.8 * np.exp(5.7j)
+    for limit in found.limits:
+        t = limit.value
+        c = complex(0.5 * math.cos(t) + math.sqrt(1 - (0.5 * math.sin(t) - height) ** 2), height)
+        # the distance changes by about 0.5 m/rad there
+        assert abs(abs(c - d) - 2.0) <= 16 * EPS
+        assert limit.condition == "sin(phi3 - phi4) = 0"
+        assert limit.links == ("CB", "BD")
+        assert limit.cause.startswith("CB and BD fall in line, stretched out")
+    assert abs(found.limits[1].value - 1.79991241652444) <= 1e-14
+
+
+def left_side(condition: str, angles: dict[str, float], slides: dict[str, float]) -> float:
+    """What the left side of a condition less its right side amounts to at angles and displacements."""
+    left, _sign, right = condition.partition(" = ")
+    if left in slides:
+        return slides[left] - float(right)
+    name, _bracket, inside = left.removesuffix(")").partition("(")
+    total, sign = 0.0, 1.0
+    for word in inside.split():
+        if word in "+-":
+            sign = -1.0 if word == "-" else 1.0
+        else:
+            total += sign * (angles[word] if word in angles else float(word))
+    return float({"sin": math.sin, "cos": math.cos}[name](total))
+
+
+INVERTED = ct.Mechanism(
+    frame={"points": {"O": [0, 0], "D": [0, -1]}},
+    links={"OA": {"length": 1.2}, "lever": {"points": {"D": [0, 0], "E": [0, 0.4]}}},
+    guides=[{"point": "A", "on": "lever", "through": [0.3, 0.4], "direction": "20 deg"}],
+    drives=[{"link": "OA", "start": 1, "speed": 1}],
+    assembly={"sides": {"A": "ahead"}},
+)
+"""The crank's pin comes nearer to the lever's pivot than the lever's guide is."""
+
+SKEW = ct.Mechanism(
+    frame={"points": {"O": [0, 0]}},
+    links={"OA": {"points": {"O": [0, 0], "A": [1, 0.3]}}, "AB": {"points": {"A": [0, 0], "B": [0.5, 0.6]}}},
+    guides=[{"point": "B", "on": "frame", "through": [0, 0.1], "direction": "35 deg"}],
+    drives=[{"link": "OA", "start": 0.6, "speed": 1}],
+    assembly={"sides": {"B": "ahead"}},
+)
+"""Links whose points do not lie on their axes, so that conditions have constants."""
+
+
+@pytest.mark.parametrize(
+    "mechanism",
+    [
+        INVERTED,
+        SKEW,
+        ct.example("slider-between-cranks-locked"),
+        ct.example("double-rocker"),
+        ct.example("stephenson-driven-at-coupler"),
+        ct.example("elliptic-trammel"),
+    ],
+)
+def test_conditions_in_symbols_hold_at_the_limits(mechanism: ct.Mechanism) -> None:
+    found = ct.rotatability(mechanism)
+    assert len(found.limits) == 2
+    for limit in found.limits:
+        motion = ct.motion(mechanism, at=[limit.value])
+        angles = {
+            f"phi{k + 1}": float(motion.angle.sel(link=name)[0])
+            for k, name in enumerate(mechanism.link_names)
+        }
+        guides = [guide.id for guide in mechanism.guides]
+        slides = {f"s_{name}": float(motion.slide.sel(guide=name)[0]) for name in guides}
+        # a root of a radicand that is zero but for some units in the last place; constants have six digits
+        assert abs(left_side(limit.condition, angles, slides)) <= 16 * math.sqrt(EPS) + 1e-6
+
+
+def test_conditions_have_the_constants_of_bent_links() -> None:
+    turned = math.atan2(0.6, 0.5) - math.radians(35)
+    assert {limit.condition for limit in ct.rotatability(SKEW).limits} == {f"cos(phi2 + {turned:.6g}) = 0"}
+
+
+def test_a_crank_rocker_turns() -> None:
+    found = ct.rotatability(four_bar(*next(crank_rockers())))
+    assert found.turns_fully is True
+    assert found.limits == ()
+    assert found.one.period == 1
+
+
+def test_rockers_swing_between_the_two_lines_of_crank_and_coupler() -> None:
+    """Extremes of the rocker where B is b + a and b - a away from O, by the law of cosines; time ratio likewise."""
+    choose = crank_rockers()
+    for _k in range(25):
+        a, b, c, d = next(choose)
+        swing = swing_of(ct.rotatability(four_bar(a, b, c, d)), "DB")
+        outer, inner = (
+            math.acos((d**2 + c**2 - (b + sign * a) ** 2) / (2 * c * d)) for sign in (1, -1)
+        )  # angles at D between DO and DB
+        assert swing.least is not None and swing.greatest is not None and swing.time_ratio is not None
+        # B lies to the left of A-D; the angle of DB is pi less that at D
+        bound = 64 * EPS * (1 + 1 / math.sin(outer) + 1 / math.sin(inner))
+        assert abs(swing.least.value - (math.pi - outer)) <= bound
+        assert abs(swing.greatest.value - (math.pi - inner)) <= bound
+        first, second = (
+            math.acos((d**2 + (b + sign * a) ** 2 - c**2) / (2 * d * (b + sign * a))) for sign in (1, -1)
+        )  # angles at O between OD and OB
+        way = math.pi + second - first
+        ratio = max(way, math.tau - way) / min(way, math.tau - way)
+        assert swing.time_ratio == pytest.approx(ratio, rel=math.sqrt(EPS))
+        assert swing.least.in_line == swing.greatest.in_line == (("OA", "AB"),)
+
+
+def test_transmission_angles_are_least_with_the_crank_in_line_with_the_frame() -> None:
+    choose = crank_rockers()
+    for _k in range(25):
+        a, b, c, d = next(choose)
+        (transmission,) = ct.rotatability(four_bar(a, b, c, d)).one.transmissions
+        exact = [math.acos((b**2 + c**2 - (d + sign * a) ** 2) / (2 * b * c)) for sign in (-1, 1)]
+        bound = 64 * EPS * sum(1 / math.sin(angle) for angle in exact)
+        found = sorted(value for _at, value in transmission.extremes)
+        assert len(found) == 2
+        assert np.max(np.abs(np.array(found) - sorted(exact))) <= bound
+        assert abs(transmission.least - min(min(x, math.pi - x) for x in exact)) <= bound
+        places = sorted(at % math.pi for at, _value in transmission.extremes)
+        assert all(min(at, math.pi - at) <= 4 * math.sqrt(EPS) for at in places)
+
+
+def test_slider_cranks_have_the_stroke_and_the_time_ratio_of_the_textbook() -> None:
+    random = np.random.default_rng(3)
+    for _k in range(25):
+        r, e = 0.5 + random.random(), random.random()
+        rod = (r + e) * (1.2 + random.random())
+        mechanism = ct.slider_crank(crank=r, coupler=rod, offset=e)
+        found = ct.rotatability(mechanism)
+        (slide,) = [swing for swing in found.one.swings if swing.member == "guide"]
+        far, near = math.sqrt((rod + r) ** 2 - e**2), math.sqrt((rod - r) ** 2 - e**2)
+        assert slide.stroke == pytest.approx(far - near, abs=16 * EPS * (rod + r) ** 2 / near)
+        alpha = math.asin(e / (rod - r)) - math.asin(e / (rod + r))
+        assert slide.time_ratio == pytest.approx((math.pi + alpha) / (math.pi - alpha), rel=math.sqrt(EPS))
+        (transmission,) = found.one.transmissions
+        exact = sorted(math.pi / 2 - math.asin((e + sign * r) / rod) for sign in (-1, 1))
+        reached = sorted(min(v, math.pi - v) for _at, v in transmission.extremes)
+        folded = sorted(min(v, math.pi - v) for v in exact)
+        assert np.max(np.abs(np.array(reached) - folded)) <= 64 * EPS / math.sin(folded[0])
+
+
+def test_dead_points_are_the_limits_of_the_mechanism_driven_there() -> None:
+    """A rocker as the drive stops where the crank and the coupler fall in line: its own extreme values."""
+    mechanism = four_bar(1.0, 3.5, 3.0, 4.0)
+    found = ct.rotatability(mechanism)
+    points = [point for point in found.one.dead_points if point.driver == "DB"]
+    start = float(ct.motion(mechanism, at=[1.0]).angle.sel(link="DB")[0])
+    other = four_bar(
+        1.0,
+        3.5,
+        3.0,
+        4.0,
+        drives=[{"link": "DB", "start": start, "speed": 1}],
+        assembly={"sides": {"A": "right"}},
+    )
+    for side in ("left", "right"):
+        other = ct.Mechanism(
+            frame=other.frame, links=other.links, drives=other.drives, assembly={"sides": {"A": side}}
+        )
+        limits = ct.limits(other).interval
+        assert sorted(point.value for point in points) == pytest.approx(limits, abs=64 * EPS)
+        assert ct.rotatability(other).limits[0].condition == "sin(phi1 - phi2) = 0"
+    assert all(point.in_line == (("OA", "AB"),) for point in points)
+
+
+def test_change_points_have_causes_and_are_no_limits() -> None:
+    found = ct.rotatability(ct.example("parallelogram"))
+    assert found.turns_fully is True
+    assert [point.condition for point in found.one.change_points] == ["sin(phi2 - phi3) = 0"] * 2
+    assert [point.cause.split(" (")[0] for point in found.one.change_points] == [
+        "AB and DB fall in line, stretched out",
+        "AB and DB fall in line, folded over each other",
+    ]
+    assert found.one.transmissions[0].least == 0.0
+    assert ct.rotatability(ct.example("galloway")).one.period == 2
+
+
+def test_dwells_stay_within_their_band_and_cannot_be_longer() -> None:
+    mechanism = ct.example("klann-leg")
+    swing = swing_of(ct.rotatability(mechanism), "rod")
+    (dwell,) = swing.dwells
+    assert swing.stroke is not None
+    step = math.tau / 720
+    inside = ct.motion(mechanism, at=np.linspace(dwell.first, dwell.last, 400)).angle.sel(link="rod").values
+    assert float(np.ptp(inside)) <= DWELL_BAND * swing.stroke * (1 + 1e-3)
+    for first, last in ((dwell.first - 2 * step, dwell.last), (dwell.first, dwell.last + 2 * step)):
+        longer = ct.motion(mechanism, at=np.linspace(first, last, 400)).angle.sel(link="rod").values
+        assert float(np.ptp(longer)) > DWELL_BAND * swing.stroke
+    assert swing_of(ct.rotatability(ct.example("scotch-yoke")), "H").dwells == ()
+
+
+def test_a_displacement_does_not_turn_and_drives_are_told_apart() -> None:
+    slider = ct.rotatability(ct.example("elliptic-trammel"))
+    assert slider.turns_fully is None
+    assert [limit.value for limit in slider.limits] == [-1.0, 1.0]
+    arm = ct.example("excavator-arm")
+    found = ct.rotatability(arm)
+    assert found.turns_fully is None
+    assert [turning.drive for turning in found.drives] == ["K-A", "C-E", "S-N"]
+    for turning in found.drives:
+        interval = ct.limits(arm, turning.drive).interval
+        assert tuple(limit.value for limit in turning.limits) == interval
+        assert "fall in line" in turning.limits[0].cause
+
+
+def test_what_is_found_is_json_and_rows() -> None:
+    for name in (
+        "crank-rocker",
+        "tangent-mechanism",
+        "spherical-four-bar",
+        "third-class-triad",
+        "cardan-gear",
+    ):
+        mechanism = ct.example(name)
+        found = ct.rotatability(mechanism)
+        data = json.loads(ct.rotatability_text(found))
+        assert data["turns_fully"] is found.turns_fully
+        assert len(data["drives"][0]["swings"]) == len(found.one.swings)
+        rows = ct.rotatability_rows(mechanism, found)
+        assert rows[0] == ("drive", found.one.drive)
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_random_mechanisms_swing_between_their_extreme_positions(seed: int) -> None:
+    """No sample of the motion lies beyond what roots of rates found, and some lie near it."""
+    kinds = [str(kind) for kind in np.random.default_rng(seed).choice(DYADS, size=2)]
+    mechanism = mechanism_of(grown(kinds, seed))
+    found = ct.rotatability(mechanism)
+    assert {limit.value for limit in found.limits} <= set(ct.limits(mechanism).interval)
+    ends = {limit.end: limit.value for limit in found.limits}
+    first = ends.get("low", found.one.initial)
+    last = ends.get("high", found.one.initial + math.tau * (found.one.period or 2))
+    motion = ct.motion(mechanism, at=np.linspace(first, last, 1203)[1:-1])
+    assert (motion.status == 0).all()
+    for swing in found.one.swings:
+        if swing.least is None or swing.greatest is None or swing.stroke is None:
+            continue
+        along = (
+            motion.angle.sel(link=swing.name)
+            if swing.member == "link"
+            else motion.slide.sel(guide=swing.name)
+        )
+        low, high = float(along.min()), float(along.max())
+        # at a limit a value is as exact as the root of its group's rounding
+        margin = 16 * math.sqrt(EPS) * max(1.0, abs(low), abs(high))
+        assert swing.least.value - margin <= low and high <= swing.greatest.value + margin
+        near_limits = 0.2 * swing.stroke if found.limits else 1e-4 * swing.stroke
+        assert low <= swing.least.value + near_limits and swing.greatest.value - near_limits <= high
+
+
+def test_every_example_is_answered() -> None:
+    for name in ct.example_names():
+        found = ct.rotatability(ct.example(name))
+        for turning in found.drives:
+            for swing in turning.swings:
+                values = [extreme.value for extreme in swing.extremes]
+                assert swing.stroke is None or swing.stroke >= 0.0
+                assert np.isfinite(values).all()
