@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from centrode.equations import integration
 from centrode.equations.integration import LOST, adaptive_steps, determinant, fixed_steps
 from centrode.errors import InputError
 from worked_form import L2, L3, L4, Worked
@@ -127,6 +128,6 @@ def test_one_row() -> None:
 
 
 def test_too_many_steps_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("centrode.equations.integration.MOST_STEPS", 10)
+    monkeypatch.setattr(integration, "MOST_STEPS", 10)
     with pytest.raises(InputError, match="more than 10 steps"):
         adaptive_steps(TURNING, turn(4), 1e-10)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
 
 import centrode as ct
 from centrode.study.words_on_joints import moving_parts
+from growing import descriptions, mechanism_of
 from mechanisms import four_bar
 
 WORKED = """\
@@ -52,6 +55,15 @@ def test_every_example_is_told_in_whole_sentences(name: str) -> None:
         assert joined < 2 or re.search(rf"\bin {re.escape(point)}\b", text), point
     for drive in mechanism.drives:
         assert text.count("is driven") == len(mechanism.drives), drive.id
+
+
+@settings(max_examples=25)
+@given(descriptions())
+def test_random_mechanisms_are_told_in_whole_sentences(parts: dict[str, Any]) -> None:
+    mechanism = mechanism_of(parts)
+    text = ct.describe(mechanism)
+    assert not re.search(r"[{}]|\bnan\b|None|  | ,|\.\.|e-\d\d", text)
+    assert all(name in text for name in mechanism.link_names)
 
 
 @pytest.mark.parametrize("language", ["ru", "uk"])

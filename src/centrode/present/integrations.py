@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 OVER = Pen(INK, (0, (2.5, 2.5)))
 """Integrated curves lie dashed over those in closed form, so that both show where they agree."""
 THIN = 0.9
+ROUNDING = 1e-15
+"""Errors below this are not drawn: a logarithmic scale would show nothing but them."""
 
 
 def integration_figures(
@@ -61,7 +63,10 @@ def integration_figures(
             if any(panel.curves for row in rows for panel in row):
                 figures[name] = sheet(title, _(mechanism.title), rows, closed.abscissa)
                 _lay_over(figures[name], [panel for row in over for panel in row], integrated.abscissa)
-        figures["integration-errors"] = _errors(mechanism, integration)
+        if any(
+            (np.abs(integration[name].to_numpy()) > ROUNDING).any() for name in ("drift", "angle_difference")
+        ):
+            figures["integration-errors"] = _errors(mechanism, integration)
     return figures
 
 
@@ -150,7 +155,7 @@ def _magnitudes(
     handles: list[tuple[Artist, str]] = []
     for name, curve in curves.items():
         size = np.abs(curve[abscissa.order])
-        shown = np.where(size > 0, size, np.nan)
+        shown = np.where(size > ROUNDING, size, np.nan)
         (line,) = axes.plot(
             abscissa.values, shown, color=kept[name].colour, linestyle=kept[name].dashes, label=name
         )

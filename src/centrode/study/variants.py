@@ -122,7 +122,7 @@ def computed(topology: Mechanism, variant: Variant) -> VariantResults:
 
 def _row(name: str, rotation: Rotation, results: StudyResults) -> VariantRow:
     status = COMPUTED if results.failure is None else LOCKS
-    cause = f"{rotation.cause} ({rotation.condition})" if rotation.condition else rotation.cause
+    cause = f"{rotation.cause}: {rotation.condition}" if rotation.condition else rotation.cause
     return VariantRow(
         name, rotation.turns_fully, rotation.limit, rotation.unit, rotation.group, cause, status
     )

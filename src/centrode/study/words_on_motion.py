@@ -209,18 +209,24 @@ def _on_two_links(mechanism: Mechanism, roles: Roles, one: Rod, other: Rod) -> s
         return _(FOLLOWERS[key]).format(
             coupler=called(coupler.link), follower=called(follower.link), pivot=follower.centre, angle=angle
         )
+    place = {
+        "one": called(one.link),
+        "other": called(other.link),
+        "point": one.point,
+        "first": _carriers(mechanism, one),
+        "first_point": one.centre,
+        "second": _carriers(mechanism, other),
+        "second_point": other.centre,
+    }
+    if not place["first"] or not place["second"]:
+        # what holds one of them is no link: the frame, or a slider
+        return _(
+            "Links {one} and {other}, hinged to each other in {point}, follow {first_point} and {second_point}."
+        ).format(**place)
     return _(
         "Links {one} and {other}, hinged to each other in {point}, follow: {one} is hinged to {first} in {first_point},"
         " {other} to {second} in {second_point}."
-    ).format(
-        one=called(one.link),
-        other=called(other.link),
-        point=one.point,
-        first=_carriers(mechanism, one),
-        first_point=one.centre,
-        second=_carriers(mechanism, other),
-        second_point=other.centre,
-    )
+    ).format(**place)
 
 
 def _carriers(mechanism: Mechanism, rod: Rod) -> str:
