@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -128,6 +129,28 @@ def test_conditions_in_symbols_hold_at_the_limits(mechanism: ct.Mechanism) -> No
         slides = {f"s_{name}": float(motion.slide.sel(guide=name)[0]) for name in guides}
         # a root of a radicand that is zero but for some units in the last place; constants have six digits
         assert abs(left_side(limit.condition, angles, slides)) <= 16 * math.sqrt(EPS) + 1e-6
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "slider-between-cranks-locked",
+        "double-rocker",
+        "triple-rocker",
+        "elliptic-trammel",
+        "stephenson-driven-at-coupler",
+    ],
+)
+def test_conditions_are_the_determinants_of_the_equations_in_symbols(name: str) -> None:
+    """But for lengths and the sign, which do not decide where they are zero."""
+    mechanism = ct.example(name)
+    determinants = {
+        frozenset(group.links): str(group.determinant) for group in ct.equations(mechanism).groups
+    }
+    for limit in ct.rotatability(mechanism).limits:
+        wave = re.search(r"(sin|cos)\([^()]*\)", determinants[frozenset(limit.links)])
+        assert wave is not None
+        assert limit.condition == f"{wave[0]} = 0"
 
 
 def test_conditions_have_the_constants_of_bent_links() -> None:

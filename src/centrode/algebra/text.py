@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import ast
 import math
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from centrode.algebra.source_text import SourceText
 from centrode.algebra.vocabulary import CONSTANTS, DERIVED, FUNCTIONS, ONE_ARGUMENT, SCALARS, Number
 from centrode.errors import InputError
 from centrode.locale import _
@@ -20,9 +20,6 @@ DEPTH = 50
 GREATEST_POWER = 100
 
 __all__ = ["SCALARS", "TextFormula", "compile_formula"]
-
-_STRANGE = re.compile(r"[^\w\s.+\-*/^(),]")
-_PASTED = re.compile(r"(?<![\w.])(?:\d++\.?+\d*+|\.\d++)(?:[eE][+-]?\d++)?+(?=[^\W\d])")
 
 
 @dataclass(frozen=True)
@@ -76,55 +73,15 @@ class _Reader:
     """Turns Python's syntax tree of one text into closures, refusing all that is not arithmetic."""
 
     def __init__(self, text: str, variables: tuple[str, ...], where: str, folds: frozenset[str]) -> None:
-        self.text = text
+        self.source = SourceText(text, where)
+        self.at = self.source.at
         self.variables = variables
-        self.where = where
         self.folds = folds
         self.used: set[str] = set()
-        # A power is commonly written ^; `columns` leads from each character that Python reads to the user's.
-        self.source, self.columns = "", [0]
-        for column, character in enumerate(text):
-            read = " " if character.isspace() else character.replace("^", "**")
-            if self.source or read != " ":
-                self.columns[-1:] = [column] * (len(read) + 1)
-                self.source += read
-
-    def error(self, column: int, what: str, repair: str = "") -> InputError:
-        """Complaint about a character (from 0) of the user's text."""
-        place = _('{what}, at character {column} of "{text}"')
-        shown = "".join(c if c.isprintable() else " " for c in self.text)
-        return InputError(self.where, place.format(what=what, column=column + 1, text=shown), repair)
-
-    def at(self, node: ast.expr, what: str, repair: str = "") -> InputError:
-        """Complaint about a node, at its place in the user's text."""
-        before = self.source.encode()[: node.col_offset].decode(errors="ignore")
-        return self.error(self.columns[len(before)], what, repair)
 
     def formula(self) -> TextFormula:
-        if not self.text.strip():
-            raise InputError(self.where, _("the formula is empty"), _("write a formula or a number"))
-        self.characters()
-        repair = _("use + - * / ** and parentheses")
-        try:
-            tree = ast.parse(self.source, mode="eval")
-        except SyntaxError as error:
-            column = self.columns[min(max((error.offset or 1) - 1, 0), len(self.columns) - 1)]
-            raise self.error(column, _("this is not a formula"), repair) from None
-        except (ValueError, MemoryError, RecursionError):
-            raise self.error(0, _("this is not a formula"), repair) from None
-        body = self.node(tree.body, 0)
-        return TextFormula(self.text, self.variables, frozenset(self.used), body)
-
-    def characters(self) -> None:
-        """Refuse what Python would read otherwise than a formula: other signs, names pasted to numbers."""
-        strange = _STRANGE.search(self.text)
-        if strange:
-            what = _("a formula has no such character")
-            raise self.error(strange.start(), what, _("use + - * / ** and parentheses"))
-        pasted = _PASTED.search(self.text)
-        if pasted:
-            repair = _('write "{number}*..."').format(number=pasted.group())
-            raise self.error(pasted.end(), _("a sign is missing after a number"), repair)
+        body = self.node(self.source.tree(), 0)
+        return TextFormula(self.source.text, self.variables, frozenset(self.used), body)
 
     def node(self, node: ast.expr, depth: int) -> Node:
         if depth > DEPTH:

@@ -13,7 +13,7 @@ from centrode.cli.arguments import mechanism_argument
 from centrode.locale import _, mark
 
 
-@click.command(help=mark("Say in words how a mechanism works: links, joints, drives, what follows what."))
+@click.command(help=mark("Say in words how a mechanism works."))
 @mechanism_argument
 def describe(mechanism: str) -> None:
     """Print the description in words; exit code 2 where there is none."""

@@ -17,9 +17,7 @@ from centrode.locale import _, mark, ngettext
 DEFAULT_FOLDER = "{name}-integration"
 
 
-@click.command(
-    help=mark("Integrate the differential equations of a mechanism and compare with the closed forms.")
-)
+@click.command(help=mark("Integrate the differential equations of a mechanism."))
 @mechanism_argument
 @click.option(
     "--method",

@@ -32,8 +32,19 @@ from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
 COMMANDS: tuple[click.Command, ...] = (
-    run, check, describe, equations, rotatability, limits, region, sweep, integrate, variants, examples, schema
-)  # fmt: skip
+    run,
+    check,
+    describe,
+    equations,
+    rotatability,
+    limits,
+    region,
+    sweep,
+    integrate,
+    variants,
+    examples,
+    schema,
+)
 """In the order that `centrode --help` lists them."""
 
 FAULT, INTERRUPTED, READER_GONE = 70, 130, 141

@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 REPORT, DESCRIPTION = ".json", ".toml"
 
 
-@click.command(
-    help=mark("Tell whether a mechanism turns fully and what stops it; find a change so that it does.")
-)
+@click.command(help=mark("Tell whether a mechanism turns fully, and repair it."))
 @mechanism_argument
 @click.option("--repair", is_flag=True, help=mark("Seek the smallest change after which it turns fully."))
 @click.option(

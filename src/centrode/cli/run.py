@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 DEFAULT_FOLDER = "{name}-result"
 
 
-@click.command(help=mark("Compute the motion of a mechanism, with tables and pictures."))
+@click.command(help=mark("Compute the motion of a mechanism: tables and pictures."))
 @mechanism_argument
 @click.option(
     "--out",

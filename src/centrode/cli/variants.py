@@ -15,7 +15,7 @@ from centrode.locale import _, mark
 DEFAULT_FOLDER = "{name}-variants"
 
 
-@click.command(help=mark("Compute every variant of a table on one topology, a folder each."))
+@click.command(help=mark("Compute every variant of a table."))
 @click.argument("table", metavar=mark("TABLE"), help=mark("A CSV file with one row a variant."))
 @click.option(
     "--topology",

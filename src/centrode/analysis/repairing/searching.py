@@ -40,6 +40,9 @@ CORRECTIONS, ACTIVE = 4, 0.02
 ITERATIONS = 60
 CONTRACTIONS = 40
 
+SAID = 100
+"""Progress is said every so many candidates."""
+
 # what is needed for a repair alone is not loaded before
 _optimize = functools.partial(importlib.import_module, "scipy.optimize")
 
@@ -70,9 +73,7 @@ class Search:
         for first in range(0, len(changes), CHUNK):
             some = changes[first : first + CHUNK]
             parts.append(least(squared_sines(self.candidates.batch(some), nodes)))
-            self.tried += len(some)
-            if self.progress is not None:
-                self.progress(min(self.tried, self.total), self.total)
+            self._count(len(some))
         return np.concatenate(parts)
 
     def run(self, spread: int) -> list[Array]:
@@ -91,6 +92,12 @@ class Search:
         if self.progress is not None:
             self.progress(self.total, self.total)
         return sorted(reached, key=lambda change: float(np.linalg.norm(change)))
+
+    def _count(self, more: int) -> None:
+        """Count candidates, and say how far it is now and then."""
+        before, self.tried = self.tried, self.tried + more
+        if self.progress is not None and before // SAID < self.tried // SAID:
+            self.progress(min(self.tried, self.total), self.total)
 
     def _spread(self, count: int) -> Array:
         """No change, then an even spread over the box and over smaller boxes."""
@@ -166,9 +173,7 @@ class Search:
         return np.asarray(self._sectors(change[None, :])[0] / self.target - (1.0 + SLACK))
 
     def _sectors(self, changes: Array) -> Array:
-        self.tried += len(changes)
-        if self.progress is not None:
-            self.progress(min(self.tried, self.total), self.total)
+        self._count(len(changes))
         sines = squared_sines(self.candidates.batch(changes), FINE)
         return least_by_sector(sines, SECTORS)
 
