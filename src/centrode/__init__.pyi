@@ -87,6 +87,16 @@ from .study.centres import steps_leading_to as steps_leading_to
 from .study.centres import centrode_rows as centrode_rows
 from .study.centres import curvature_rows as curvature_rows
 
+# Integration, variants, words
+from .equations.integrated import integrate as integrate
+from .study.integrating import closed_motion as closed_motion
+from .study.integrating import integration_rows as integration_rows
+from .study.integrating import integration_failure as integration_failure
+from .study.variants import variants as variants
+from .study.variants import variant_rows as variant_rows
+from .study.variants import variants_summary as variants_summary
+from .study.describing import describe as describe
+
 # Many mechanisms
 from .sweeps.sweeping import sweep as sweep
 from .sweeps.designs import grid as grid
@@ -107,7 +117,10 @@ from .present import centrodes_figure as centrodes_figure
 from .present import animate_centrodes as animate_centrodes
 from .present import curvature_figure as curvature_figure
 from .present import darkened as darkened
+from .present import write_integration_csv as write_integration_csv
+from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
+from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures
 from .present import plan_figure as plan_figure

@@ -165,6 +165,11 @@ _ALL = (
     Quantity("pressure_angle", "α", "rad", mark("pressure angle")),
     Quantity("status", "", "1", mark("status of the sample")),
     Quantity("residual", "", "1", mark("closure residual over the greatest length")),
+    Quantity("drift", "", "1", mark("drift of the constraint over the greatest length")),
+    Quantity("angle_difference", "Δφ", "rad", mark("integrated angle less that in closed form")),
+    Quantity(
+        "position_difference", "Δr", "m", mark("distance of the integrated place from that in closed form")
+    ),
     Quantity("event_value", "q", "rad", mark("value of the drive at the event"), by_drive=-1),
     Quantity("event_kind", "", "1", mark("kind of the event")),
     Quantity("event_group", "", "1", mark("group of the event")),

@@ -49,7 +49,9 @@ def test_every_variable_of_a_motion_is_named() -> None:
         "curvature_centre",
     )
     transmission = ("transmission_angle", "pressure_angle")
-    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *centres, *transmission}
+    integrated = ("drift", "angle_difference", "position_difference")
+    known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
+    assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
 

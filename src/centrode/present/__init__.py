@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from centrode.present.equation_text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
     from centrode.present.instant_drawing import diagram_figures
+    from centrode.present.integration_tables import write_integration_csv
+    from centrode.present.integrations import integration_figures
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
+    from centrode.present.variant_folders import write_variants
 
 __all__ = [
     "animate_centrodes",
@@ -45,6 +48,7 @@ __all__ = [
     "equations_rows",
     "equations_text",
     "diagram_figures",
+    "integration_figures",
     "motion_figures",
     "motion_table",
     "plan_figure",
@@ -56,9 +60,11 @@ __all__ = [
     "write_centrodes_csv",
     "transmission_figure",
     "write_coefficients_csv",
+    "write_integration_csv",
     "write_motion_csv",
     "write_motion_netcdf",
     "write_region_csv",
+    "write_variants",
 ]
 
 _attached, __dir__, _names = lazy_loader.attach(
@@ -76,6 +82,8 @@ _attached, __dir__, _names = lazy_loader.attach(
         "figures": ["motion_figures"],
         "instant_drawing": ["diagram_figures"],
         "plan_drawing": ["plan_figure"],
+        "integration_tables": ["write_integration_csv"],
+        "integrations": ["integration_figures"],
         "reading": ["scene_of"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
@@ -83,6 +91,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],
+        "variant_folders": ["write_variants"],
     },
 )
 
