@@ -2,7 +2,8 @@
 
 The plan runs over expression nodes as it runs over arrays. What differs from mechanism to mechanism are variables;
 so are the parameter of the path, the time, and the rates of the parameter. Signs are those of the initial position,
-which holds for mechanisms without events alone: `judging` tells which these are.
+which holds for mechanisms without change points alone (`judging` tells which these are), or flip at change points whose
+places are variables too.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.branches import branches_at_start
+from centrode.kinematics.compiled.signs import signs_of
 from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, span_of_variables
 from centrode.kinematics.evaluate import Hooks, Kinematics
 from centrode.kinematics.layout import Layout, layout_of, positions_from
@@ -78,9 +80,9 @@ class Traced:
 
 
 class _Signs(Hooks):
-    """The signs of the initial position; radicands and divisors are kept."""
+    """Signs as they are given; radicands and divisors are kept."""
 
-    def __init__(self, signs: Mapping[int, float]) -> None:
+    def __init__(self, signs: Mapping[int, Operand]) -> None:
         self.signs = signs
         self.radicands: dict[int, Number] = {}
         self.divisors: dict[int, Number] = {}
@@ -114,16 +116,16 @@ def refuse_untraceable(ready: Ready, span: Span) -> None:
         raise Untraceable(mark("guides that close"))
 
 
-def traced(ready: Ready, span: Span, varied: Varied) -> Traced:
+def traced(ready: Ready, span: Span, varied: Varied, crossings: Mapping[int, int] | None = None) -> Traced:
     """The motion of a mechanism of a batch at one place of the path.
 
-    Raises Untraceable.
+    `crossings` says of how many change points of a group the sign is to know (see `signs`). Raises Untraceable.
     """
     refuse_untraceable(ready, span)
     kinematics = with_phases(
         replace(ready.kinematics, numbers=varied.numbers), ready.kinematics.numbers.gearing.phase
     )
-    hooks = _Signs(ready.assembled.signs)
+    hooks = _Signs(signs_of(ready, crossings or {}))
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
     columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))

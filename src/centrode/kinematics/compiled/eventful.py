@@ -1,0 +1,197 @@
+"""Motions with limits and change points: events by the search of the arrays, most samples as machine code.
+
+The bits are those of `solve`. Signs take the change points as numbers of the mechanism; a sample is open where
+a radicand lies below zero by more than rounding. What is left to the arrays are the samples that hang on
+rounding and those that are interpolated: they are computed one by one, and put into their places (`patches`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.expression_functions import EXPRESSIONS
+from centrode.algebra.expressions import Node, Operand, as_node, variable
+from centrode.algebra.jets import Jet
+from centrode.errors import Status
+from centrode.kinematics.angles import NodeTurns
+from centrode.kinematics.branches import Branches
+from centrode.kinematics.compiled.patches import Patches
+from centrode.kinematics.compiled.signs import MOST, counts_of, values_of
+from centrode.kinematics.compiled.traced import TURN, Traced, traced
+from centrode.kinematics.compiled.variables import SCALE, Varied, boxed
+from centrode.kinematics.compiled.writing import ORDERED, ROOMS, SINES, Writer, nodes_of
+from centrode.kinematics.continuation import Continuation
+from centrode.kinematics.events import Scan
+from centrode.kinematics.layout import rotor_of_angle
+from centrode.kinematics.mending import inside
+from centrode.kinematics.mesh import mesh_of
+from centrode.kinematics.ready import Ready
+from centrode.kinematics.residuals import CLOSED
+from centrode.kinematics.sampling import SUSPECT, beyond_limits
+from centrode.kinematics.solve import Solved, fit_for, lanes_at_once, of_batch, of_lanes, solve, start_of
+from centrode.kinematics.spans import Span
+from centrode.kinematics.unwound import Course
+from centrode.structure.dimensions import Dimensions
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+Nodes: TypeAlias = npt.NDArray[Any]
+
+m = EXPRESSIONS
+JUDGED = "judged"
+FINE, OPEN, DOUBTFUL = 0.0, 1.0, 2.0
+"""What machine code says of a sample: doubtful are those that hang on rounding, or are not finite."""
+
+
+@dataclass(frozen=True)
+class Eventful:
+    """Computes motions that have events.
+
+    Attributes
+    ----------
+    varied : the numbers of the batch as variables
+    kernels : what runs scans, see `algebra.executors`
+    """
+
+    ready: Ready
+    span: Span
+    varied: Varied
+    kernels: str
+    threads: int = 1
+    _writers: dict[tuple[tuple[int, int], ...], tuple[Traced, Writer]] = field(default_factory=dict)
+
+    def solved(self, numbers: Dimensions, lanes: Lanes) -> Iterator[tuple[Lanes, Solved]]:
+        """The motions of some mechanisms of a batch, part by part."""
+        ready = fit_for(self.ready, self.span)
+        kinematics = of_batch(ready.kinematics, numbers)
+        values = self.varied.values(numbers)
+        size = lanes_at_once(kinematics, self.span)
+        for first in range(0, len(lanes), size):
+            some = lanes[first : first + size]
+            part = of_lanes(kinematics, some)
+            continuation = start_of(ready, part, len(some))
+            mesh = mesh_of(part.path, self.span.parameter)
+            course = Course(ready, part.numbers, Scan(continuation, mesh).run(), mesh)
+            if max(counts_of(continuation.branches).values(), default=0) > MOST:
+                taken = numbers.mapped(lambda x, at=some: x if isinstance(x, float) else x[at])
+                yield some, solve(self.ready, self.span, taken, len(some))
+                continue
+            of_some = {name: row[some] for name, row in values.items()}
+            yield some, self._part(continuation, course, of_some)
+
+    def _part(self, continuation: Continuation, course: Course, values: dict[str, Array]) -> Solved:
+        branches = continuation.branches
+        counts = counts_of(branches)
+        plan, writer = self._writer(counts)
+        room = writer.room(branches.lanes)
+        values = values | values_of(branches, counts)
+        values |= {largest_of(group): largest for group, largest in branches.largest.items()}
+        writer.write(values, room)
+        found = writer.placed(room)
+        turns = self._turns(plan, course, found)
+        status, doubtful = self._judged(continuation, found[JUDGED], found["residual"])
+        broken = (status == Status.OPEN) & (found[JUDGED] != OPEN)
+        if broken.any():
+            for name in ROOMS:
+                if name in found:
+                    found[name][(slice(None), broken) if name in ORDERED else broken] = np.nan
+        where = np.nonzero(doubtful)
+        if len(where[0]):
+            Patches(continuation, self.span, plan.solved.layout, turns, course).put(*where, found, status)
+        return self._solved(plan.solved, branches, found, status)
+
+    def _writer(self, counts: dict[int, int]) -> tuple[Traced, Writer]:
+        key = tuple(sorted(counts.items()))
+        if key not in self._writers:
+            plan = traced(self.ready, self.span, self.varied, counts)
+            self._writers[key] = plan, Writer(_outputs(plan), self.span, self.kernels, self.threads)
+        return self._writers[key]
+
+    def _turns(self, plan: Traced, course: Course, found: dict[str, Array]) -> dict[str, NodeTurns]:
+        """Put angles with their turns where their cosines stand; returns their turns on the mesh."""
+        layout, nearest = plan.solved.layout, course.nearest(self.span.parameter)
+        start = self.ready.assembled.angles
+        known = {}
+        for k, link in enumerate(plan.turning):
+            rotor = rotor_of_angle(ARRAYS, course.numbers, course.on_mesh, link)
+            known[link] = nodes = course.turns(rotor, start[link])
+            angle, sine = found["angles"][0, :, :, layout.angles.index(link)], found[SINES][:, :, k]
+            turns = nodes.at(nearest, angle, sine)
+            np.arctan2(sine, angle, out=angle)
+            if turns.any():
+                angle += TURN * turns
+        return known
+
+    def _judged(self, continuation: Continuation, judged: Array, residual: Array) -> tuple[Any, Mask]:
+        """Statuses of the samples, and which of them the arrays have to look at."""
+        status = np.full(judged.shape, Status.OK, dtype=np.int8)
+        status[beyond_limits(continuation.branches, self.span.parameter)] = Status.CUT_OFF
+        with np.errstate(invalid="ignore"):
+            status[(judged == OPEN) | (residual > CLOSED)] = Status.OPEN
+        doubtful = judged == DOUBTFUL
+        along = np.broadcast_to(self.span.parameter, judged.shape)
+        for group in continuation.branches.largest:
+            windows = continuation.windows_of(group)
+            if windows is not None:
+                doubtful[inside(windows, along, None)[0]] = True
+        return status, doubtful
+
+    def _solved(self, plan: Solved, branches: Branches, found: dict[str, Array], status: Any) -> Solved:
+        points = found["all_points"]
+        frame = plan.all_points.shape[3] - plan.points.shape[3]
+        return replace(
+            plan,
+            ready=self.ready,
+            span=self.span,
+            branches=branches,
+            all_points=points,
+            points=points[:, :, :, frame:],
+            angles=found["angles"],
+            slides=found["slides"],
+            spins=found.get("spins"),
+            status=status,
+            residual=found["residual"],
+            contacts=found["contacts"],
+        )
+
+
+def largest_of(group: int) -> str:
+    """Name of the greatest radicand of a group on the mesh."""
+    return f"greatest {group}"
+
+
+def _outputs(plan: Traced) -> dict[str, Nodes]:
+    """What is written: nothing where a group is open, and what is to be said of the sample."""
+    found = nodes_of(plan)
+    lowest: Operand | None = None
+    near: Node | None = None
+    for group, radicand in plan.radicands.items():
+        value = radicand.value if isinstance(radicand, Jet) else radicand
+        lowest = value if lowest is None else m.least(lowest, value)
+        close = m.less_equal(m.abs(value), SUSPECT * variable(largest_of(group)))
+        near = close if near is None else m.either(near, close)
+    total: Operand = 0.0
+    for nodes in found.values():
+        for node in nodes.ravel():
+            total = total + node
+    judged: Operand = m.where(m.equal(as_node(total) * 0.0, 0.0), FINE, DOUBTFUL)
+    if lowest is not None and near is not None:
+        opened = m.less(lowest, 0.0)
+        judged = m.where(near, DOUBTFUL, m.where(opened, OPEN, judged))
+        found = {
+            name: boxed([m.where(opened, np.nan, node) for node in nodes.ravel()]).reshape(nodes.shape)
+            for name, nodes in found.items()
+        }
+    return {**found, JUDGED: boxed([judged]).reshape(1, 1)}
+
+
+def names_of(varied: Varied) -> tuple[str, ...]:
+    """All variables of a batch that do not depend on events."""
+    return tuple(dict.fromkeys([*varied.names, SCALE]))
