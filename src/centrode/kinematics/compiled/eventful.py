@@ -1,4 +1,4 @@
-"""Motions with limits and change points: events by the search of the arrays, most samples as machine code.
+"""Motions with limits and change points: the mesh of the search and most samples as machine code.
 
 The bits are those of `solve`. Signs take the change points as numbers of the mechanism; a sample is open where
 a radicand lies below zero by more than rounding. What is left to the arrays are the samples that hang on
@@ -7,14 +7,14 @@ rounding and those that are interpolated: they are computed one by one, and put 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
@@ -22,21 +22,20 @@ from centrode.errors import Status
 from centrode.kinematics.angles import NodeTurns
 from centrode.kinematics.branches import Branches
 from centrode.kinematics.compiled.patches import Patches
-from centrode.kinematics.compiled.signs import MOST, counts_of, values_of
+from centrode.kinematics.compiled.searching import Search, of_mesh
+from centrode.kinematics.compiled.signs import counts_of, values_of
 from centrode.kinematics.compiled.traced import TURN, Traced, traced
-from centrode.kinematics.compiled.variables import SCALE, Varied, boxed
+from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, inputs_of
 from centrode.kinematics.compiled.writing import ORDERED, ROOMS, SINES, Writer, nodes_of
 from centrode.kinematics.continuation import Continuation
-from centrode.kinematics.events import Scan
-from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.mending import inside
 from centrode.kinematics.mesh import mesh_of
+from centrode.kinematics.pace import nearest_node
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED
 from centrode.kinematics.sampling import SUSPECT, beyond_limits
 from centrode.kinematics.solve import Solved, fit_for, lanes_at_once, of_batch, of_lanes, solve, start_of
 from centrode.kinematics.spans import Span
-from centrode.kinematics.unwound import Course
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -48,6 +47,8 @@ m = EXPRESSIONS
 JUDGED = "judged"
 FINE, OPEN, DOUBTFUL = 0.0, 1.0, 2.0
 """What machine code says of a sample: doubtful are those that hang on rounding, or are not finite."""
+AT_ONCE = 2
+"""How many times as many mechanisms are computed together as by arrays."""
 
 
 @dataclass(frozen=True)
@@ -65,37 +66,41 @@ class Eventful:
     varied: Varied
     kernels: str
     threads: int = 1
-    _writers: dict[tuple[tuple[int, int], ...], tuple[Traced, Writer]] = field(default_factory=dict)
+    _writers: dict[tuple[tuple[int, int], ...], tuple[Traced, Writer, Writer]] = field(default_factory=dict)
 
     def solved(self, numbers: Dimensions, lanes: Lanes) -> Iterator[tuple[Lanes, Solved]]:
-        """The motions of some mechanisms of a batch, part by part."""
+        """The motions of some mechanisms of a batch, part by part; arrays stay as they are until the next part."""
         ready = fit_for(self.ready, self.span)
         kinematics = of_batch(ready.kinematics, numbers)
         values = self.varied.values(numbers)
-        size = lanes_at_once(kinematics, self.span)
+        size = AT_ONCE * lanes_at_once(kinematics, self.span)
         for first in range(0, len(lanes), size):
             some = lanes[first : first + size]
-            part = of_lanes(kinematics, some)
-            continuation = start_of(ready, part, len(some))
-            mesh = mesh_of(part.path, self.span.parameter)
-            course = Course(ready, part.numbers, Scan(continuation, mesh).run(), mesh)
-            if max(counts_of(continuation.branches).values(), default=0) > MOST:
+            continuation = start_of(ready, of_lanes(kinematics, some), len(some))
+            of_some = {name: row[some] for name, row in values.items()}
+            search = Search(continuation, self.mesh, of_some, lambda counts: self._writer(counts)[:2])
+            if search.run():
+                yield some, self._part(search)
+            else:
                 taken = numbers.mapped(lambda x, at=some: x if isinstance(x, float) else x[at])
                 yield some, solve(self.ready, self.span, taken, len(some))
-                continue
-            of_some = {name: row[some] for name, row in values.items()}
-            yield some, self._part(continuation, course, of_some)
 
-    def _part(self, continuation: Continuation, course: Course, values: dict[str, Array]) -> Solved:
+    @cached_property
+    def mesh(self) -> Array:
+        """The nodes on which events are looked for."""
+        return mesh_of(fit_for(self.ready, self.span).kinematics.path, self.span.parameter)
+
+    def _part(self, search: Search) -> Solved:
+        continuation = search.continuation
         branches = continuation.branches
         counts = counts_of(branches)
-        plan, writer = self._writer(counts)
-        room = writer.room(branches.lanes)
-        values = values | values_of(branches, counts)
+        plan, _of_mesh, writer = self._writer(counts)
+        room = writer.same_room(branches.lanes)
+        values = search.values | values_of(branches, counts)
         values |= {largest_of(group): largest for group, largest in branches.largest.items()}
         writer.write(values, room)
         found = writer.placed(room)
-        turns = self._turns(plan, course, found)
+        turns = self._turns(plan, search, found)
         status, doubtful = self._judged(continuation, found[JUDGED], found["residual"])
         broken = (status == Status.OPEN) & (found[JUDGED] != OPEN)
         if broken.any():
@@ -104,24 +109,24 @@ class Eventful:
                     found[name][(slice(None), broken) if name in ORDERED else broken] = np.nan
         where = np.nonzero(doubtful)
         if len(where[0]):
-            Patches(continuation, self.span, plan.solved.layout, turns, course).put(*where, found, status)
+            Patches(continuation, self.span, plan.solved.layout, turns, self.mesh).put(*where, found, status)
         return self._solved(plan.solved, branches, found, status)
 
-    def _writer(self, counts: dict[int, int]) -> tuple[Traced, Writer]:
+    def _writer(self, counts: Mapping[int, int]) -> tuple[Traced, Writer, Writer]:
         key = tuple(sorted(counts.items()))
         if key not in self._writers:
             plan = traced(self.ready, self.span, self.varied, counts)
-            self._writers[key] = plan, Writer(_outputs(plan), self.span, self.kernels, self.threads)
+            on_mesh = Writer(of_mesh(plan), {PARAMETER: self.mesh}, self.kernels, self.threads)
+            at_samples = Writer(_outputs(plan), inputs_of(self.span), self.kernels, self.threads)
+            self._writers[key] = plan, on_mesh, at_samples
         return self._writers[key]
 
-    def _turns(self, plan: Traced, course: Course, found: dict[str, Array]) -> dict[str, NodeTurns]:
+    def _turns(self, plan: Traced, search: Search, found: dict[str, Array]) -> dict[str, NodeTurns]:
         """Put angles with their turns where their cosines stand; returns their turns on the mesh."""
-        layout, nearest = plan.solved.layout, course.nearest(self.span.parameter)
-        start = self.ready.assembled.angles
+        layout, nearest = plan.solved.layout, nearest_node(self.mesh, self.span.parameter)
         known = {}
         for k, link in enumerate(plan.turning):
-            rotor = rotor_of_angle(ARRAYS, course.numbers, course.on_mesh, link)
-            known[link] = nodes = course.turns(rotor, start[link])
+            known[link] = nodes = search.turns(link, self.ready.assembled.angles[link])
             angle, sine = found["angles"][0, :, :, layout.angles.index(link)], found[SINES][:, :, k]
             turns = nodes.at(nearest, angle, sine)
             np.arctan2(sine, angle, out=angle)
@@ -190,8 +195,3 @@ def _outputs(plan: Traced) -> dict[str, Nodes]:
             for name, nodes in found.items()
         }
     return {**found, JUDGED: boxed([judged]).reshape(1, 1)}
-
-
-def names_of(varied: Varied) -> tuple[str, ...]:
-    """All variables of a batch that do not depend on events."""
-    return tuple(dict.fromkeys([*varied.names, SCALE]))

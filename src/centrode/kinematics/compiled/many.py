@@ -28,7 +28,7 @@ from centrode.kinematics.compiled.traced import (
     traced,
     winding_of,
 )
-from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, varied_of
+from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of, varied_of
 from centrode.kinematics.compiled.writing import ORDERED, ROOMS, SINES, Writer, nodes_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
@@ -82,7 +82,7 @@ class _Many:
     judged: Judged
 
     def solved(self, progress: Progress | None) -> Solved:
-        writer = Writer(self._outputs(), self.span, MACHINE_CODE)
+        writer = Writer(self._outputs(), inputs_of(self.span), MACHINE_CODE)
         room = writer.room(self.lanes)
         self._write(writer, room, progress)
         found = writer.placed(room)

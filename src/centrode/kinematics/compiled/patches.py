@@ -14,12 +14,12 @@ from centrode.kinematics.compiled.writing import ORDERED, ROOMS
 from centrode.kinematics.contacts import contacts_at
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.layout import Layout, positions_from
+from centrode.kinematics.pace import nearest_node
 from centrode.kinematics.residuals import open_what_does_not_close, residuals
 from centrode.kinematics.rooms import Room
 from centrode.kinematics.sampling import Samples, sample, settle
 from centrode.kinematics.solve import of_lanes
 from centrode.kinematics.spans import Span
-from centrode.kinematics.unwound import Course
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -29,14 +29,14 @@ Lanes: TypeAlias = npt.NDArray[np.intp]
 class Patches:
     """Computes samples of the mechanisms of a batch whose events are known.
 
-    `turns` are those of the links whose angles the plan does not give with their turns, on the mesh.
+    `turns` are those, on the mesh, of the links whose angles the plan does not give with their turns.
     """
 
     continuation: Continuation
     span: Span
     layout: Layout
     turns: Mapping[str, NodeTurns]
-    course: Course
+    mesh: Array
 
     def put(
         self, lanes: Lanes, places: Lanes, found: Mapping[str, Array], status: npt.NDArray[np.int8]
@@ -83,7 +83,7 @@ class Patches:
         return arrays, room.status[:, 0]
 
     def _fill_angles(self, samples: Samples, lanes: Lanes, parameter: Array) -> None:
-        nearest = self.course.nearest(parameter)
+        nearest = nearest_node(self.mesh, parameter)
         for link, nodes in self.turns.items():
             known = (nodes.cosine, nodes.below, nodes.turns)
             at_nodes = NodeTurns(*(x[lanes if len(x) > 1 else 0, nearest][:, None] for x in known))

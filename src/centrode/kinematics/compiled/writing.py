@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -15,8 +15,7 @@ from centrode.algebra.expressions import Node, as_node
 from centrode.algebra.graphs import Graph
 from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.traced import Traced
-from centrode.kinematics.compiled.variables import PARAMETER, boxed, inputs_of
-from centrode.kinematics.spans import Span
+from centrode.kinematics.compiled.variables import PARAMETER, boxed
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
@@ -42,12 +41,20 @@ def nodes_of(plan: Traced) -> dict[str, Nodes]:
 
 @dataclass(frozen=True)
 class Writer:
-    """What writes arrays of nodes, each of one lane and one sample, for many mechanisms."""
+    """What writes arrays of nodes, each of one lane and one sample, for many mechanisms.
+
+    Attributes
+    ----------
+    outputs : name -> nodes
+    places : what the variables of a place on the path stand for: name -> (n,)
+    kernels : what runs scans, see `algebra.executors`
+    """
 
     outputs: Mapping[str, Nodes]
-    span: Span
+    places: Mapping[str, Array]
     kernels: str
     threads: int = 1
+    _rooms: list[Array] = field(default_factory=list)
 
     @cached_property
     def flat(self) -> list[Node]:
@@ -56,35 +63,45 @@ class Writer:
 
     @cached_property
     def scan(self) -> Scan:
-        """Lanes are samples, steps are mechanisms."""
+        """Lanes are places, steps are mechanisms."""
         graph = Graph({str(k): node for k, node in enumerate(self.flat)})
-        inputs = inputs_of(self.span)
-        along = tuple(name for name in inputs if name in graph.variables or name == PARAMETER)
+        along = tuple(name for name in self.places if name in graph.variables or name == PARAMETER)
         return Scan(along, tuple(name for name in graph.variables if name not in along), graph.outputs)
 
     @cached_property
-    def _of_samples(self) -> Array:
-        inputs = inputs_of(self.span)
-        return np.stack([inputs[name] for name in self.scan.parameters])
+    def _along(self) -> Array:
+        return np.stack([self.places[name] for name in self.scan.parameters])
 
     def room(self, lanes: int) -> Array:
-        """What is written for so many mechanisms: (numbers, lanes, samples)."""
-        return np.empty((len(self.flat), lanes, len(self.span.parameter)))
+        """Fresh memory for what is written for so many mechanisms: (numbers, lanes, n)."""
+        return np.empty((len(self.flat), lanes, len(self.places[PARAMETER])))
+
+    def same_room(self, lanes: int) -> Array:
+        """The same memory at every call, which is faster: what stood there is gone."""
+        if not self._rooms or self._rooms[0].shape[1] < lanes:
+            self._rooms[:] = [self.room(lanes)]
+        return self._rooms[0][:, :lanes]
 
     def write(self, values: Mapping[str, Array], room: Array) -> None:
         """Fill a room from what variables stand for in its mechanisms."""
         scan = self.scan
         of_lanes = np.stack([values[name] for name in scan.inputs]) if scan.inputs else None
         run = runner(scan, self.kernels, lanes_inside=True, threads=self.threads)
-        run(self._of_samples, of_lanes, out=room, steps=room.shape[1])
+        run(self._along, of_lanes, out=room, steps=room.shape[1])
 
-    def placed(self, room: Array) -> dict[str, Array]:
-        """The arrays by name, views of the room."""
+    def streams(self, room: Array) -> dict[str, Array]:
+        """What is written by name, views of the room: (numbers, lanes, n)."""
         found, first = {}, 0
         for name, nodes in self.outputs.items():
-            found[name] = _placed(name, room[first : first + nodes.size], nodes.shape)
+            found[name] = room[first : first + nodes.size]
             first += nodes.size
         return found
+
+    def placed(self, room: Array) -> dict[str, Array]:
+        """The same as arrays with the shapes of the nodes."""
+        return {
+            name: _placed(name, stream, self.outputs[name].shape) for name, stream in self.streams(room).items()
+        }
 
 
 def _placed(name: str, room: Array, shape: tuple[int, ...]) -> Array:
