@@ -101,7 +101,7 @@ class Continuation:
         if windows is None:
             return []
         shape = (self.branches.lanes, parameter.shape[-1]) if lanes is None else parameter.shape
-        index, chosen = inside(windows, np.broadcast_to(parameter, shape), lanes)
+        index, chosen = inside(windows, parameter.reshape(-1), lanes)
         if not len(chosen):
             return []
         bounded = any(isinstance(number, Rounded) for number in numbers_of(self.kinematics, group, at))
@@ -109,7 +109,7 @@ class Continuation:
         whole = finite(known, len(windows))[chosen]
         if not whole.all():  # another event lies inside some: the closed form has to do there
             index, chosen = tuple(part[whole] for part in index), chosen[whole]
-        along = np.broadcast_to(parameter, shape)[index]
+        along = parameter.reshape(-1)[index[-1]]
         basis = WEIGHTS / (((along - windows.centre[chosen]) / windows.half[chosen])[:, None] - NODES)
         basis /= basis.sum(axis=1, keepdims=True)
         numbers = numbers_of(self.kinematics, group, at)

@@ -41,13 +41,25 @@ class Windows:
 
 
 def inside(windows: Windows, along: Array, lanes: Lanes | None) -> tuple[Index, Lanes]:
-    """Index of the parameters inside a window, and which window that is; of two the later one counts."""
-    lane, centre, half = windows.lane[:, None], windows.centre[:, None], windows.half[:, None]
+    """Index of the parameters inside a window, and which window that is; of two the later one counts.
+
+    `along` are parameters (n,) of all mechanisms, or with `lanes` one mechanism's each.
+    """
     if lanes is None:
-        chosen, places = np.nonzero(np.abs(along[windows.lane] - centre) < half)
-        return (windows.lane[chosen], places), chosen
-    chosen, places = np.nonzero((lanes == lane) & (np.abs(along - centre) < half))
-    return (places,), chosen
+        order = np.argsort(along, kind="stable")
+        ends = windows.centre - windows.half, windows.centre + windows.half
+        # one more on both sides: the last bit is left to the comparison below
+        first = np.maximum(np.searchsorted(along[order], ends[0]) - 1, 0)
+        last = np.minimum(np.searchsorted(along[order], ends[1], side="right") + 1, len(along))
+    else:
+        order = np.argsort(lanes, kind="stable")
+        first, last = (np.searchsorted(lanes[order], windows.lane, side=side) for side in ("left", "right"))
+    counts = last - first
+    chosen = np.repeat(np.arange(len(windows)), counts)
+    places = order[np.arange(len(chosen)) + np.repeat(first - np.cumsum(counts) + counts, counts)]
+    within = np.abs(along[places] - windows.centre[chosen]) < windows.half[chosen]
+    chosen, places = chosen[within], places[within]
+    return ((windows.lane[chosen], places) if lanes is None else (places,)), chosen
 
 
 def numbers_of(kinematics: Kinematics, group: int, at: Positions) -> list[Number]:

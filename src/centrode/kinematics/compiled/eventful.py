@@ -141,11 +141,10 @@ class Eventful:
         with np.errstate(invalid="ignore"):
             status[(judged == OPEN) | (residual > CLOSED)] = Status.OPEN
         doubtful = judged == DOUBTFUL
-        along = np.broadcast_to(self.span.parameter, judged.shape)
         for group in continuation.branches.largest:
             windows = continuation.windows_of(group)
             if windows is not None:
-                doubtful[inside(windows, along, None)[0]] = True
+                doubtful[inside(windows, self.span.parameter, None)[0]] = True
         return status, doubtful
 
     def _solved(self, plan: Solved, branches: Branches, found: dict[str, Array], status: Any) -> Solved:

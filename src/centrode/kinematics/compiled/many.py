@@ -29,7 +29,7 @@ from centrode.kinematics.compiled.traced import (
     winding_of,
 )
 from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of, varied_of
-from centrode.kinematics.compiled.writing import ORDERED, ROOMS, SINES, Writer, nodes_of
+from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, streams_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED, Kept
@@ -163,7 +163,7 @@ class _Many:
         for lanes, some in self._with_events(left):
             for name in ROOMS:
                 if name in found:
-                    found[name][(slice(None), lanes) if name in ORDERED else lanes] = getattr(some, name)
+                    streams_of(name, found[name])[..., lanes, :] = streams_of(name, getattr(some, name))
             status[lanes] = some.status
             branches.events += [
                 replace(event, lane=int(lanes[event.lane])) for event in some.branches.events

@@ -113,7 +113,7 @@ class Search:
         for group in groups:
             windows = self.continuation.windows_of(group)
             if windows is not None:
-                near[inside(windows, np.broadcast_to(self.mesh, near.shape), None)[0]] = True
+                near[inside(windows, self.mesh, None)[0]] = True
         lanes, nodes = np.nonzero(near)
         return lanes, nodes
 

@@ -109,3 +109,9 @@ def _placed(name: str, room: Array, shape: tuple[int, ...]) -> Array:
     lane = 1 if name in ORDERED else 0
     whole = room.reshape(*shape[:lane], *shape[lane + 2 :], *room.shape[1:])
     return np.moveaxis(whole, (-2, -1), (lane, lane + 1))
+
+
+def streams_of(name: str, array: Array) -> Array:
+    """An array of a Solved with its mechanisms and samples behind everything else."""
+    lane = 1 if name in ORDERED else 0
+    return np.moveaxis(array, (lane, lane + 1), (-2, -1))
