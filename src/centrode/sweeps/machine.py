@@ -1,12 +1,13 @@
-"""Sweeps as machine code: what has no events is computed by compiled kernels, the rest by the arrays.
+"""Sweeps as machine code: what has no events is computed in one go, the rest as motions with events.
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
-and the formulas of `traced`; all others are computed as `ArraysExecutor` does it, so their statuses are the same.
+and the formulas of `traced`; the motions of all others have the bits of the arrays (`compiled.eventful`), and what is
+asked for is taken from them as `ArraysExecutor` does it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -23,6 +24,7 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
 from centrode.errors import Status
+from centrode.kinematics.compiled.eventful import Eventful
 from centrode.kinematics.compiled.judging import scan_of
 from centrode.kinematics.compiled.traced import Untraceable, traced
 from centrode.kinematics.compiled.variables import PARAMETER, varied_of
@@ -30,13 +32,14 @@ from centrode.kinematics.residuals import CLOSED
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
 from centrode.sweeps import limits
-from centrode.sweeps.arrays import ArraysExecutor, Task
+from centrode.sweeps.arrays import ArraysExecutor, Results, Task, fill_columns
 from centrode.sweeps.designs import Rows
 from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
 
 Array: TypeAlias = npt.NDArray[np.float64]
 AnyArray: TypeAlias = npt.NDArray[Any]
 Mask: TypeAlias = npt.NDArray[np.bool_]
+Lanes: TypeAlias = npt.NDArray[np.intp]
 Values: TypeAlias = dict[str, Array]
 
 m = EXPRESSIONS
@@ -106,18 +109,46 @@ class MachineCodeExecutor:
             kernels = self._reduced if task.asked.reduced else self._written
             clear[at] = kernels(some, at, results)
         left = np.nonzero(~clear)[0]
-        most = self.arrays.lanes(task)
-        for first in range(0, len(left), most):
-            some_lanes = left[first : first + most]
-            self._on_arrays(some_lanes, numbers, values, results)
+        if len(left) * task.places < limits.WORTH_COMPILING or self.kernels != MACHINE_CODE:
+            self._on_arrays(left, numbers, values, results)
+        else:
+            self._with_events(left, numbers, values, results)
+
+    @cached_property
+    def _eventful(self) -> Eventful:
+        task, asked = self.task, self.asked
+        return Eventful(task.ready, task.span, asked.varied, asked.traced, self.kernels, self.threads)
+
+    def _with_events(
+        self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
+    ) -> None:
+        """Fill in the mechanisms that have events: their motions as machine code, columns as by arrays."""
+        for lanes, solved in self._eventful.solved(numbers, left):
+            rows = {path: np.asarray(x)[lanes] for path, x in values.items()}
+            self._put(lanes, results, lambda parts, of=solved, some=rows: fill_columns(self.task, of, some, parts))
 
     def _on_arrays(
-        self, lanes: npt.NDArray[np.intp], numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
+        self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
     ) -> None:
-        taken = numbers.mapped(lambda x: x if isinstance(x, float) else x[lanes])
-        rows = {path: np.asarray(x)[lanes] for path, x in values.items()}
-        parts = {column.name: results[column.name][: len(lanes)].copy() for column in self.task.asked.columns}
-        self.arrays.run(self.task, taken, rows, parts)
+        """The same for few of them, by arrays alone."""
+        most = self.arrays.lanes(self.task)
+        for first in range(0, len(left), most):
+            lanes = left[first : first + most]
+            taken = numbers.mapped(lambda x, at=lanes: x if isinstance(x, float) else x[at])
+            rows = {path: np.asarray(x)[lanes] for path, x in values.items()}
+            self._put(
+                lanes,
+                results,
+                lambda parts, of=taken, some=rows: self.arrays.run(self.task, of, some, parts),
+            )
+
+    def _put(self, lanes: Lanes, results: Mapping[str, AnyArray], fill: Callable[[Results], None]) -> None:
+        """Fill the columns of mechanisms that do not stand side by side."""
+        parts = {
+            column.name: np.empty((len(lanes), *column.shape), column.kind)
+            for column in self.task.asked.columns
+        }
+        fill(parts)
         for name, part in parts.items():
             results[name][lanes] = part
 

@@ -58,15 +58,18 @@ class Eventful:
     Attributes
     ----------
     varied : the numbers of the batch as variables
+    plan : the same with constant signs
     kernels : what runs scans, see `algebra.executors`
     """
 
     ready: Ready
     span: Span
     varied: Varied
+    plan: Traced
     kernels: str
     threads: int = 1
     _writers: dict[tuple[tuple[int, int], ...], tuple[Traced, Writer, Writer]] = field(default_factory=dict)
+    _memory: tuple[list[Array], list[Array]] = field(default_factory=lambda: ([], []))
 
     def solved(self, numbers: Dimensions, lanes: Lanes) -> Iterator[tuple[Lanes, Solved]]:
         """The motions of some mechanisms of a batch, part by part; arrays stay as they are until the next part."""
@@ -115,10 +118,13 @@ class Eventful:
     def _writer(self, counts: Mapping[int, int]) -> tuple[Traced, Writer, Writer]:
         key = tuple(sorted(counts.items()))
         if key not in self._writers:
-            plan = traced(self.ready, self.span, self.varied, counts)
-            on_mesh = Writer(of_mesh(plan), {PARAMETER: self.mesh}, self.kernels, self.threads)
-            at_samples = Writer(_outputs(plan), inputs_of(self.span), self.kernels, self.threads)
-            self._writers[key] = plan, on_mesh, at_samples
+            plan = traced(self.ready, self.span, self.varied, counts) if counts else self.plan
+            mesh, samples = {PARAMETER: self.mesh}, inputs_of(self.span)
+            self._writers[key] = (
+                plan,
+                Writer(of_mesh(plan), mesh, self.kernels, self.threads, self._memory[0]),
+                Writer(_outputs(plan), samples, self.kernels, self.threads, self._memory[1]),
+            )
         return self._writers[key]
 
     def _turns(self, plan: Traced, search: Search, found: dict[str, Array]) -> dict[str, NodeTurns]:

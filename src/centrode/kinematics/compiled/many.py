@@ -173,7 +173,7 @@ class _Many:
         if len(left) * self._places < WORTH_COMPILING:
             yield left, self._some(left)
         else:
-            events = Eventful(self.ready, self.span, self.varied, MACHINE_CODE)
+            events = Eventful(self.ready, self.span, self.varied, self.plan, MACHINE_CODE)
             yield from events.solved(self.numbers, left)
 
     @property

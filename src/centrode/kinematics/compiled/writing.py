@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -48,13 +49,14 @@ class Writer:
     outputs : name -> nodes
     places : what the variables of a place on the path stand for: name -> (n,)
     kernels : what runs scans, see `algebra.executors`
+    memory : what `same_room` hands out, in its first place; writers that do not write at once may share it
     """
 
     outputs: Mapping[str, Nodes]
     places: Mapping[str, Array]
     kernels: str
     threads: int = 1
-    _rooms: list[Array] = field(default_factory=list)
+    memory: list[Array] = field(default_factory=list)
 
     @cached_property
     def flat(self) -> list[Node]:
@@ -78,9 +80,11 @@ class Writer:
 
     def same_room(self, lanes: int) -> Array:
         """The same memory at every call, which is faster: what stood there is gone."""
-        if not self._rooms or self._rooms[0].shape[1] < lanes:
-            self._rooms[:] = [self.room(lanes)]
-        return self._rooms[0][:, :lanes]
+        shape = (len(self.flat), lanes, len(self.places[PARAMETER]))
+        size = math.prod(shape)
+        if not self.memory or self.memory[0].size < size:
+            self.memory[:] = [np.empty(size)]
+        return self.memory[0][:size].reshape(shape)
 
     def write(self, values: Mapping[str, Array], room: Array) -> None:
         """Fill a room from what variables stand for in its mechanisms."""
