@@ -88,7 +88,7 @@ def _bridged(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
     missing = (source < 0) | (source >= count)
     source = np.where(missing, np.argmax(known, axis=1).astype(np.int32)[:, None], source)
     flat = source + (np.arange(lanes) * count)[:, None]
-    somewhere = known.any(axis=1)[:, None]
+    somewhere = known.any(axis=1, keepdims=True)
     cosine, sine = (np.ascontiguousarray(x).reshape(-1)[flat] for x in (cosine, sine))
     return np.where(somewhere, cosine, 1.0), np.where(somewhere, sine, 0.0)
 

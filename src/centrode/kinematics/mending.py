@@ -89,8 +89,7 @@ def finite(numbers: list[Number], windows: int) -> npt.NDArray[np.bool_]:
     found = np.ones((windows, len(NODES)), dtype=bool)
     for number in numbers:
         found &= np.isfinite(_at_nodes(_summed(number), windows))
-    whole: npt.NDArray[np.bool_] = found.all(axis=1)
-    return whole
+    return np.asarray(found.all(axis=1))
 
 
 def _summed(number: Number) -> Number:

@@ -68,9 +68,7 @@ class Room:
     def all_points(self) -> Array:
         """Points (3, lanes, n, points, axes), the frame's first."""
         points = self.columns[:, : self.frame + self.layout.first_attitude]
-        return np.moveaxis(
-            points.reshape(ORDERS, -1, self.layout.axes, *self.status.shape), (1, 2), (3, 4)
-        )
+        return np.moveaxis(points.reshape(ORDERS, -1, self.layout.axes, *self.status.shape), (1, 2), (3, 4))
 
     @property
     def turned(self) -> Array:

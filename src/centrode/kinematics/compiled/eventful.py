@@ -25,7 +25,7 @@ from centrode.kinematics.compiled.patches import Patches
 from centrode.kinematics.compiled.searching import Search, of_mesh
 from centrode.kinematics.compiled.signs import counts_of, values_of
 from centrode.kinematics.compiled.traced import TURN, Traced, traced
-from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, inputs_of
+from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, inputs_of, taken
 from centrode.kinematics.compiled.writing import ORDERED, ROOMS, SINES, Writer, nodes_of
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.mending import inside
@@ -85,8 +85,7 @@ class Eventful:
             if search.run():
                 yield some, self._part(search)
             else:
-                taken = numbers.mapped(lambda x, at=some: x if isinstance(x, float) else x[at])
-                yield some, solve(self.ready, self.span, taken, len(some))
+                yield some, solve(self.ready, self.span, taken(numbers, some), len(some))
 
     @cached_property
     def mesh(self) -> Array:
@@ -99,7 +98,7 @@ class Eventful:
         counts = counts_of(branches)
         plan, _of_mesh, writer = self._writer(counts)
         room = writer.same_room(branches.lanes)
-        values = search.values | values_of(branches, counts)
+        values = {**search.values, **values_of(branches, counts)}
         values |= {largest_of(group): largest for group, largest in branches.largest.items()}
         writer.write(values, room)
         found = writer.placed(room)
@@ -110,9 +109,10 @@ class Eventful:
             for name in ROOMS:
                 if name in found:
                     found[name][(slice(None), broken) if name in ORDERED else broken] = np.nan
-        where = np.nonzero(doubtful)
-        if len(where[0]):
-            Patches(continuation, self.span, plan.solved.layout, turns, self.mesh).put(*where, found, status)
+        lanes, places = np.nonzero(doubtful)
+        if len(lanes):
+            patches = Patches(continuation, self.span, plan.solved.layout, turns, self.mesh)
+            patches.put(lanes, places, found, status)
         return self._solved(plan.solved, branches, found, status)
 
     def _writer(self, counts: Mapping[int, int]) -> tuple[Traced, Writer, Writer]:

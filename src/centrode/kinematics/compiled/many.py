@@ -28,7 +28,7 @@ from centrode.kinematics.compiled.traced import (
     traced,
     winding_of,
 )
-from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of, varied_of
+from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of, taken, varied_of
 from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, streams_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
@@ -153,8 +153,7 @@ class _Many:
 
     def _some(self, lanes: Lanes) -> Solved:
         """Some mechanisms by arrays."""
-        numbers = self.numbers.mapped(lambda x: x if isinstance(x, float) else x[lanes])
-        return solve(self.ready, self.span, numbers, len(lanes))
+        return solve(self.ready, self.span, taken(self.numbers, lanes), len(lanes))
 
     def _fill(
         self, left: Lanes, found: dict[str, Array], status: npt.NDArray[np.int8], branches: Branches
@@ -165,9 +164,7 @@ class _Many:
                 if name in found:
                     streams_of(name, found[name])[..., lanes, :] = streams_of(name, getattr(some, name))
             status[lanes] = some.status
-            branches.events += [
-                replace(event, lane=int(lanes[event.lane])) for event in some.branches.events
-            ]
+            branches.events += [replace(event, lane=int(lanes[event.lane])) for event in some.branches.events]
 
     def _with_events(self, left: Lanes) -> Iterator[tuple[Lanes, Solved]]:
         if len(left) * self._places < WORTH_COMPILING:

@@ -66,7 +66,9 @@ class Patches:
         sample(self.continuation, parameter, single, lanes)
         settle(single)
         self._fill_angles(samples, lanes, parameter)
-        at = positions_from(kinematics, self.layout, samples.columns[0], samples.angles[0], parameter[:, None])
+        at = positions_from(
+            kinematics, self.layout, samples.columns[0], samples.angles[0], parameter[:, None]
+        )
         residual, _worst = residuals(kinematics, samples, at)
         open_what_does_not_close(samples, residual)
         contacts = contacts_at(kinematics, at, samples)

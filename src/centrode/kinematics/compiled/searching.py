@@ -71,7 +71,7 @@ class Search:
                 if f"{kind} {group}" in self._found:
                     if not self._up_to_date():
                         return False
-                    find(group, Jet(self._with_patches(scan, group, self._found[f"{kind} {group}"])))
+                    find(group, self._with_patches(scan, group, self._found[f"{kind} {group}"]))
         return self._up_to_date()
 
     def turns(self, link: str, initial: float) -> NodeTurns:
@@ -99,13 +99,13 @@ class Search:
             self._write()
         return True
 
-    def _with_patches(self, scan: Scan, group: int, pair: Array) -> Array:
+    def _with_patches(self, scan: Scan, group: int, pair: Array) -> Jet:
         """Value and slope of a radicand or divisor, those of the arrays where a group before it is interpolated."""
         lanes, nodes = self._near_change_points(range(group))
         if len(lanes):
             guard = scan.guard(group, lanes, self.mesh[nodes], 1)
             pair[:, lanes, nodes] = guard.value, guard.derivative(1)
-        return pair
+        return Jet((pair[0], pair[1]))
 
     def _near_change_points(self, groups: range) -> tuple[Lanes, Lanes]:
         """Mechanisms and nodes that lie next to change points of some groups, each once."""

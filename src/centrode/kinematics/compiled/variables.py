@@ -68,6 +68,11 @@ def varied_of(numbers: Dimensions, values: Mapping[str, Array]) -> Varied:
     return Varied(nodes, tuple(names), scale if isinstance(scale, float) else variable(SCALE))
 
 
+def taken(numbers: Dimensions, lanes: npt.NDArray[np.intp]) -> Dimensions:
+    """The numbers of some mechanisms of a batch."""
+    return numbers.mapped(lambda x: x if isinstance(x, float) else x[lanes])
+
+
 def arrays_of(numbers: Dimensions) -> list[Array]:
     """The arrays of a batch's numbers, in the order in which `mapped` meets them."""
     found: list[Array] = []

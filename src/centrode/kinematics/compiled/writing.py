@@ -104,7 +104,8 @@ class Writer:
     def placed(self, room: Array) -> dict[str, Array]:
         """The same as arrays with the shapes of the nodes."""
         return {
-            name: _placed(name, stream, self.outputs[name].shape) for name, stream in self.streams(room).items()
+            name: _placed(name, stream, self.outputs[name].shape)
+            for name, stream in self.streams(room).items()
         }
 
 
