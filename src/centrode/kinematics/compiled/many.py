@@ -182,7 +182,10 @@ class _Many:
         size = max(1, CHUNK // self._places)
         worst = np.fmax.reduce(residual, axis=1)
         lanes = np.nonzero(worst == np.fmax.reduce(worst))[0]
-        first = lanes[:1] if len(lanes) else np.zeros(1, dtype=np.intp)
-        return self._some(
-            lanes[lanes < (first[0] // size + 1) * size] if len(lanes) else first
-        ).worst_constraint
+        first = int(lanes[0]) // size * size if len(lanes) else 0
+        if self.ready.structure.redundant:
+            # those that do not fit count as well, and have no residual any more
+            lanes = np.arange(first, min(first + size, self.lanes))
+        elif not len(lanes):
+            lanes = np.zeros(1, dtype=np.intp)
+        return self._some(lanes[lanes < first + size]).worst_constraint
