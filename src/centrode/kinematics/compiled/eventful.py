@@ -21,11 +21,12 @@ from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.angles import NodeTurns
 from centrode.kinematics.branches import Branches
+from centrode.kinematics.compiled.drives import inputs_of, places_of
 from centrode.kinematics.compiled.patches import Patches
 from centrode.kinematics.compiled.searching import Search, of_mesh
 from centrode.kinematics.compiled.signs import counts_of, values_of
 from centrode.kinematics.compiled.traced import TURN, Traced, traced
-from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, inputs_of, taken
+from centrode.kinematics.compiled.variables import Varied, boxed, taken
 from centrode.kinematics.compiled.writing import ORDERED, ROOMS, SINES, Writer, nodes_of
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.mending import inside
@@ -33,7 +34,7 @@ from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.pace import nearest_node
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED
-from centrode.kinematics.sampling import SUSPECT, beyond_limits
+from centrode.kinematics.sampling import ORDERS, SUSPECT, beyond_limits
 from centrode.kinematics.solve import Solved, fit_for, lanes_at_once, of_batch, of_lanes, solve, start_of
 from centrode.kinematics.spans import Span
 from centrode.structure.dimensions import Dimensions
@@ -119,7 +120,8 @@ class Eventful:
         key = tuple(sorted(counts.items()))
         if key not in self._writers:
             plan = traced(self.ready, self.span, self.varied, counts) if counts else self.plan
-            mesh, samples = {PARAMETER: self.mesh}, inputs_of(self.span)
+            path = self.ready.kinematics.path
+            mesh, samples = places_of(path, self.mesh, ORDERS - 1), inputs_of(path, self.span)
             self._writers[key] = (
                 plan,
                 Writer(of_mesh(plan), mesh, self.kernels, self.threads, self._memory[0]),

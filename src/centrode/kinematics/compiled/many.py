@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -15,8 +16,11 @@ import numpy.typing as npt
 
 from centrode.algebra import machine_code
 from centrode.algebra.executors import MACHINE_CODE
+from centrode.algebra.graph_arrays import evaluate
+from centrode.algebra.graphs import Graph
 from centrode.errors import Status
 from centrode.kinematics.branches import Branches, branches_at_start
+from centrode.kinematics.compiled.drives import inputs_of
 from centrode.kinematics.compiled.eventful import Eventful
 from centrode.kinematics.compiled.judging import Judged, Judging
 from centrode.kinematics.compiled.traced import (
@@ -28,7 +32,7 @@ from centrode.kinematics.compiled.traced import (
     traced,
     winding_of,
 )
-from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of, taken, varied_of
+from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, taken, varied_of
 from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, streams_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
@@ -82,7 +86,7 @@ class _Many:
     judged: Judged
 
     def solved(self, progress: Progress | None) -> Solved:
-        writer = Writer(self._outputs(), inputs_of(self.span), MACHINE_CODE)
+        writer = Writer(self._outputs(), self._inputs, MACHINE_CODE)
         room = writer.room(self.lanes)
         self._write(writer, room, progress)
         found = writer.placed(room)
@@ -119,6 +123,10 @@ class _Many:
         slack = self.judging.slack_at_samples
         return found if slack is None else {**found, SLACK: boxed([slack]).reshape(1, 1)}
 
+    @cached_property
+    def _inputs(self) -> dict[str, Array]:
+        return inputs_of(self.ready.kinematics.path, self.span)
+
     def _write(self, writer: Writer, room: Array, progress: Progress | None) -> None:
         """All samples of all mechanisms, but where none of some is clear."""
         values = self.varied.values(self.numbers) | self.judged.values
@@ -134,15 +142,17 @@ class _Many:
 
     def _angles(self, angles: Array, sines: Array) -> None:
         """Angles with their turns where their cosines stand."""
-        layout, parameter = self.plan.solved.layout, self.span.parameter
+        layout, values = self.plan.solved.layout, self.judged.values
+        drives = evaluate(Graph.of(self.plan.winders), self._inputs)
         for k, link in enumerate(self.plan.turning):
-            centre, winding = (self.judged.values[of(link)][:, None] for of in (centre_of, winding_of))
             for rows in self._parts():
                 if not self.judged.clear[rows].any():
                     continue
                 angle = angles[0, rows, :, layout.angles.index(link)]
                 np.arctan2(sines[rows, :, k], angle, out=angle)
-                middle = centre[rows] + winding[rows] * parameter
+                middle = values[centre_of(link)][rows, None]
+                for drive, value in drives.items():
+                    middle = middle + values[winding_of(link, drive)][rows, None] * value
                 turns = ((middle - angle) * (1.0 / TURN) + WHOLE) - WHOLE
                 angle += TURN * turns
 

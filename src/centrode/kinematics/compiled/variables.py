@@ -109,10 +109,9 @@ def span_of_variables(span: Span) -> TracedSpan:
     return TracedSpan(boxed([variable(TIME)]), place, row(RATE, span.rate), second, accelerates)
 
 
-def inputs_of(span: Span) -> dict[str, Array]:
-    """What the variables of a place stand for at the samples of a span: name -> (samples,)."""
+def times_of(span: Span) -> dict[str, Array]:
+    """What the variables of a place that tell of time stand for at the samples of a span: name -> (samples,)."""
     return {
-        PARAMETER: span.parameter,
         TIME: span.time,
         RATE: span.rate,
         SECOND_RATE: span.second_rate,
