@@ -107,10 +107,11 @@ class MachineCodeExecutor:
             kernels = self._reduced if task.asked.reduced else self._written
             clear[at] = kernels(some, at, results)
         left = np.nonzero(~clear)[0]
-        if len(left) * task.places < limits.WORTH_COMPILING or self.kernels != MACHINE_CODE:
-            self._on_arrays(left, numbers, values, results)
-        else:
+        worth = len(left) * task.places >= limits.WORTH_COMPILING and self.kernels == MACHINE_CODE
+        if worth and self._eventful.possible:
             self._with_events(left, numbers, values, results)
+        else:
+            self._on_arrays(left, numbers, values, results)
 
     @cached_property
     def _eventful(self) -> Eventful:

@@ -89,6 +89,11 @@ class Eventful:
                 yield some, solve(self.ready, self.span, taken(numbers, some), len(some))
 
     @cached_property
+    def possible(self) -> bool:
+        """Whether the bits will be those of the arrays: where the plan leaves no function to a kernel."""
+        return all(writer.alike for writer in self._writer({})[1:])
+
+    @cached_property
     def mesh(self) -> Array:
         """The nodes on which events are looked for."""
         return mesh_of(fit_for(self.ready, self.span).kinematics.path, self.span.parameter)
@@ -112,7 +117,7 @@ class Eventful:
                     found[name][(slice(None), broken) if name in ORDERED else broken] = np.nan
         lanes, places = np.nonzero(doubtful)
         if len(lanes):
-            patches = Patches(continuation, self.span, plan.solved.layout, turns, self.mesh)
+            patches = Patches(continuation, self.span, plan.solved, turns, self.mesh)
             patches.put(lanes, places, found, status)
         return self._solved(plan.solved, branches, found, status)
 
@@ -120,11 +125,14 @@ class Eventful:
         key = tuple(sorted(counts.items()))
         if key not in self._writers:
             plan = traced(self.ready, self.span, self.varied, counts) if counts else self.plan
+            nodes = plan
+            if not all(isinstance(radicand, Jet) for radicand in plan.radicands.values()):
+                nodes = traced(self.ready, self.span, self.varied, counts, on_mesh=True)
             path = self.ready.kinematics.path
             mesh, samples = places_of(path, self.mesh, ORDERS - 1), inputs_of(path, self.span)
             self._writers[key] = (
                 plan,
-                Writer(of_mesh(plan), mesh, self.kernels, self.threads, self._memory[0]),
+                Writer(of_mesh(nodes), mesh, self.kernels, self.threads, self._memory[0]),
                 Writer(_outputs(plan), samples, self.kernels, self.threads, self._memory[1]),
             )
         return self._writers[key]

@@ -68,7 +68,7 @@ def solve_many(
     names = tuple(dict.fromkeys([*varied.names, SCALE]))
     judging = Judging(plan, span.parameter, names, tuple(plan.turning), MACHINE_CODE)
     values = varied.values(numbers)
-    if not values:
+    if not values or not Writer(nodes_of(plan), inputs_of(ready.kinematics.path, span), MACHINE_CODE).alike:
         return solve(ready, span, numbers, lanes, progress)
     judged = judging.judge(values)
     return _Many(ready, span, numbers, lanes, varied, plan, judging, judged).solved(progress)

@@ -13,12 +13,12 @@ from centrode.kinematics.angles import NodeTurns, angle_and_rates
 from centrode.kinematics.compiled.writing import ORDERED, ROOMS
 from centrode.kinematics.contacts import contacts_at
 from centrode.kinematics.continuation import Continuation
-from centrode.kinematics.layout import Layout, positions_from
+from centrode.kinematics.layout import positions_from
 from centrode.kinematics.pace import nearest_node
 from centrode.kinematics.residuals import open_what_does_not_close, residuals
 from centrode.kinematics.rooms import Room
 from centrode.kinematics.sampling import Samples, sample, settle
-from centrode.kinematics.solve import of_lanes
+from centrode.kinematics.solve import Solved, of_lanes
 from centrode.kinematics.spans import Span
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -29,12 +29,13 @@ Lanes: TypeAlias = npt.NDArray[np.intp]
 class Patches:
     """Computes samples of the mechanisms of a batch whose events are known.
 
-    `turns` are those, on the mesh, of the links whose angles the plan does not give with their turns.
+    `plan` is a motion of one sample whose arrays hold nodes: angles that stand are numbers there. `turns` are those, on
+    the mesh, of the links that turn and whose turns the plan does not give.
     """
 
     continuation: Continuation
     span: Span
-    layout: Layout
+    plan: Solved
     turns: Mapping[str, NodeTurns]
     mesh: Array
 
@@ -54,10 +55,10 @@ class Patches:
         """The samples as motions (k, 1) of one sample each."""
         parameter = self.span.parameter[places]
         kinematics = of_lanes(self.continuation.kinematics, lanes)
-        room = Room.of(self.layout, kinematics.numbers, len(lanes), 1)
+        room = Room.of(self.plan.layout, kinematics.numbers, len(lanes), 1)
         samples = room.samples
         single = Samples(
-            self.layout,
+            self.plan.layout,
             samples.columns[..., 0],
             samples.angles[..., 0],
             samples.status[:, 0],
@@ -67,7 +68,7 @@ class Patches:
         settle(single)
         self._fill_angles(samples, lanes, parameter)
         at = positions_from(
-            kinematics, self.layout, samples.columns[0], samples.angles[0], parameter[:, None]
+            kinematics, self.plan.layout, samples.columns[0], samples.angles[0], parameter[:, None]
         )
         residual, _worst = residuals(kinematics, samples, at)
         open_what_does_not_close(samples, residual)
@@ -89,5 +90,12 @@ class Patches:
         for link, nodes in self.turns.items():
             known = (nodes.cosine, nodes.below, nodes.turns)
             at_nodes = NodeTurns(*(x[lanes if len(x) > 1 else 0, nearest][:, None] for x in known))
-            rotor, angle = samples.columns[:, self.layout.rotor(link)], self.layout.angles.index(link)
+            rotor, angle = (
+                samples.columns[:, self.plan.layout.rotor(link)],
+                self.plan.layout.angles.index(link),
+            )
             angle_and_rates(rotor, at_nodes, np.zeros(1, dtype=np.intp), samples.angles[:, angle])
+        for angle, link in enumerate(self.plan.layout.angles):
+            if link not in self.turns and link not in samples.followed:
+                samples.angles[:, angle] = 0.0 * samples.columns[:, self.plan.layout.rotor(link).start]
+                samples.angles[0, angle] += self.plan.angles[0, 0, 0, angle]

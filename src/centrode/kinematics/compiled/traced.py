@@ -9,7 +9,6 @@ places are variables too.
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
@@ -83,15 +82,22 @@ class Traced:
 
 
 class _Signs(Hooks):
-    """Signs as they are given; radicands and divisors are kept."""
+    """Signs as they are given; radicands and divisors are kept.
 
-    def __init__(self, signs: Mapping[int, Operand]) -> None:
+    At samples a root that does not move has derivatives that are zero, on the mesh none, as with arrays: quotients by
+    what depends on it are rounded otherwise.
+    """
+
+    def __init__(self, signs: Mapping[int, Operand], on_mesh: bool) -> None:
         self.signs = signs
+        self.on_mesh = on_mesh
         self.radicands: dict[int, Number] = {}
         self.divisors: dict[int, Number] = {}
 
     def root(self, group: int, radicand: Number) -> Number:
         self.radicands[group] = radicand
+        if not isinstance(radicand, Jet) and not self.on_mesh:
+            radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
         return NODE_JETS.sqrt(radicand) * self.signs[group]
 
     def divisor(self, group: int, divisor: Number) -> Number:
@@ -117,8 +123,14 @@ def refuse_untraceable(ready: Ready, span: Span) -> None:
         raise Untraceable(mark("guides that close"))
 
 
-def traced(ready: Ready, span: Span, varied: Varied, crossings: Mapping[int, int] | None = None) -> Traced:
-    """The motion of a mechanism of a batch at one place of the path.
+def traced(
+    ready: Ready,
+    span: Span,
+    varied: Varied,
+    crossings: Mapping[int, int] | None = None,
+    on_mesh: bool = False,
+) -> Traced:
+    """The motion of a mechanism of a batch at one place of the path, a sample or a node of the mesh.
 
     `crossings` says of how many change points of a group the sign is to know (see `signs`). Raises Untraceable.
     """
@@ -126,7 +138,7 @@ def traced(ready: Ready, span: Span, varied: Varied, crossings: Mapping[int, int
     known = ready.kinematics
     path = traced_path(known.path, span.parameter, ORDERS - 1)
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
-    hooks = _Signs(signs_of(ready, crossings or {}))
+    hooks = _Signs(signs_of(ready, crossings or {}), on_mesh)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
     columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))
@@ -186,7 +198,7 @@ def _angles(
 
 def _standing(cosine: float, sine: float, start: float) -> float:
     """The angle of a link that never turns, on the turn of the initial position."""
-    angle = math.atan2(sine, cosine)
+    angle = float(np.arctan2(sine, cosine))
     return angle + TURN * round((start - angle) / TURN)
 
 

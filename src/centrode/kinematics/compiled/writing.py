@@ -14,6 +14,8 @@ import numpy.typing as npt
 from centrode.algebra.executors import runner
 from centrode.algebra.expressions import Node, as_node
 from centrode.algebra.graphs import Graph
+from centrode.algebra.machine_code.tables import FUNCTIONS
+from centrode.algebra.operations import VARIABLE
 from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.traced import Traced
 from centrode.kinematics.compiled.variables import PARAMETER, boxed
@@ -69,6 +71,18 @@ class Writer:
         graph = Graph({str(k): node for k, node in enumerate(self.flat)})
         along = tuple(name for name in self.places if name in graph.variables or name == PARAMETER)
         return Scan(along, tuple(name for name in graph.variables if name not in along), graph.outputs)
+
+    @cached_property
+    def alike(self) -> bool:
+        """Whether every number is rounded as the arrays round it: no function is left to the kernel."""
+        kinds: dict[Node, frozenset[bool]] = {}
+        for node in self.scan.graph.order:
+            own = {node.detail in self.scan.parameters} if node.operation == VARIABLE else set()
+            kinds[node] = frozenset(own).union(*(kinds[x] for x in node.arguments))
+            # what depends on places alone, or on mechanisms alone, is computed on NumPy
+            if node.operation in FUNCTIONS and len(kinds[node]) > 1:
+                return False
+        return True
 
     @cached_property
     def _along(self) -> Array:
