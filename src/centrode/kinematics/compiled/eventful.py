@@ -61,6 +61,7 @@ class Eventful:
     varied : the numbers of the batch as variables
     plan : the same with constant signs
     kernels : what runs scans, see `algebra.executors`
+    unclosed : filled with mechanisms that have a sample which does not close
     """
 
     ready: Ready
@@ -69,6 +70,7 @@ class Eventful:
     plan: Traced
     kernels: str
     threads: int = 1
+    unclosed: set[int] = field(default_factory=set)
     _writers: dict[tuple[tuple[int, int], ...], tuple[Traced, Writer, Writer]] = field(default_factory=dict)
     _memory: tuple[list[Array], list[Array]] = field(default_factory=lambda: ([], []))
 
@@ -84,8 +86,9 @@ class Eventful:
             of_some = {name: row[some] for name, row in values.items()}
             search = Search(continuation, self.mesh, of_some, lambda counts: self._writer(counts)[:2])
             if search.run():
-                yield some, self._part(search)
+                yield some, self._part(search, some)
             else:
+                self.unclosed.update(some.tolist())  # nobody has looked
                 yield some, solve(self.ready, self.span, taken(numbers, some), len(some))
 
     @cached_property
@@ -98,7 +101,7 @@ class Eventful:
         """The nodes on which events are looked for."""
         return mesh_of(fit_for(self.ready, self.span).kinematics.path, self.span.parameter)
 
-    def _part(self, search: Search) -> Solved:
+    def _part(self, search: Search, some: Lanes) -> Solved:
         continuation = search.continuation
         branches = continuation.branches
         counts = counts_of(branches)
@@ -112,13 +115,14 @@ class Eventful:
         status, doubtful = self._judged(continuation, found[JUDGED], found["residual"])
         broken = (status == Status.OPEN) & (found[JUDGED] != OPEN)
         if broken.any():
+            self.unclosed.update(some[broken.any(axis=1)].tolist())
             for name in ROOMS:
                 if name in found:
                     found[name][(slice(None), broken) if name in ORDERED else broken] = np.nan
         lanes, places = np.nonzero(doubtful)
         if len(lanes):
             patches = Patches(continuation, self.span, plan.solved, turns, self.mesh)
-            patches.put(lanes, places, found, status)
+            self.unclosed.update(some[patches.put(lanes, places, found, status)].tolist())
         return self._solved(plan.solved, branches, found, status)
 
     def _writer(self, counts: Mapping[int, int]) -> tuple[Traced, Writer, Writer]:

@@ -178,10 +178,14 @@ class _Many:
 
     def _with_events(self, left: Lanes) -> Iterator[tuple[Lanes, Solved]]:
         if len(left) * self._places < WORTH_COMPILING:
+            self._events.unclosed.update(left.tolist())  # nobody has looked
             yield left, self._some(left)
         else:
-            events = Eventful(self.ready, self.span, self.varied, self.plan, MACHINE_CODE)
-            yield from events.solved(self.numbers, left)
+            yield from self._events.solved(self.numbers, left)
+
+    @cached_property
+    def _events(self) -> Eventful:
+        return Eventful(self.ready, self.span, self.varied, self.plan, MACHINE_CODE)
 
     @property
     def _places(self) -> int:
@@ -193,9 +197,7 @@ class _Many:
         worst = np.fmax.reduce(residual, axis=1)
         lanes = np.nonzero(worst == np.fmax.reduce(worst))[0]
         first = int(lanes[0]) // size * size if len(lanes) else 0
-        if self.ready.structure.redundant:
-            # those that do not fit count as well, and have no residual any more
-            lanes = np.arange(first, min(first + size, self.lanes))
-        elif not len(lanes):
-            lanes = np.zeros(1, dtype=np.intp)
-        return self._some(lanes[lanes < first + size]).worst_constraint
+        # what does not close counts as well, though it has no residual any more
+        chosen = np.union1d(lanes, sorted(self._events.unclosed)).astype(np.intp)
+        chosen = chosen[(chosen >= first) & (chosen < first + size)]
+        return self._some(chosen if len(chosen) else np.zeros(1, dtype=np.intp)).worst_constraint

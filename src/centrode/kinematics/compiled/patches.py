@@ -15,7 +15,7 @@ from centrode.kinematics.contacts import contacts_at
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.layout import positions_from
 from centrode.kinematics.pace import nearest_node
-from centrode.kinematics.residuals import open_what_does_not_close, residuals
+from centrode.kinematics.residuals import CLOSED, open_what_does_not_close, residuals
 from centrode.kinematics.rooms import Room
 from centrode.kinematics.sampling import Samples, sample, settle
 from centrode.kinematics.solve import Solved, of_lanes
@@ -23,6 +23,7 @@ from centrode.kinematics.spans import Span
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -41,17 +42,18 @@ class Patches:
 
     def put(
         self, lanes: Lanes, places: Lanes, found: Mapping[str, Array], status: npt.NDArray[np.int8]
-    ) -> None:
-        """Put samples, one of each of these mechanisms, into the arrays of all."""
-        arrays, status[lanes, places] = self._computed(lanes, places)
+    ) -> Lanes:
+        """Put samples, one of each of these mechanisms, into the arrays of all; returns those that do not close."""
+        arrays, status[lanes, places], broken = self._computed(lanes, places)
         for name in ROOMS:
             if name in found:
                 if name in ORDERED:
                     found[name][:, lanes, places] = arrays[name][:, :, 0]
                 else:
                     found[name][lanes, places] = arrays[name][:, 0]
+        return lanes[broken]
 
-    def _computed(self, lanes: Lanes, places: Lanes) -> tuple[dict[str, Array], npt.NDArray[np.int8]]:
+    def _computed(self, lanes: Lanes, places: Lanes) -> tuple[dict[str, Array], npt.NDArray[np.int8], Mask]:
         """The samples as motions (k, 1) of one sample each."""
         parameter = self.span.parameter[places]
         kinematics = of_lanes(self.continuation.kinematics, lanes)
@@ -71,6 +73,8 @@ class Patches:
             kinematics, self.plan.layout, samples.columns[0], samples.angles[0], parameter[:, None]
         )
         residual, _worst = residuals(kinematics, samples, at)
+        with np.errstate(invalid="ignore"):
+            broken = residual[:, 0] > CLOSED
         open_what_does_not_close(samples, residual)
         contacts = contacts_at(kinematics, at, samples)
         room.fill_frame(kinematics.numbers)
@@ -83,7 +87,7 @@ class Patches:
         }
         if room.spins is not None:
             arrays["spins"] = room.spins
-        return arrays, room.status[:, 0]
+        return arrays, room.status[:, 0], broken
 
     def _fill_angles(self, samples: Samples, lanes: Lanes, parameter: Array) -> None:
         nearest = nearest_node(self.mesh, parameter)
