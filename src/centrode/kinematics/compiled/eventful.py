@@ -27,7 +27,7 @@ from centrode.kinematics.compiled.searching import Search, of_mesh
 from centrode.kinematics.compiled.signs import counts_of, values_of
 from centrode.kinematics.compiled.traced import TURN, Traced, traced
 from centrode.kinematics.compiled.variables import Varied, boxed, taken
-from centrode.kinematics.compiled.writing import ORDERED, ROOMS, SINES, Writer, nodes_of
+from centrode.kinematics.compiled.writing import JUDGED, ORDERED, ROOMS, SINES, Writer, nodes_of
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.mending import inside
 from centrode.kinematics.mesh import mesh_of
@@ -45,9 +45,10 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 Nodes: TypeAlias = npt.NDArray[Any]
 
 m = EXPRESSIONS
-JUDGED = "judged"
 FINE, OPEN, DOUBTFUL = 0.0, 1.0, 2.0
 """What machine code says of a sample: doubtful are those that hang on rounding, or are not finite."""
+NEARLY = 1e-3
+"""Residuals that lie this close to the greatest that counts as closed are left to the arrays."""
 AT_ONCE = 2
 """How many times as many mechanisms are computed together as by arrays."""
 
@@ -160,7 +161,7 @@ class Eventful:
         status[beyond_limits(continuation.branches, self.span.parameter)] = Status.CUT_OFF
         with np.errstate(invalid="ignore"):
             status[(judged == OPEN) | (residual > CLOSED)] = Status.OPEN
-        doubtful = judged == DOUBTFUL
+            doubtful = (judged == DOUBTFUL) | (np.abs(residual - CLOSED) <= NEARLY * CLOSED)
         for group in continuation.branches.largest:
             windows = continuation.windows_of(group)
             if windows is not None:

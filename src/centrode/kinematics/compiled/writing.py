@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from centrode.algebra.executors import runner
 from centrode.algebra.expressions import Node, as_node
-from centrode.algebra.graphs import Graph
+from centrode.algebra.graphs import Graph, ordered
 from centrode.algebra.machine_code.tables import FUNCTIONS
 from centrode.algebra.operations import VARIABLE
 from centrode.algebra.scans import Scan
@@ -26,7 +26,9 @@ Nodes: TypeAlias = npt.NDArray[Any]
 ORDERED = frozenset({"all_points", "angles", "slides", "spins"})
 """Arrays with the derivatives in front."""
 ROOMS = ("all_points", "angles", "slides", "spins", "contacts", "residual")
-SINES = "sines"
+SINES, RESIDUAL, JUDGED = "sines", "residual", "judged"
+LAST_BITS = (RESIDUAL, JUDGED)
+"""Of what is written: what may hang on the last bit of a residual, though no decision does."""
 
 
 def nodes_of(plan: Traced) -> dict[str, Nodes]:
@@ -74,10 +76,16 @@ class Writer:
 
     @cached_property
     def alike(self) -> bool:
-        """Whether every number is rounded as the arrays round it: no function is left to the kernel."""
+        """Whether every number is rounded as the arrays round it: no function is left to the kernel.
+
+        Residuals are not asked: an arc tangent in them moves their last bit, and decides nothing.
+        """
+        asked = [
+            as_node(x) for name, nodes in self.outputs.items() if name not in LAST_BITS for x in nodes.ravel()
+        ]
         kinds: dict[Node, frozenset[bool]] = {}
-        for node in self.scan.graph.order:
-            own = {node.detail in self.scan.parameters} if node.operation == VARIABLE else set()
+        for node in ordered(asked):
+            own = {str(node.detail) in self.places} if node.operation == VARIABLE else set()
             kinds[node] = frozenset(own).union(*(kinds[x] for x in node.arguments))
             # what depends on places alone, or on mechanisms alone, is computed on NumPy
             if node.operation in FUNCTIONS and len(kinds[node]) > 1:
