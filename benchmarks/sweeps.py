@@ -21,7 +21,9 @@ from centrode.structure.dimensions import dimensions_of
 Array = npt.NDArray[np.float64]
 SAMPLES = 361
 MANY, FEW = 50_000, 500
-"""Mechanisms of a sweep: reduced by machine code; by arrays, or with every sample written."""
+"""Mechanisms of a sweep: reduced by machine code; by arrays."""
+KEPT = 10_000
+"""Mechanisms of a sweep by machine code with every sample written: what is done once should not count."""
 ROUNDS = 5
 MECHANISMS = {
     "crank-rocker": (("links.AB.length", "links.DB.length"), "B"),
@@ -37,7 +39,7 @@ def sweeps() -> Iterator[Row]:
         yield from _reduced(name, paths, point)
         yield _written(name, paths, point)
         yield _motions(name, paths)
-    yield _with_limits()
+    yield from _with_events()
 
 
 def _values(name: str, paths: tuple[str, ...], count: int) -> dict[str, Array]:
@@ -89,26 +91,26 @@ def _two_threads(run: Callable[..., object], many: dict[str, Array]) -> float:
 
 def _written(name: str, paths: tuple[str, ...], point: str) -> Row:
     """Every sample, into memory that is fresh."""
-    mechanism, few = ct.example(name), _values(name, paths, 4 * FEW)
+    mechanism = ct.example(name)
+    many, few = _values(name, paths, KEPT), _values(name, paths, FEW)
     outputs = [f"{kind}.{point}" for kind in ("position", "velocity", "acceleration")]
-    run = functools.partial(ct.sweep, mechanism, few, outputs, SAMPLES)
+    run = functools.partial(ct.sweep, mechanism, outputs=outputs, samples=SAMPLES)
     numbers = 3 * (2 if mechanism.space == "plane" else 3)
     times = best_times(
         {
-            "code": functools.partial(run, executor="machine code"),
-            "arrays": functools.partial(run, executor="arrays"),
-            "fresh": functools.partial(_fresh, 4 * FEW * SAMPLES * numbers),
+            "code": functools.partial(run, vary=many, executor="machine code"),
+            "arrays": functools.partial(run, vary=few, executor="arrays"),
+            "fresh": functools.partial(_fresh, KEPT * SAMPLES * numbers),
         },
         rounds=ROUNDS,
     )
-    positions = 4 * FEW * SAMPLES
     return Row(
         f"{name}, written",
         {
             "numbers": float(numbers),
-            "ns": times["code"] / positions * 1e9,
+            "ns": times["code"] / (KEPT * SAMPLES) * 1e9,
             "/ fresh memory": times["code"] / times["fresh"],
-            "arrays /": times["arrays"] / times["code"],
+            "arrays /": times["arrays"] / FEW / (times["code"] / KEPT),
         },
     )
 
@@ -134,19 +136,43 @@ def _motions(name: str, paths: tuple[str, ...]) -> Row:
     return Row(f"{name}, motions", {"ns": times["code"] * each, "arrays /": times["arrays"] / times["code"]})
 
 
-def _with_limits() -> Row:
-    """A sweep of which some mechanisms meet limits, and are left to the arrays."""
+def _with_events() -> Iterator[Row]:
+    """Sweeps and motions of mechanisms that meet limits, or pass change points."""
     draw = np.random.default_rng(0)
-    vary = {"links.AB.length": draw.uniform(1.5, 3.5, 4 * FEW)}
-    run = functools.partial(ct.sweep, ct.example("crank-rocker"), vary, "position.B", SAMPLES, reduce="range")
-    times = best_times(
-        {name: functools.partial(run, executor=name) for name in ("machine code", "arrays")}, rounds=ROUNDS
-    )
-    found = run(executor="arrays")
-    return Row(
-        "crank-rocker, some locked",
-        {
-            "share of limits": float((found["samples_ok"] < SAMPLES).mean()),
-            "arrays /": times["arrays"] / times["machine code"],
-        },
-    )
+    size = draw.uniform(0.9, 1.1, 4 * FEW)
+    press = ct.value_at(ct.example("six-bar-press"), "links.OA.length")
+    for label, name, point, vary in (
+        ("some locked", "crank-rocker", "B", {"links.AB.length": draw.uniform(1.5, 3.5, 4 * FEW)}),
+        ("all locked", "crank-rocker", "B", {"links.AB.length": draw.uniform(1.1, 1.9, 4 * FEW)}),
+        ("most locked", "six-bar-press", "D", {"links.OA.length": press * draw.uniform(1.5, 3.0, 4 * FEW)}),
+        ("two change points", "parallelogram", "B", {"links.OA.length": size, "links.DB.length": size}),
+    ):
+        few = {path: values[:FEW] for path, values in vary.items()}
+        run = functools.partial(ct.sweep, ct.example(name), outputs=f"position.{point}", samples=SAMPLES)
+        prepared = ready(ct.example(name))
+        span = asked_span(prepared, SAMPLES, None, None)
+        numbers = dimensions_of(prepared.mechanism, few, np)
+        times = best_times(
+            {
+                "reduced": functools.partial(run, vary=vary, reduce="range", executor="machine code"),
+                "written": functools.partial(run, vary=vary, executor="machine code"),
+                "motions": functools.partial(solve_many, prepared, span, numbers, FEW),
+                "arrays reduced": functools.partial(run, vary=few, reduce="range", executor="arrays"),
+                "arrays written": functools.partial(run, vary=few, executor="arrays"),
+                "arrays motions": functools.partial(solve, prepared, span, numbers, FEW),
+            },
+            rounds=ROUNDS,
+        )
+        found = run(vary=few, reduce="range", executor="arrays")
+        yield Row(
+            f"{name}, {label}",
+            {
+                "not whole": float((found["samples_ok"] < SAMPLES).mean()),
+                "ns reduced": times["reduced"] / (4 * FEW * SAMPLES) * 1e9,
+                "arrays / reduced": 4 * times["arrays reduced"] / times["reduced"],
+                "ns written": times["written"] / (4 * FEW * SAMPLES) * 1e9,
+                "arrays / written": 4 * times["arrays written"] / times["written"],
+                "ns motions": times["motions"] / (FEW * SAMPLES) * 1e9,
+                "arrays / motions": times["arrays motions"] / times["motions"],
+            },
+        )

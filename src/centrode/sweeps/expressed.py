@@ -11,9 +11,10 @@ import numpy.typing as npt
 
 from centrode.algebra.expressions import Node, as_node, variable
 from centrode.algebra.graphs import Graph
+from centrode.kinematics.compiled.drives import inputs_of
 from centrode.kinematics.compiled.judging import Judging
 from centrode.kinematics.compiled.traced import Traced, centre_of
-from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of
+from centrode.kinematics.compiled.variables import SCALE, Varied, boxed
 from centrode.sweeps.arrays import Task
 from centrode.sweeps.folds import Folds
 from centrode.sweeps.slopes import Slopes
@@ -99,7 +100,7 @@ class Expressed:
     @cached_property
     def inputs(self) -> Values:
         """What the variables of a place stand for at the samples."""
-        return inputs_of(self.task.span)
+        return inputs_of(self.task.ready.kinematics.path, self.task.span)
 
     @property
     def states(self) -> int:
