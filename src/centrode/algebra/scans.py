@@ -127,12 +127,7 @@ def call_of(
         out = np.empty(shape, number)
     if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != out.itemsize):
         raise ValueError(f"out has to be {shape} of {np.dtype(number)} with a contiguous last axis")
-    return Call(
-        np.ascontiguousarray(np.broadcast_to(of_lanes, (len(scan.parameters), lanes))),
-        np.ascontiguousarray(np.broadcast_to(of_steps, (len(scan.inputs), count))),
-        np.array(np.broadcast_to(states, (len(scan.state), lanes)), number, order="C"),
-        out,
-    )
+    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes).copy(), out)
 
 
 def _rows(names: tuple[str, ...], values: npt.ArrayLike | None, number: npt.DTypeLike) -> Array:
@@ -145,6 +140,15 @@ def _rows(names: tuple[str, ...], values: npt.ArrayLike | None, number: npt.DTyp
     if rows.ndim != 2 or len(rows) != len(names):
         raise ValueError(f"expected ({len(names)}, n) values, got {rows.shape}")
     return rows
+
+
+def _spread(rows: Array, length: int) -> Array:
+    """Rows of that length; one number stands for all. Short kernels are called often, so nothing is done twice."""
+    if not len(rows):
+        return np.empty((0, length), rows.dtype)
+    if rows.shape[1] != length:
+        rows = np.broadcast_to(rows, (len(rows), length))
+    return np.ascontiguousarray(rows)
 
 
 def _length(what: str, arrays: Sequence[Array], otherwise: int) -> int:

@@ -23,6 +23,8 @@ REDUCED = 1e5
 ROUNDER = 1.5 * 2.0**52
 """Adding it rounds to a whole number, which then stands in the lowest bits."""
 SIGN_OF_DOUBLE = 63
+BY_HORNER = 8
+"""Terms of the arctangent by Horner's rule: with fewer its greatest error grows."""
 
 
 def sine_and_cosine(code: Code, x: Value) -> tuple[Value, Value]:
@@ -135,4 +137,5 @@ def _slope(code: Code, least: Value, most: Value) -> Value:
 def _arctangent(code: Code, x: Value) -> Value:
     """Arctangent on [0, 1]."""
     z = code.multiply(x, x)
-    return code.multiply_add(code.multiply(x, z), code.polynomial(ARCTANGENT, z), x)
+    rest = code.polynomial_in_halves(ARCTANGENT, z, BY_HORNER)
+    return code.multiply_add(code.multiply(x, z), rest, x)
