@@ -90,15 +90,23 @@ def traced(name: str) -> Traced:
         for point in prepared.mechanism.moving_points
         if point not in prepared.mechanism.links[str(crank)].coordinates
     ]
-    found = {f"{point} {axis}": x for point in moving for axis, x in enumerate(at.points[point])}
-    found |= {
-        f"angle {link}": jets.atan2(*reversed(pose.rotor)) for link, pose in at.poses.items() if link != crank
-    }
     outputs = {
-        f"{label}, {k}": x.derivative(k) for label, x in found.items() if isinstance(x, Jet) for k in range(3)
+        f"{point} {axis}, {k}": x.derivative(k)
+        for point in moving
+        for axis, x in enumerate(at.points[point])
+        for k in range(3)
     }
+    for link, pose in at.poses.items():
+        if link != crank and isinstance(pose.rotor[0], Jet):
+            outputs |= {f"angle {link}, {k}": x for k, x in enumerate(_angle(*pose.rotor))}
     names = tuple(f"dimension {i}" for i in range(len(values)))
     return Traced(Graph.of(outputs).outputs, names, np.array(values), time.process_time() - start)
+
+
+def _angle(cosine: Jet, sine: Jet) -> list[Any]:
+    """An angle with two derivatives as a motion has them: those of a rotor, whose length is one."""
+    rates = [cosine.value * sine.derivative(k) - sine.value * cosine.derivative(k) for k in (1, 2)]
+    return [EXPRESSIONS.atan2(sine.value, cosine.value), *rates]
 
 
 DRIVE = np.linspace(0.0, 2.0 * np.pi, SAMPLES)[None]
