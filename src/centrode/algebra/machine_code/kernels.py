@@ -173,8 +173,7 @@ def _function(text: str, machine: Target) -> Loaded:
 
 
 def _address(array: Array) -> int:
-    # `array.ctypes` makes two objects for it
-    return int(array.__array_interface__["data"][0])
+    return int(array.ctypes.data) if array.size else 0
 
 
 @lru_cache(maxsize=4)
