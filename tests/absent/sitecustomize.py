@@ -1,7 +1,17 @@
-"""Read by every Python that finds it at its start: libraries named in CENTRODE_WITHOUT cannot be imported."""
+"""Read by every Python that finds it at its start: libraries named in CENTRODE_WITHOUT are not found."""
+
+from __future__ import annotations
 
 import os
-import sys
+from importlib.machinery import ModuleSpec, PathFinder
+from typing import Any
 
-for name in os.environ.get("CENTRODE_WITHOUT", "").split():
-    sys.modules[name] = None  # type: ignore[assignment]
+MISSING = frozenset(os.environ.get("CENTRODE_WITHOUT", "").split())
+found = PathFinder.find_spec
+
+
+def found_or_missing(name: str, *more: Any, **named: Any) -> ModuleSpec | None:
+    return None if name in MISSING else found(name, *more, **named)
+
+
+PathFinder.find_spec = found_or_missing  # type: ignore[method-assign, assignment]
