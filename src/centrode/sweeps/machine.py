@@ -21,7 +21,7 @@ from centrode.algebra.expressions import Node, as_node, variable
 from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
-from centrode.algebra.scans import Scan
+from centrode.algebra.scans import Scan, room_of
 from centrode.errors import Status
 from centrode.kinematics.compiled.judging import scan_of
 from centrode.kinematics.compiled.traced import Untraceable, traced
@@ -184,7 +184,7 @@ class MachineCodeExecutor:
         places = np.arange(len(results["samples_ok"]))[at]
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         steps = max(1, limits.KERNEL_BUFFER // (NUMBER * len(scan.outputs) * samples))
-        buffer = np.empty((len(scan.outputs), min(steps, lanes), samples))
+        buffer = room_of(len(scan.outputs), min(steps, lanes), samples)
         clear = np.empty(lanes, dtype=bool)
         run = runner(scan, self.kernels, lanes_inside=True, threads=self.threads)
         for first in range(0, lanes, steps):
