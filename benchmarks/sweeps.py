@@ -108,24 +108,20 @@ def _two_threads(name: str, paths: tuple[str, ...], point: str) -> Row:
 
 
 def _gradient(name: str, point: str) -> Row:
-    """The range of a point with its derivatives by six dimensions."""
-    values = _values(name, SIX[name], MANY)
-    run = functools.partial(
-        ct.sweep,
-        ct.example(name),
-        values,
-        f"position.{point}",
-        SAMPLES,
-        reduce="range",
-        executor="machine code",
-    )
-    times = paired_times({"value": run, "gradient": functools.partial(run, gradient=True)}, ROUNDS)
-    over = ratio(times, "gradient", "value")
-    return Row(
-        f"{name}, gradient by six",
-        {"ns": median(times["value"]) / (MANY * SAMPLES) * 1e9, "with gradient /": over},
-        promises=[Promise(f"sweep, {name}, range of a point with its gradient by six", over, 3.0)],
-    )
+    """The range and the mean of a point with their derivatives by six dimensions."""
+    values, numbers = _values(name, SIX[name], MANY), {}
+    for fold in ("range", "mean"):
+        run = functools.partial(
+            ct.sweep, ct.example(name), values, f"position.{point}", SAMPLES, reduce=fold,
+            executor="machine code",
+        )  # fmt: skip
+        times = paired_times({"value": run, "gradient": functools.partial(run, gradient=True)}, ROUNDS)
+        numbers[f"{fold} with gradient /"] = ratio(times, "gradient", "value")
+    promises = [
+        Promise(f"sweep, {name}, {label.split()[0]} of a point with its gradient by six", over, 3.0)
+        for label, over in numbers.items()
+    ]
+    return Row(f"{name}, gradient by six", numbers, promises=promises)
 
 
 def _on_the_sphere() -> Row:
