@@ -131,8 +131,8 @@ def _slope(code: Code, least: Value, most: Value) -> Value:
     """The quotient least / most in [0, 1]; 0 of two zeros, 1 of two infinities; NaN stays."""
     tiny = code.constant(SMALLEST)
     divisor = code.select(code.compare("ogt", tiny, most), tiny, most)
-    both_infinite = code.compare("oeq", least, code.constant(math.inf))
-    return code.select(both_infinite, code.constant(1.0), code.divide(least, divisor))
+    equal = code.compare("oeq", least, divisor)
+    return code.select(equal, code.constant(1.0), code.divide(least, divisor))
 
 
 def _is_negative(code: Code, x: Value) -> Value:
