@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import functools
-import time
-from collections.abc import Callable, Iterator
+import subprocess
+import sys
+from collections.abc import Iterator
 from statistics import median
 
 import numpy as np
 import numpy.typing as npt
 
 import centrode as ct
-from benchmarks.table import Row
-from benchmarks.timing import best_times
+from benchmarks.plans import SIX
+from benchmarks.table import Promise, Row
+from benchmarks.timing import best_times, paired_times, ratio, two_threads
 from centrode.kinematics.compiled.many import solve_many
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
@@ -28,9 +30,17 @@ ROUNDS = 5
 MECHANISMS = {
     "crank-rocker": (("links.AB.length", "links.DB.length"), "B"),
     "six-bar-press": (("links.OA.length", "links.DH.points.H.x"), "D"),
-    "spherical-four-bar": (("links.AB.length",), "C"),
+    "spherical-four-bar": (("links.BC.length", "links.DC.length"), "C"),
 }
 """Dimensions that vary by one per cent, and the point that is looked at."""
+CRANKS = {"crank-rocker": "links.OA.length", "spherical-four-bar": "links.AB.length"}
+LONG = 4
+"""How many times as many mechanisms two threads are given: what is done once should not count."""
+BILLION = 1_000_000_000
+MOST_MEMORY = 1e9
+"""Bytes that a billion positions may take."""
+KILOBYTE = 1 if sys.platform == "darwin" else 1024
+"""Unit in which the system tells the memory of a process [bytes]."""
 
 
 def sweeps() -> Iterator[Row]:
@@ -39,12 +49,16 @@ def sweeps() -> Iterator[Row]:
         yield from _reduced(name, paths, point)
         yield _written(name, paths, point)
         yield _motions(name, paths)
+        yield _gradient(name, point)
+        yield _two_threads(name, paths, point)
+    yield _on_the_sphere()
     yield from _with_events()
+    yield _billion()
 
 
 def _values(name: str, paths: tuple[str, ...], count: int) -> dict[str, Array]:
     mechanism, draw = ct.example(name), np.random.default_rng(0)
-    return {path: ct.value_at(mechanism, path) * draw.uniform(0.99, 1.01, count) for path in paths}
+    return {path: ct.value_at(mechanism, path) + draw.uniform(-0.01, 0.01, count) for path in paths}
 
 
 def _reduced(name: str, paths: tuple[str, ...], point: str) -> Iterator[Row]:
@@ -57,36 +71,76 @@ def _reduced(name: str, paths: tuple[str, ...], point: str) -> Iterator[Row]:
     ):
         run = functools.partial(ct.sweep, mechanism, outputs=outputs, samples=SAMPLES, reduce="range")
         many, few = _values(name, paths, MANY), _values(name, paths, FEW)
-        times = best_times(
+        times = paired_times(
             {
                 "code": functools.partial(run, vary=many, executor="machine code"),
                 "gradient": functools.partial(run, vary=many, executor="machine code", gradient=True),
                 "arrays": functools.partial(run, vary=few, executor="arrays"),
             },
-            rounds=ROUNDS,
+            ROUNDS,
         )
         yield Row(
             f"{name}, {label}",
             {
-                "ns": times["code"] / (MANY * SAMPLES) * 1e9,
-                "arrays /": times["arrays"] / FEW / (times["code"] / MANY),
-                "with gradient /": times["gradient"] / times["code"],
-                "1 thread / 2": _two_threads(run, many),
+                "ns": median(times["code"]) / (MANY * SAMPLES) * 1e9,
+                "arrays /": ratio(times, "arrays", "code") * MANY / FEW,
+                "with gradient /": ratio(times, "gradient", "code"),
             },
         )
 
 
-def _two_threads(run: Callable[..., object], many: dict[str, Array]) -> float:
-    """Elapsed time of one thread over that of two, median of paired runs."""
-    ratios = []
-    for _round in range(ROUNDS):
-        times = []
-        for threads in (1, 2):
-            begin = time.perf_counter()
-            run(vary=many, executor="machine code", threads=threads)
-            times.append(time.perf_counter() - begin)
-        ratios.append(times[0] / times[1])
-    return median(ratios)
+def _two_threads(name: str, paths: tuple[str, ...], point: str) -> Row:
+    """The range of a point by one thread over two, by the clock."""
+    values = _values(name, paths, LONG * MANY)
+    halves = [{path: x[k::2] for path, x in values.items()} for k in (0, 1)]
+    run = functools.partial(
+        ct.sweep, ct.example(name), outputs=f"position.{point}", samples=SAMPLES, reduce="range",
+        executor="machine code",
+    )  # fmt: skip
+    threads = two_threads(
+        lambda count: run(vary=values, threads=count),
+        [functools.partial(run, vary=half) for half in halves],
+        ROUNDS,
+    )
+    return Row(
+        f"{name}, two threads",
+        {"1 thread / 2": threads.gain, "possible": threads.possible},
+        promises=[Promise(f"sweep, {name}, range of a point, 1 thread / 2", threads.gain, at_least=1.6)],
+    )
+
+
+def _gradient(name: str, point: str) -> Row:
+    """The range and the mean of a point with their derivatives by six dimensions."""
+    values, numbers = _values(name, SIX[name], MANY), {}
+    for fold in ("range", "mean"):
+        run = functools.partial(
+            ct.sweep, ct.example(name), values, f"position.{point}", SAMPLES, reduce=fold,
+            executor="machine code",
+        )  # fmt: skip
+        times = paired_times({"value": run, "gradient": functools.partial(run, gradient=True)}, ROUNDS)
+        numbers[f"{fold} with gradient /"] = ratio(times, "gradient", "value")
+    promises = [
+        Promise(f"sweep, {name}, {label.split()[0]} of a point with its gradient by six", over, 3.0)
+        for label, over in numbers.items()
+    ]
+    return Row(f"{name}, gradient by six", numbers, promises=promises)
+
+
+def _on_the_sphere() -> Row:
+    """The spherical four-bar linkage over the planar one: coupler and rocker vary, then the crank."""
+    numbers = {}
+    for label in ("coupler and rocker", "crank"):
+        runs = {}
+        for name, space in (("spherical-four-bar", "sphere"), ("crank-rocker", "plane")):
+            paths, point = MECHANISMS[name]
+            values = _values(name, (CRANKS[name],) if label == "crank" else paths, MANY)
+            runs[space] = functools.partial(
+                ct.sweep, ct.example(name), values, f"position.{point}", SAMPLES,
+                reduce="range", executor="machine code",
+            )  # fmt: skip
+        numbers[label] = ratio(paired_times(runs, ROUNDS), "sphere", "plane")
+    promises = [Promise(f"sweep, spherical over planar four-bar, {x} vary", numbers[x], 2.5) for x in numbers]
+    return Row("spherical / planar, range of a point", numbers, promises=promises)
 
 
 def _written(name: str, paths: tuple[str, ...], point: str) -> Row:
@@ -134,6 +188,27 @@ def _motions(name: str, paths: tuple[str, ...]) -> Row:
     )
     each = 1e9 / (FEW * SAMPLES)
     return Row(f"{name}, motions", {"ns": times["code"] * each, "arrays /": times["arrays"] / times["code"]})
+
+
+def _billion() -> Row:
+    """A billion positions reduced, in a process of its own: time by the clock and memory at most."""
+    count = BILLION // SAMPLES
+    program = f"""
+import numpy as np, resource, time
+import centrode as ct
+values = np.linspace(3.4, 3.6, {count})
+start = time.perf_counter()
+ct.sweep(ct.example("crank-rocker"), {{"links.AB.length": values}}, "position.B", {SAMPLES}, reduce="range")
+print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    seconds, most = (float(word) for word in done.stdout.split())
+    memory = most * KILOBYTE
+    return Row(
+        "crank-rocker, a billion positions",
+        {"s": seconds, "MB": memory / 1e6},
+        promises=[Promise("sweep, a billion positions, memory [MB]", memory / 1e6, MOST_MEMORY / 1e6)],
+    )
 
 
 def _with_events() -> Iterator[Row]:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from centrode.algebra.executors import runner
 from centrode.algebra.expressions import Node
 from centrode.algebra.graphs import Graph
-from centrode.algebra.scans import Scan
+from centrode.algebra.scans import Scan, room_of
 from centrode.kinematics.compiled.variables import PARAMETER
 from centrode.sweeps import limits
 from centrode.sweeps.expressed import Expressed
@@ -60,7 +60,7 @@ class EverySample:
     def put(self, rows: Values, places: npt.NDArray[np.intp], results: Mapping[str, AnyArray]) -> None:
         """Fill the columns of mechanisms at some places by way of a buffer."""
         size = max(1, limits.KERNEL_BUFFER // (NUMBER * len(self.scan.outputs) * self.samples))
-        buffer = np.empty((len(self.scan.outputs), min(size, len(places)), self.samples))
+        buffer = room_of(len(self.scan.outputs), min(size, len(places)), self.samples)
         for first in range(0, len(places), size):
             part = slice(first, first + size)
             where = places[part]

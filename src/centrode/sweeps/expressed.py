@@ -106,6 +106,7 @@ class Expressed:
     def states(self) -> int:
         """Numbers of one mechanism while samples are passed."""
         folds = len(self.folds.found) if self.columns else 0
-        by = 1 + (len(self.task.paths) if self.task.asked.slopes else 0)
+        if self.task.asked.slopes:
+            folds += sum(len(self.slopes.states_of(fold.name).parts) for fold in self.folds.found.values())
         angles = 10 * len(self.judging.links)
-        return len(self.varied.names) + folds * by + angles + 2 * len(self.traced.radicands) + 2
+        return len(self.varied.names) + folds + angles + 2 * len(self.traced.radicands) + 2

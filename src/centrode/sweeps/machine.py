@@ -35,7 +35,7 @@ from centrode.sweeps.arrays import ArraysExecutor, Task, fill_columns
 from centrode.sweeps.designs import Rows
 from centrode.sweeps.every_sample import NUMBER, EverySample
 from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
-from centrode.sweeps.streams import Columns, room_of
+from centrode.sweeps.streams import Columns, columns_for
 
 Array: TypeAlias = npt.NDArray[np.float64]
 AnyArray: TypeAlias = npt.NDArray[Any]
@@ -140,7 +140,7 @@ class MachineCodeExecutor:
 
     def _room(self, lanes: int) -> Columns:
         """Columns of mechanisms that do not stand side by side."""
-        return room_of(self.task.asked.columns, lanes)
+        return columns_for(self.task.asked.columns, lanes)
 
     # one number a motion
 

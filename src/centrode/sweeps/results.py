@@ -14,7 +14,7 @@ import xarray as xr
 from centrode.sweeps.asked import PATH, Asked
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import Design
-from centrode.sweeps.streams import Columns, room_of
+from centrode.sweeps.streams import Columns, columns_for
 from centrode.sweeps.tallies import Tally
 
 AnyArray: TypeAlias = npt.NDArray[Any]
@@ -98,7 +98,7 @@ class InMemory:
         self.frame = frame
         self.blocks = blocks
         self.tally = Tally()
-        self.arrays = room_of(frame.asked.columns, frame.mechanisms)
+        self.arrays = columns_for(frame.asked.columns, frame.mechanisms)
 
     def has(self, block: int) -> bool:
         return False

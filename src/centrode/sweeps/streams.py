@@ -41,7 +41,7 @@ def streamed(columns: Sequence[Column]) -> list[Column]:
     ]
 
 
-def room_of(columns: Sequence[Column], mechanisms: int) -> Columns:
+def columns_for(columns: Sequence[Column], mechanisms: int) -> Columns:
     """Fresh memory for columns, with streams where there is any."""
     kept = streamed(columns)
     found = Columns(
