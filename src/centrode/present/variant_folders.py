@@ -7,6 +7,7 @@ of all that the files depend on: what has no marker, or one of another digest, i
 from __future__ import annotations
 
 import csv
+import functools
 import hashlib
 import io
 import json
@@ -22,17 +23,27 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from centrode import __version__, present
+import lazy_loader
+
+from centrode import __version__
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
+from centrode.present.integration_tables import write_integration_csv
+from centrode.present.tables import write_motion_csv
 from centrode.study.variant_tables import Table, Variant, read_variants
 from centrode.study.variants import FAULT, STEPS, VariantResults, VariantRow, computed
 from centrode.sweeps.locking import locked
 from centrode.sweeps.store import write_whole
 
 Progress: TypeAlias = Callable[[int, int], None]
+
+# Matplotlib is an extra, and slow to import: only where figures are asked for.
+_figures, _integrations, _saving = (
+    functools.partial(lazy_loader.load, f"centrode.present.{name}")
+    for name in ("figures", "integrations", "saving")
+)
 
 MARKER, LOCK, SUMMARY = "variant.json", ".lock", "summary.csv"
 MOST_JOBS = 256
@@ -204,16 +215,16 @@ def _write(results: VariantResults, folder: Path, *, figures: bool) -> None:
         return
     points = mechanism.moving_points
     (folder / "mechanism.toml").write_text(mechanism_text(mechanism), encoding="utf-8", newline="\n")
-    present.write_motion_csv(study.motion, folder / "motion.csv", mechanism.display, points)
+    write_motion_csv(study.motion, folder / "motion.csv", mechanism.display, points)
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     _replace(folder / "summary.json", json.dumps(scalars, indent=2, allow_nan=False) + "\n")
     if integration is not None:
-        present.write_integration_csv(integration, folder / "integration.csv", mechanism.display, points)
+        write_integration_csv(integration, folder / "integration.csv", mechanism.display, points)
     if figures:
-        drawn = present.motion_figures(mechanism, study.motion, mechanism.study.instants, study.instants)
+        drawn = _figures().motion_figures(mechanism, study.motion, mechanism.study.instants, study.instants)
         if integration is not None:
-            drawn |= present.integration_figures(mechanism, integration, study.motion)
-        present.save_figures(drawn, folder)
+            drawn |= _integrations().integration_figures(mechanism, integration, study.motion)
+        _saving().save_figures(drawn, folder)
 
 
 def summary_text(rows: Sequence[VariantRow]) -> str:
