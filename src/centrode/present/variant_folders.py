@@ -41,7 +41,7 @@ Progress: TypeAlias = Callable[[int, int], None]
 
 # Matplotlib is an extra, and slow to import: only where figures are asked for.
 _figures, _integrations, _saving = (
-    functools.partial(lazy_loader.load, f"centrode.present.{name}")
+    functools.partial(lazy_loader.load, f"centrode.present.{name}", suppress_warning=True)
     for name in ("figures", "integrations", "saving")
 )
 
