@@ -159,7 +159,7 @@ def _text(
     if asked is None or made is None:
         return text
     steps = [_unbroken(step) for step in ct.steps_leading_to(made, asked)]
-    way = f"\n{output.paragraph(_('by way of') + ':', steps)}" if steps else ""
+    way = "\n" + output.paragraph(_("by way of") + ":", steps) if steps else ""
     return f"{text}{way}".replace("\N{NO-BREAK SPACE}", " ")
 
 

@@ -221,7 +221,7 @@ def _elsewhere(step: Step, inside: bool) -> str:
     """What is said of a centre that the drawing does not show."""
     if step.direction is not None:
         return f", ∞ {bearing(step.direction):.4g}°"
-    return "" if inside or step.place is None else f", {_('off the sheet')}"
+    return "" if inside or step.place is None else ", " + _("off the sheet")
 
 
 def circle_diagram(axes: Axes, construction: Construction) -> None:

@@ -59,7 +59,7 @@ def diagram_page(found: Diagrams, diagram: Diagram, caption: str) -> Figure:
     name_edges(page, view, drawn, diagram.order, factor, colours)
     title = _("Velocity diagram") if diagram.order == 1 else _("Acceleration diagram")
     symbol = "μ_v" if diagram.order == 1 else "μ_a"
-    head = [caption, f"{symbol} = {scale:g} {typeset_unit(unit)} {_('per mm')}"]
+    head = [caption, f"{symbol} = {scale:g} {typeset_unit(unit)} " + _("per mm")]
     write_head(page, title, found.mechanism, head, lines_of(diagram))
     page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))
     return page.figure

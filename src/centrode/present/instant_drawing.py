@@ -89,8 +89,8 @@ def mechanism_page(found: Diagrams, text: str) -> Figure:
     speed_factor, speed_unit = shown_as("m/s", found.mechanism.display)
     head = [
         text,
-        f"μ_l = {factor * found.scale:g} {unit} {_('per mm')}",
-        f"μ_v = {speed_factor * per_mm:g} {typeset_unit(speed_unit)} {_('per mm')}",
+        f"μ_l = {factor * found.scale:g} {unit} " + _("per mm"),
+        f"μ_v = {speed_factor * per_mm:g} {typeset_unit(speed_unit)} " + _("per mm"),
     ]
     write_head(page, _("Instant centres and velocities"), found.mechanism, head, said(found))
     page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 3.0]]))

@@ -57,7 +57,7 @@ def plan_figure(mechanism: Mechanism, plan: PositionPlan) -> Figure:
             page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
         page.write(6.0, TOP, _("Plan of positions"), size=11.0, va="bottom")
         page.write(6.0, TOP - 5.0, plain(_(mechanism.title))[:90], size=7.5, va="bottom")
-        write_column(page, mechanism, plan, f"μ_l = {scale:g} {unit} {_('per mm')}")
+        write_column(page, mechanism, plan, f"μ_l = {scale:g} {unit} " + _("per mm"))
         page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 7.0]]))
         return page.figure
 

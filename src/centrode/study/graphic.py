@@ -17,7 +17,7 @@ NOTHING = "-"
 
 def graphic_rows(check: GraphicCheck) -> list[tuple[str, ...]]:
     """The table of a check in the units of the display, its heads first."""
-    heads = (_("quantity"), _("unit"), _("drawing"), _("integrated"), _("closed form"), _("difference"))
+    heads = (_("quantity"), _("unit"), _("drawn"), _("integrated"), _("closed form"), _("difference"))
     display = check.diagrams.mechanism.display
     return [heads, *(_row(row, display) for row in check.rows)]
 
