@@ -175,7 +175,7 @@ def curvature_rows(mechanism: Mechanism, curvature: xr.Dataset, sample: int) -> 
         (_("place"), place_words(mechanism, curvature, sample)),
         (_("pole"), _place(here["pole"].to_numpy(), display)),
         (_("inflection pole"), _place(here["inflection_pole"].to_numpy(), display)),
-        (_("inflection circle"), _size(float(here["inflection_diameter"]), display)),
+        (_("diameter of the inflection circle"), _size(float(here["inflection_diameter"]), display)),
         (_("Ball's point"), _place(here["ball_point"].to_numpy(), display)),
     ]
     bends, centres = here["path_curvature"].to_numpy(), here["curvature_centre"].to_numpy()
