@@ -54,6 +54,7 @@ from .present import equations_text as equations_text
 from .present import equations_latex as equations_latex
 from .present import equations_markdown as equations_markdown
 from .present import equations_rows as equations_rows
+
 # Instant centres, centrodes, curvature
 from .analysis.centres import instant_centres as instant_centres
 from .analysis.cases import Case as Case
