@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.equations.derivation import Equations
 from mechanisms import EPS
 
 LETTER = r"[^\W\d_₀-₉⁰-⁹²³¹]\u0307?\u0308?(?:[₀-₉]+|_[^\s()+*/=|²³]+)?'*"
@@ -155,7 +156,7 @@ def test_what_is_printed_moves_as_the_mechanism_does(name: str) -> None:
             assert abs(values[letter] - float(motion.angular_velocity.sel(link=link)[0])) <= allowed, link
 
 
-def matrices(found: ct.Equations) -> list[object]:
+def matrices(found: Equations) -> list[object]:
     """Matrices of the groups in the initial position, rows and columns brought to the size 1."""
     numbers = {key: value for key, value in found.values.items()} | {"t": 0.0}
     made = []
