@@ -176,3 +176,11 @@ def test_lines_are_broken_in_no_angle() -> None:
         "- e) ",
         "+ f",
     ]
+
+
+def test_a_sign_goes_into_sines_of_differences_only() -> None:
+    """Q lies beside the axis of its link: its angle is a sum, and sin(-phi - alpha) is nothing that one writes."""
+    rows = ct.equations_rows(ct.equations(ct.example("watt-six-bar")), ["Q"])
+    x = next(right for _heading, left, right in rows if left == "v_Qx")
+    assert x.startswith("-ω₃ l_DQ sin(φ₃ + α_DQ) = ")
+    assert "(-" not in x

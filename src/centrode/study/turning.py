@@ -140,9 +140,9 @@ class _Words:
     def turns(self, swing: Swing) -> str:
         if not swing.turns or self.turning.period is None:
             return _("runs on")
-        return ngettext("turns {n} time in a period", "turns {n} times in a period", abs(swing.turns)).format(
-            n=swing.turns
-        )
+        count = abs(swing.turns)
+        text = ngettext("turns {n} time in a period", "turns {n} times in a period", count).format(n=count)
+        return text + (_(", against the drive") if swing.turns < 0 else "")
 
     def extreme(self, extreme: Extreme, unit: str) -> str:
         text = _("{value} at {place}").format(
