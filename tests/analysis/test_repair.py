@@ -231,6 +231,7 @@ def test_none_found_claims_nothing() -> None:
         ("triple-rocker", {"vary": ["links.AB.angle"]}, "changes no dimension"),
         ("triple-rocker", {"bounds": {"links.AB.length": (3, 4)}}, "have to hold its present value"),
         ("triple-rocker", {"bounds": {"links.AB.length": (-1, 4)}}, "a length stays positive"),
+        ("triple-rocker", {"bounds": {"links.AB.length": (4, 2)}}, "its lower bound is above its upper one"),
         ("triple-rocker", {"bounds": {"links.AB.length": ("1 kg", 4)}}, "links.AB.length"),
         ("triple-rocker", {"vary": ["links.OA.length"], "bounds": {"links.AB.length": (1, 4)}}, "not among"),
         ("triple-rocker", {"vary": ["drives.OA.speed"]}, "names no dimension"),

@@ -75,7 +75,7 @@ def left_side(condition: str, angles: dict[str, float], slides: dict[str, float]
     """What the left side of a condition less its right side amounts to at angles and displacements."""
     left, _sign, right = condition.partition(" = ")
     if left in slides:
-        return slides[left] - float(right)
+        return slides[left] - float(right.removesuffix(" m"))
     name, _bracket, inside = left.removesuffix(")").partition("(")
     total, sign = 0.0, 1.0
     for word in inside.split():

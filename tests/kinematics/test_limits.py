@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -224,3 +225,45 @@ def test_from_a_dead_point(start: float, sense: float) -> None:
         assembly={"sides": {"A": "left"}},
     )
     assert ct.limits(slider).interval == pytest.approx((2.0, 4.0), abs=16 * EPS)
+
+
+SLIDER_BEFORE_DYAD = """
+[frame.points]
+O = [0, 0]
+D = [{D!r}, 2.5]
+[links.OA]
+length = 1
+[links.AB]
+length = 3
+[links.BE]
+length = 1.6
+[links.DE]
+length = 1.4
+[[guides]]
+point = "B"
+on = "frame"
+through = [0, 2.5]
+direction = 0
+[[drives]]
+link = "OA"
+start = {start}
+speed = 1
+[assembly]
+sides = {{ B = "ahead", E = "left" }}
+"""
+
+
+@pytest.mark.parametrize("ahead", [0.1, 6e-3, 2e-3, 1e-4, 1e-6, 1e-9])
+@pytest.mark.parametrize("start", [0.4, 0.4013])
+def test_a_later_group_stops_just_before_an_earlier_one(ahead: float, start: float) -> None:
+    """The slider would stop at -30 deg, AB square to its guide; a little before, BE and DE are stretched out."""
+    stops = -math.pi / 6 + ahead
+    slider = math.cos(stops) + math.sqrt(9 - (2.5 - math.sin(stops)) ** 2)
+    mechanism = ct.parse_mechanism(SLIDER_BEFORE_DYAD.format(D=slider + 3, start=start))
+    low = ct.limits(mechanism).low
+    # rounding of D and of the slider, a dozen units of 6 m, over the slider's way per radian, which is 1 m at least
+    assert low is not None
+    assert low.group == "group BE-DE (point E)"
+    assert abs(low.value - stops) <= 64 * EPS
+    status = ct.motion(mechanism, at=[stops - ahead / 2, stops + ahead / 2]).status
+    assert status.values.tolist() == [ct.Status.OPEN, ct.Status.OK]

@@ -10,6 +10,7 @@ import pytest
 import centrode as ct
 from centrode.present.equation_latex import LatexSpelling, escaped
 from centrode.present.equation_page import LONGEST, Relation, System, sections
+from centrode.present.equation_text import split_at_signs
 
 WIDTH = 110
 """Columns of a relation that can be broken."""
@@ -123,3 +124,63 @@ def test_groups_too_large_for_determinants_say_so() -> None:
     text = ct.equations_text(ct.equations(ct.example("scissor-lift-cylinder")))
     assert "too many terms to be read" in text
     assert "ω₁: as a number, from the system of group IV(OC, AB, BE, CF, slider A)" in text
+
+
+WIDE = """
+[frame.points]
+A = [2.2, 1.9]
+F = [-1.6, -1.6]
+[links.crank]
+points = ["A", "B"]
+length = 0.9
+[links.rod]
+points = ["B", "G"]
+length = 3.1
+[links.block]
+points = { G = [0, 0], H = [0.9, 2.3] }
+[links.lever]
+points = { F = [0, 0], K = [1, 0.4] }
+[[guides]]
+point = "G"
+on = "frame"
+through = [0, 0]
+direction = 0.7
+link = "block"
+angle = 0.3
+[[guides]]
+point = "H"
+on = "lever"
+through = [-0.8, 0.9]
+direction = 0.2
+[[drives]]
+link = "crank"
+start = 0.4
+speed = 1
+[assembly]
+sides = { G = "behind", H = "ahead" }
+"""
+
+
+def test_a_matrix_that_no_line_holds_is_written_as_equations() -> None:
+    lines = ct.equations_text(ct.equations(ct.parse_mechanism(WIDE))).splitlines()
+    assert max(map(len, lines)) <= WIDTH + 24
+    first = lines[lines.index("Velocities: Cramer's rule") + 1]
+    assert first.startswith("  l₂ cos(φ₂ - β_G) ω₂ = ")
+    assert any(" + (-a_H sin(" in line for line in lines)
+
+
+def test_lines_are_broken_in_no_angle() -> None:
+    assert split_at_signs("a = -(b sin(x - y) + c cos(u + 2 v))/(d - e) + f") == [
+        "a = -(b sin(x - y) ",
+        "+ c cos(u + 2 v))/(d ",
+        "- e) ",
+        "+ f",
+    ]
+
+
+def test_a_sign_goes_into_sines_of_differences_only() -> None:
+    """Q lies beside the axis of its link: its angle is a sum, and sin(-phi - alpha) is nothing that one writes."""
+    rows = ct.equations_rows(ct.equations(ct.example("watt-six-bar")), ["Q"])
+    x = next(right for _heading, left, right in rows if left == "v_Qx")
+    assert x.startswith("-ω₃ l_DQ sin(φ₃ + α_DQ) = ")
+    assert "(-" not in x

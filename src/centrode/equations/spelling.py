@@ -172,9 +172,9 @@ def spelled(
 
 
 def _turnable(formula: Factored) -> Wave | None:
-    """The sine of a difference into which a sign may go."""
+    """The sine of a difference into which a sign may go; that of a sum would begin with a minus."""
     for one, power in formula.product.waves:
-        if power == 1 and one.kind == "sin" and len(one.parts) > 1:
+        if power == 1 and one.kind == "sin" and any(count < 0 for _letter, count in one.parts):
             return one
     return None
 

@@ -22,7 +22,14 @@ from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.continuation import Continuation, Rough
 from centrode.kinematics.counted_turns import counted
 from centrode.kinematics.evaluate import Kinematics, Reached
-from centrode.kinematics.mesh import largest_of, low_minima, sign_changes
+from centrode.kinematics.mesh import (
+    CLOSING_IN,
+    cut_cells,
+    first_changes,
+    largest_of,
+    low_minima,
+    sign_changes,
+)
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.roots import bracketed_roots
 from centrode.structure.groups import Aim, Meet
@@ -79,6 +86,8 @@ class Scan:
         value, _slope = self._on_mesh(divisor)
         lanes, cells = sign_changes(value)
         found = self._roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
+        beside = self._beside_limits(group, value)
+        lanes, found = np.concatenate([lanes, beside[0]]), np.concatenate([found, beside[1]])
         limits = [Event("limit", group, int(k), float(x)) for k, x in zip(lanes, found, strict=True)]
         self.branches.add(group, limits)
 
@@ -111,7 +120,26 @@ class Scan:
         lanes, cells = sign_changes(value)
         rest = ~settled[lanes, cells]
         roots = self._roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
-        return found + self._limits(group, lanes[rest], roots)
+        beside = self._beside_limits(group, value)
+        return found + self._limits(group, lanes[rest], roots) + self._limits(group, *beside)
+
+    def _beside_limits(self, group: int, value: Array) -> tuple[Lanes, Array]:
+        """Lanes and places of limits in the part of a cell that is left of it where an earlier group stops.
+
+        Behind that group's limit there is no radicand, and before it the radicand may run like a square root: it is
+        looked at on places that close in on the limit.
+        """
+        lanes, cells, ends = cut_cells(self.branches.events, self.mesh, value)
+        if not len(lanes):
+            return lanes, ends
+        nodes = np.where(np.isfinite(value[lanes, cells]), self.mesh[cells], self.mesh[cells + 1])
+        places = ends[:, None] + (nodes - ends)[:, None] * CLOSING_IN
+        guard, bound = self.with_bound(group, np.repeat(lanes, len(CLOSING_IN)), places.ravel())
+        # what is rounding has no sign: groups that stop together do not stop each other
+        signs = np.where(np.abs(guard) > SAFETY * bound, np.sign(guard), 0.0).reshape(places.shape)
+        rows, last, first = first_changes(signs)
+        ends = np.sort([places[rows, last], places[rows, first]], axis=0)
+        return lanes[rows], self._roots(group, lanes[rows], *ends)
 
     def _limits(self, group: int, lanes: Lanes, at: Array) -> list[Event]:
         if not len(lanes):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.kinematics.branches import Event
 from centrode.kinematics.continuation import REACH
 from centrode.kinematics.pace import OFF_GRID
 from centrode.kinematics.paths import Path
@@ -16,6 +18,8 @@ Lanes: TypeAlias = npt.NDArray[np.intp]
 
 LOW = 0.25
 """A minimum is looked into if the tangents on both sides meet below this fraction of the values there."""
+CLOSING_IN = 4.0 ** -np.arange(27.0)
+"""Parts of the way from a limit to the node before it: the last one is rounding."""
 
 
 def mesh_of(path: Path, parameter: Array) -> Array:
@@ -62,3 +66,32 @@ def sign_changes(value: Array) -> tuple[Lanes, Lanes]:
             np.sign(np.where(np.isfinite(some), some, np.nan))[:, :-1] * np.sign(some[:, 1:]) < 0.0
         )
     return rows[found], cells
+
+
+def cut_cells(events: Sequence[Event], mesh: Array, value: Array) -> tuple[Lanes, Lanes, Array]:
+    """Cells with a value at one end only: their lanes, numbers, and the limit that is nearest to that end."""
+    finite = np.isfinite(value)
+    limits = [] if finite.all() else [event for event in events if event.kind == "limit"]
+    at = np.array([event.at for event in limits])
+    lanes = np.array([event.lane for event in limits], dtype=np.intp)
+    cells = np.searchsorted(mesh, at) - 1
+    inside = (cells >= 0) & (cells < len(mesh) - 1)
+    at, lanes, cells = at[inside], lanes[inside], cells[inside]
+    before, behind = finite[lanes, cells], finite[lanes, cells + 1]
+    cut = before != behind
+    at, lanes, cells, way = at[cut], lanes[cut], cells[cut], np.where(before[cut], 1.0, -1.0)
+    order = np.lexsort((way * at, cells, lanes))
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = (np.diff(lanes[order]) != 0) | (np.diff(cells[order]) != 0)
+    nearest = order[first]
+    return lanes[nearest], cells[nearest], at[nearest]
+
+
+def first_changes(signs: Array) -> tuple[Lanes, Lanes, Lanes]:
+    """Rows whose sign turns from the one they begin with: the last place before that, and the first behind it."""
+    rows = np.nonzero((signs == -signs[:, :1]).any(axis=1) & (signs[:, 0] != 0.0))[0]
+    some = signs[rows]
+    first = np.argmax(some == -some[:, :1], axis=1)
+    before = (some == some[:, :1]) & (np.arange(some.shape[1]) < first[:, None])
+    last = before.shape[1] - 1 - np.argmax(before[:, ::-1], axis=1)
+    return rows, last, first

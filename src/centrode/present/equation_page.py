@@ -88,7 +88,8 @@ def sections(equations: Equations, spelling: Spelling, points: Sequence[str]) ->
             for group in equations.groups
         ]
     if conditions:
-        normal = [line for group in equations.groups for line in _normal(group, spelling)]
+        told = equations.together is None
+        normal = [line for group in equations.groups for line in _normal(group, spelling, told)]
         found.append(Section(_("Cauchy normal form"), tuple(normal)))
         seconds = [line for group in equations.groups for line in _seconds(group, spelling)]
         found.append(Section(_("Accelerations"), tuple(seconds)))
@@ -191,8 +192,14 @@ def _entry(total: Sum, spelling: Spelling) -> str:
     return spelled(formula_of(total), spelling) if total else spelling.number(0)
 
 
-def _normal(group: GroupEquations, spelling: Spelling) -> list[Entry]:
+def _normal(group: GroupEquations, spelling: Spelling, told: bool) -> list[Entry]:
+    """Rates as formulas; the letter of a determinant is explained first unless Cramer's rule has `told` it."""
     lines: list[Entry] = []
+    solution = group.velocities
+    if solution.system.determinant is not None and solution.lettered:
+        delta = spelled(solution.system.determinant, spelling, differences_first=True)
+        if not told or len(solution.letters) == 1:
+            lines.append(Relation((spelling.letter(solution.under), delta)))
     for unknown, formula in _with_formulas(group.unknowns, group.normal_form):
         if formula is None:
             lines.append(_as_numbers(unknown.rate, group, spelling))

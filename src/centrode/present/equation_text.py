@@ -72,11 +72,20 @@ def _broken(line: str, number: int) -> list[str]:
 
 
 def split_at_signs(line: str) -> list[str]:
-    """A line in words, cut before plus and minus signs that are in no more than one bracket."""
-    words, depth = [""], 0
+    """A line in words, cut before plus and minus signs that are in no more than one bracket, and in no angle."""
+    words, depth, angles = [""], 0, 0
     for i, letter in enumerate(line):
         depth += (letter == "(") - (letter == ")")
-        if letter in "+-" and depth <= 1 and line[i - 1 : i] == " " and line[i + 1 : i + 2] == " ":
+        if letter == "(" and not angles and line[i - 1 : i] not in ("", " ", "(", "{", "-", "/"):
+            angles = depth  # the bracket of a sine or cosine
+        angles = angles if depth >= angles else 0
+        if (
+            letter in "+-"
+            and depth <= 1
+            and not angles
+            and line[i - 1 : i] == " "
+            and line[i + 1 : i + 2] == " "
+        ):
             words.append("")
         words[-1] += letter
     return words
@@ -87,12 +96,42 @@ def _system(system: System) -> list[str]:
     names = max(map(_columns, system.unknowns))
     right = max(map(_columns, system.right))
     middle = len(system.unknowns) // 2
+    if sum(widths) + names + right + 3 * len(widths) + 18 > WIDTH:
+        return [*_rows(system), ""]
     lines = []
     for i, row in enumerate(system.matrix):
         entries = "   ".join(_padded(entry, width) for entry, width in zip(row, widths, strict=True))
         unknown, value = _padded(system.unknowns[i], names), _padded(system.right[i], right)
         lines.append(f"| {entries} |   | {unknown} |   {'=' if i == middle else ' '}   | {value} |")
     return [*lines, ""]
+
+
+def _rows(system: System) -> list[str]:
+    """The equations one by one, of a matrix that no line holds: entries that are sums in brackets."""
+    lines = []
+    for row, right in zip(system.matrix, system.right, strict=True):
+        text = ""
+        for entry, unknown in zip(row, system.unknowns, strict=True):
+            if entry == "0":
+                continue
+            several = not _is_product(entry)
+            minus = entry.startswith("-") and not several
+            whole = entry.removeprefix("-") if minus else entry
+            size = f"({whole})" if several else "" if whole == "1" else whole
+            sign = ("- " if minus else "+ ") if text else ("-" if minus else "")
+            text += (" " if text else "") + sign + (f"{size} {unknown}" if size else unknown)
+        lines += _relation(Relation((text or "0", right)))
+    return lines
+
+
+def _is_product(entry: str) -> bool:
+    """Whether every sum of an entry stands in brackets."""
+    depth = 0
+    for i, letter in enumerate(entry):
+        depth += (letter == "(") - (letter == ")")
+        if not depth and entry[i - 1 : i + 2] in (" + ", " - "):
+            return False
+    return True
 
 
 def _table(rows: Sequence[tuple[str, str, str]]) -> list[str]:

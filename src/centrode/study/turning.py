@@ -11,11 +11,15 @@ from centrode.analysis.turning.circuits import Branch, Circuits
 from centrode.analysis.turning.four_bars import FourBar
 from centrode.analysis.turning.swings import Dwell, Extreme, Swing
 from centrode.analysis.turning.transmission import Transmission
+from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.study.wording import value_text
 
 Rows: TypeAlias = list[tuple[str, str]]
+
+ROUNDING = 1e-12
+"""A least transmission angle [rad] below which it is zero but for rounding."""
 
 
 def rotatability_rows(mechanism: Mechanism, found: Rotatability) -> Rows:
@@ -47,6 +51,11 @@ class _Words:
         # what is zero but for rounding is said as zero
         return value_text(0.0 if abs(value) < 1e-14 else value, unit, self.mechanism.display)
 
+    def held(self, name: str, value: float) -> str:
+        """The value of a drive that stands still."""
+        drive = next(drive for drive in self.mechanism.drives if drive.id == name)
+        return self.value(value, unit_of_value(self.mechanism, drive))
+
     def place(self, at: float) -> str:
         """A value of the drive."""
         value = self.value(at, self.turning.unit)
@@ -54,7 +63,7 @@ class _Words:
 
     def rows(self) -> Rows:
         turning = self.turning
-        held = ", ".join(f"{name} = {value:.9g}" for name, value in turning.held.items())
+        held = ", ".join(f"{name} = {self.held(name, value)}" for name, value in turning.held.items())
         rows = [(_("drive"), turning.drive + (_(" (held: {held})").format(held=held) if held else ""))]
         rows += [(_("turns fully"), self.verdict())]
         rows += [row for limit in turning.limits for row in self.limit(limit)]
@@ -131,9 +140,9 @@ class _Words:
     def turns(self, swing: Swing) -> str:
         if not swing.turns or self.turning.period is None:
             return _("runs on")
-        return ngettext("turns {n} time in a period", "turns {n} times in a period", abs(swing.turns)).format(
-            n=swing.turns
-        )
+        count = abs(swing.turns)
+        text = ngettext("turns {n} time in a period", "turns {n} times in a period", count).format(n=count)
+        return text + (_(", against the drive") if swing.turns < 0 else "")
 
     def extreme(self, extreme: Extreme, unit: str) -> str:
         text = _("{value} at {place}").format(
@@ -167,8 +176,9 @@ class _Words:
 
     def transmission(self, one: Transmission) -> Rows:
         label = _("transmission angle")
+        value = degrees(one.least if one.least > ROUNDING else 0.0)
         least = _("{group} ({kind}): least {value:.6g} deg at {place}").format(
-            group=one.group, kind=one.kind, value=degrees(one.least), place=self.place(one.least_at)
+            group=one.group, kind=one.kind, value=value, place=self.place(one.least_at)
         )
         extremes = [
             _("{value:.6g} deg at {place}").format(value=degrees(value), place=self.place(at))

@@ -129,9 +129,11 @@ def _default_bounds(one: Varying) -> tuple[float, float]:
 def _given_bounds(one: Varying, bounds: tuple[Value, Value]) -> tuple[float, float]:
     kind = {"rad": "angle", "m": "length", "1": "ratio"}[one.unit]
     try:
-        low, high = sorted(to_si(value, kind) for value in bounds)
+        low, high = (to_si(value, kind) for value in bounds)
     except InputError as error:
         raise InputError(one.path, error.what, error.repair) from None
+    if low > high:
+        raise InputError(one.path, _("its lower bound is above its upper one"), _("exchange them"))
     if not low <= one.before <= high:
         raise InputError(
             one.path,

@@ -203,7 +203,11 @@ def _of_aim(about: _About, group: Aim) -> Cause:
     to_pivot = subtract(about.numbers.local[group.link][group.pivot], through)
     foot = float(dot(direction, to_pivot))
     slide = f"s_{group.guide}"
-    condition = f"{slide} = {foot:.6g}" if abs(foot) > 1e-12 * float(about.numbers.scale) else f"{slide} = 0"
+    condition = (
+        f"{slide} = {about.length(foot)}"
+        if abs(foot) > 1e-12 * float(about.numbers.scale)
+        else f"{slide} = 0"
+    )
     offset = abs(float(direction[0] * to_pivot[1] - direction[1] * to_pivot[0]))
     if offset <= 1e-12 * float(about.numbers.scale):
         return Cause(_("{target} comes to the pivot {pivot} of {link}").format(**names), condition)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
-from math import tau
+from math import remainder, tau
 from typing import TypeAlias
 
 import numpy as np
@@ -96,6 +96,10 @@ class _Search:
         self.nodes = first + (np.arange(NODES) + OFF_GRID) * (length / NODES)
         self.length = length
         self.closed, self.cuts = self._followed()
+        self.limits: dict[tuple[int, int], list[float]] = {}
+        for event in self.cuts:
+            if event.kind == "limit":
+                self.limits.setdefault((event.lane, self._cells(event)[0]), []).append(event.at)
         self.parent: dict[tuple[int, int], tuple[int, int]] = {}
         self.runs = [
             _numbered(row, cut, tour.angular) for row, cut in zip(self.closed, self._cut(), strict=True)
@@ -142,11 +146,20 @@ class _Search:
                 continue
             partner = self._partner(event)
             for node in self._cells(event):
+                if self._hidden(event, node):
+                    continue
                 one, other = self._run(event.lane, node), self._run(partner, node)
                 if one is not None and other is not None:
                     joined |= event.kind == "change point" and self._root(one) != self._root(other)
                     self._join(one, other)
         return self._circuits(joined)
+
+    def _hidden(self, event: Event, node: int) -> bool:
+        """Whether another limit lies between a node and an event in its cell."""
+        cells = self._cells(event)
+        way = 1.0 if node == cells[0] else -1.0
+        others = self.limits.get((event.lane, cells[0]), ())
+        return any(way * remainder(event.at - at, self.length) > 0.0 for at in others)
 
     def _nearest(self) -> list[Event]:
         """Limits first, so that change points join only what limits do not."""
@@ -213,6 +226,8 @@ class _Search:
         low, high = self._edge(limits, first, -1), self._edge(limits, last, 0)
         if low is not None and high is not None and low > high:
             low -= tau  # it runs through the end of the turn
+        if low is not None and high is not None and self.tour.angular and self.tour.initial <= high - tau:
+            low, high = low - tau, high - tau  # the turn of the initial position, where it is on the branch
         return Branch(sides, low, high)
 
     def _edges(self, inside: npt.NDArray[np.intp]) -> tuple[int, int]:

@@ -17,6 +17,7 @@ from centrode.geometry.plane import cross, subtract
 from centrode.kinematics.ready import Ready
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
+from centrode.quantities import display_unit
 from centrode.structure.dimensions import Dimensions
 
 ROUNDING = 16 * 2.0**-52
@@ -108,7 +109,7 @@ def _hinged(
     short, long = reduced[shortest] + reduced[longest], reduced[order[1]] + reduced[order[2]]
     verdict = _compared(short, long)
     sign = "=" if verdict is None else "<" if verdict else ">"
-    inequality = f"{short:.6g} {sign} {long:.6g}: " + _(
+    inequality = f"{_shown(mechanism, numbers, short)} {sign} {_shown(mechanism, numbers, long)}: " + _(
         "shortest and longest ({one}, {other}) against the others"
     ).format(one=bodies[shortest], other=bodies[longest])
     kind = _kind(mechanism, bodies, shortest, verdict)
@@ -123,6 +124,12 @@ def reduced_arcs(arcs: Sequence[float]) -> tuple[float, ...]:
         if found[first] + found[second] <= pi:
             return tuple(found)
         found[first], found[second] = pi - found[first], pi - found[second]
+
+
+def _shown(mechanism: Mechanism, numbers: Dimensions, length: float) -> str:
+    """A length, on the sphere an arc, in the units of the reader."""
+    factor, unit = display_unit(numbers.space.unit, mechanism.display.length, mechanism.display.angle)
+    return f"{length * factor:.6g} {unit}"
 
 
 def _compared(short: float, long: float) -> bool | None:
@@ -193,7 +200,7 @@ def _sliding(
     verdict = _compared(short, long)
     shortest = crank if one <= other else coupler
     sign = "=" if verdict is None else "<" if verdict else ">"
-    inequality = f"{short:.6g} {sign} {long:.6g}: " + _(
+    inequality = f"{_shown(mechanism, numbers, short)} {sign} {_shown(mechanism, numbers, long)}: " + _(
         "shorter link {one} and offset against the longer one"
     ).format(one=shortest)
     bodies, lengths = (carrier, crank, coupler, f"{guide.id}"), (offset, one, other)
