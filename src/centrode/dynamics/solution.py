@@ -14,7 +14,7 @@ from centrode.dynamics.driving import Shape
 from centrode.dynamics.quadrature import Array
 from centrode.dynamics.reducing import reduction_of
 from centrode.dynamics.speeds import Speed, Tangents, tangents, with_fluctuation, with_inertia
-from centrode.errors import InputError, MotionError
+from centrode.errors import InputError, MotionError, NotComputedYet
 from centrode.kinematics.ready import Ready, ready
 from centrode.locale import _
 from centrode.model.machines import DRIVING_VARIABLES, Machine
@@ -124,7 +124,9 @@ def in_other_mean(found: Solution, kind: Mean) -> Solution:
 
 def _machine(mechanism: Mechanism) -> Machine:
     if mechanism.space == "sphere":
-        raise InputError("[machine]", _("steady motion is not computed on the sphere yet"))
+        raise NotComputedYet(
+            "space", _("steady motion on the sphere is not computed yet"), _("leave out [machine]")
+        )
     if mechanism.machine is None:
         raise InputError(
             "[machine]", _("it is missing"), _('give mean_speed = "65 rpm" and fluctuation = 0.05')

@@ -18,21 +18,10 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.structure.dimensions import SPACES
 from centrode.study.checking import Check, check_of
+from centrode.study.scalars import Scalar
 from centrode.study.wording import Words, extremes, unit_of_drive
 
 NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
-
-
-@dataclass(frozen=True)
-class Scalar:
-    """One number of a summary, in SI."""
-
-    value: float | int
-    unit: str
-
-    def as_dict(self) -> dict[str, float | int | str]:
-        """As `summary.json` holds it."""
-        return {"value": self.value, "unit": self.unit}
 
 
 @dataclass(frozen=True)
