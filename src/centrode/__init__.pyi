@@ -48,6 +48,9 @@ from .study.repairing import repair_text as repair_text
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
+# Forces
+from .dynamics.reduction import reduce as reduce
+
 # Equations in symbols
 from .equations.derivation import equations as equations
 from .present import equations_text as equations_text
