@@ -48,13 +48,13 @@ from .study.repairing import repair_text as repair_text
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
-# Dynamics of a machine
+# Forces
+from .dynamics.reduction import reduce as reduce
+
+# Steady motion of a machine
 from .dynamics.steady import steady_motion as steady_motion
 from .dynamics.flywheel import flywheel as flywheel
 from .dynamics.flywheel import Flywheel as Flywheel
-from .study.machines import flywheel_rows as flywheel_rows
-from .study.machines import flywheel_scalars as flywheel_scalars
-from .present import machine_figures as machine_figures
 
 # Equations in symbols
 from .equations.derivation import equations as equations

@@ -130,6 +130,7 @@ PROPERTIES: dict[type[Part], Schema] = {
     Assembly: {"sides": _table(_SIDES, limits.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
     Load: {
         "kind": {"enum": list(KINDS)},
+        "name": _NAME,
         "point": _NAME,
         "link": _NAME,
         "guide": _NAME,
@@ -137,6 +138,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "vector": _list(_AMOUNT, 2, 2),
         "axes": _NAME,
         "value": _AMOUNT,
+        "table": {"anyOf": [_TEXT, _list(_list(_AMOUNT, 2, 3), 2, limits.TABLE_ROWS)]},
         "stiffness": _quantity("stiffness"),
         "damping": _quantity("damping"),
         "free_length": _quantity("length"),
