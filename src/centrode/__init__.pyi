@@ -55,6 +55,10 @@ from .dynamics.reduction import reduce as reduce
 from .dynamics.steady import steady_motion as steady_motion
 from .dynamics.flywheel import flywheel as flywheel
 from .dynamics.flywheel import Flywheel as Flywheel
+from .study.machines import machine_results as machine_results
+from .study.machines import flywheel_rows as flywheel_rows
+from .study.machines import flywheel_scalars as flywheel_scalars
+from .present import machine_figures as machine_figures
 
 # Equations in symbols
 from .equations.derivation import equations as equations

@@ -18,6 +18,7 @@ import centrode as ct
 from centrode.cli.check import check
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
+from centrode.cli.flywheel import flywheel
 from centrode.cli.limits import limits
 from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
@@ -35,6 +36,7 @@ COMMANDS: tuple[click.Command, ...] = (
     rotatability,
     limits,
     region,
+    flywheel,
     sweep,
     examples,
     schema,

@@ -194,7 +194,7 @@ def _places(prepared: Ready, turned: Array) -> Array:
     missing = ~np.isin(solved.status[0], (Status.OK, Status.SINGULAR))
     if missing.any():
         raise _locks(prepared, turned[missing])
-    return solved.points[0, 0].reshape(len(turned), -1)
+    return np.asarray(solved.points[0, 0].reshape(len(turned), -1))
 
 
 def _locks(prepared: Ready, turned: Array) -> MotionError:

@@ -62,13 +62,14 @@ class Series:
     def at(self, places: Array) -> Array:
         """Values at places within the range; at a jump the one behind it."""
         panel, inner = self._inside(places)
-        return np.einsum("...k,...k->...", legendre.legvander(inner, NODES - 1), self.coefficients[panel])
+        found = np.einsum("...k,...k->...", legendre.legvander(inner, NODES - 1), self.coefficients[panel])
+        return np.asarray(found)
 
     def integral(self, places: Array) -> Array:
         """Integrals from the first edge to places within the range."""
         panel, inner = self._inside(places)
         inside = np.einsum("...k,...k->...", legendre.legvander(inner, NODES), self._antiderivative[panel])
-        return self._before[panel] + inside
+        return np.asarray(self._before[panel] + inside)
 
     @property
     def total(self) -> float:
@@ -107,7 +108,7 @@ class Series:
 
 def tails(coefficients: Array) -> Array:
     """The last terms of series (..., NODES): what they may leave out."""
-    return np.max(np.abs(coefficients[..., -2:]), axis=-1)
+    return np.asarray(np.max(np.abs(coefficients[..., -2:]), axis=-1))
 
 
 def resolved(functions: Function, edges: Array, tolerances: Sequence[float]) -> tuple[Panels, Array]:

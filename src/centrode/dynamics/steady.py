@@ -122,10 +122,10 @@ def _curves(found: Solution, turned: Array) -> dict[str, Array]:
     }
 
 
-def _facts(found: Solution, method: Method) -> dict[str, float | str]:
+def _facts(found: Solution, method: Method) -> dict[str, float | str | list[float]]:
     """Attributes of the dataset: what holds for the whole cycle, in SI."""
     lines = found.tangents
-    touching = (
+    touching: dict[str, list[float]] = (
         {}
         if lines is None
         else {

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from centrode.present.equation_latex import equations_latex, equations_markdown
     from centrode.present.equation_text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
+    from centrode.present.machine_figures import machine_figures
     from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
@@ -31,6 +32,7 @@ __all__ = [
     "equations_markdown",
     "equations_rows",
     "equations_text",
+    "machine_figures",
     "motion_figures",
     "motion_table",
     "region_figure",
@@ -51,6 +53,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "equation_latex": ["equations_latex", "equations_markdown"],
         "equation_text": ["equations_rows", "equations_text"],
         "figures": ["motion_figures"],
+        "machine_figures": ["machine_figures"],
         "reading": ["scene_of"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
