@@ -8,7 +8,9 @@ import numpy as np
 
 from centrode.dynamics.quadrature import Array, Function, Panels
 
-HALVINGS = 60
+PARTS = 32
+ROUNDS = 11
+"""Into so many parts a stretch about an extreme is cut, so often: down to rounding."""
 NEAR = 0.01
 """Share of the range within which a second extreme at the nodes may be the greater one between them."""
 
@@ -38,8 +40,8 @@ def extremes(panels: Panels, value: Function, slope: Function) -> Extremes:
 
     Notes
     -----
-    Extremes at the nodes are refined by halving on the sign of the slope, so also where it jumps: places are
-    exact to rounding over curvature, values to rounding. Two extremes between neighbouring nodes are missed.
+    Extremes at the nodes are narrowed down by the sign of the slope, so also where it jumps: places are exact to
+    rounding over curvature, values to rounding. Two extremes between neighbouring nodes are missed.
     """
     places = np.unique(np.concatenate([panels.nodes, panels.edges]))
     values = value(places)
@@ -57,10 +59,13 @@ def _greatest(
     tops = np.flatnonzero((values >= before) & (values >= after) & (values >= floor))
     tops = tops[:1000]  # a constant has nothing but tops
     low, high = places[np.maximum(tops - 1, 0)], places[np.minimum(tops + 1, len(places) - 1)]
-    for _halving in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        rises = sign * slope(middle) > 0.0
-        low, high = np.where(rises, middle, low), np.where(rises, high, middle)
+    shares, rows = np.linspace(0.0, 1.0, PARTS + 1), np.arange(len(tops))
+    for _round in range(ROUNDS):
+        cuts = low[:, None] + shares * (high - low)[:, None]
+        cuts[:, -1] = high
+        rises = sign * slope(cuts[:, 1:-1].reshape(-1)).reshape(len(tops), -1) > 0.0
+        first = np.cumprod(rises, axis=1).sum(axis=1)
+        low, high = cuts[rows, first], cuts[rows, first + 1]
     found = np.concatenate([0.5 * (low + high), places[tops]])
     heights = value(found)
     best = int(np.argmax(sign * heights))
