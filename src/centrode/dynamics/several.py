@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import TypeAlias
 
@@ -88,7 +88,11 @@ class _Directions:
     def of(cls, found: Partials, solved: Solved) -> _Directions:
         """States of all directions of a motion."""
         moving = Moving(solved.span.time, solved.span.parameter, solved.span.rate)
-        along = {pair: State.of(one, moving) for pair, one in found.along.items()}
+        along = {}
+        for pair, one in found.along.items():
+            # directions carry derivatives of angles only, the angles themselves are those of the motion
+            angles = np.concatenate([solved.angles[:1], one.angles[1:]])
+            along[pair] = State.of(replace(one, angles=angles), moving)
         return cls(along, tuple(found.units.values()), solved.status.shape)
 
 
