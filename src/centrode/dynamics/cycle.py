@@ -92,12 +92,11 @@ def cycle_of(prepared: Ready, reduction: Reduction, shape: Shape | None, speed: 
     Raises
     ------
     InputError
-        No drive that turns, or several of them; loads that do not repeat.
+        Loads or places that do not repeat.
     MotionError
         The mechanism does not turn fully.
     """
     path = prepared.kinematics.path
-    _check_drive(prepared)
     first, sense = path.initial, path.forward
     turns = _turns(prepared, reduction, speed)
 
@@ -113,7 +112,8 @@ def cycle_of(prepared: Ready, reduction: Reduction, shape: Shape | None, speed: 
     return Cycle(reduction, first, sense, turns, inertia, slope, moment)
 
 
-def _check_drive(prepared: Ready) -> None:
+def check_drive(prepared: Ready) -> None:
+    """Refuse, with an InputError, what has no drive that turns."""
     drives = prepared.mechanism.drives
     if len(drives) > 1:
         raise InputError(

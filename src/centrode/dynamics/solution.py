@@ -9,7 +9,7 @@ import numpy as np
 from centrode.algebra.text import compile_formula
 from centrode.dynamics.balance import MEANS, Balance, Mean, balance_of
 from centrode.dynamics.by_source import SpeedBySource, needed_by_source
-from centrode.dynamics.cycle import Cycle, Reduction, cycle_of
+from centrode.dynamics.cycle import Cycle, Reduction, check_drive, cycle_of
 from centrode.dynamics.driving import Shape
 from centrode.dynamics.quadrature import Array
 from centrode.dynamics.reducing import reduction_of
@@ -83,6 +83,7 @@ def solution_of(mechanism: Mechanism, kind: Mean = "middle", reduction: Reductio
             _("use one of {known}").format(known=", ".join(MEANS)),
         )
     prepared = ready(mechanism)
+    check_drive(prepared)
     shape = (
         None if machine.driving is None else Shape(compile_formula(machine.driving, DRIVING_VARIABLES, ""))
     )

@@ -113,6 +113,8 @@ def mean_text(kind: Mean) -> str:
 
 def _energy_rows(found: Flywheel) -> Rows:
     turns = ngettext("{n} turn of the drive", "{n} turns of the drive", found.turns).format(n=found.turns)
+    # weights take as much as they give: what is left is rounding
+    idle = abs(found.work_of_loads) <= found.error
     between = _(
         "{greatest:.6g} J at {greatest_at:.5g} deg, {least:.6g} J at {least_at:.5g} deg, range {range:.6g} J"
     )
@@ -124,9 +126,11 @@ def _energy_rows(found: Flywheel) -> Rows:
         ),
         (
             _("work of the loads"),
-            _("{work:.6g} J a cycle, to {error:.1e} J").format(work=found.work_of_loads, error=found.error),
+            _("{work:.6g} J a cycle, to {error:.1e} J").format(
+                work=0.0 if idle else found.work_of_loads, error=found.error
+            ),
         ),
-        (_("mean driving moment"), f"{found.driving_moment:.6g} N m"),
+        (_("mean driving moment"), f"{0.0 if idle else found.driving_moment:.6g} N m"),
         (
             _("change of energy"),
             between.format(
