@@ -213,7 +213,7 @@ def test_machines_of_nothing_and_of_too_much(centrode: Centrode, folder: Path) -
             ct.example("five-bar-two-drives")
         )
         + "[machine]\nmean_speed = 1\nfluctuation = 0.1\n",
-        "steady motion needs a drive that turns": ct.mechanism_text(ct.example("scott-russell"))
+        "steady motion needs a drive that turns": ct.mechanism_text(ct.example("elliptic-trammel"))
         + "[machine]\nmean_speed = 1\nfluctuation = 0.1\n",
         "steady motion on the sphere is not computed yet": ct.mechanism_text(ct.example("spherical-four-bar"))
         + "[machine]\nmean_speed = 1\nfluctuation = 0.1\n",
