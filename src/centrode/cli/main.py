@@ -19,6 +19,7 @@ from centrode.cli.check import check
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.limits import limits
+from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
@@ -33,6 +34,7 @@ COMMANDS: tuple[click.Command, ...] = (
     check,
     equations,
     rotatability,
+    reduce,
     limits,
     region,
     sweep,

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from centrode.present.equation_text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
     from centrode.present.reading import scene_of
+    from centrode.present.reduction_figures import reduction_figures
+    from centrode.present.reduction_tables import write_reduction_csv
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
@@ -33,6 +35,7 @@ __all__ = [
     "equations_text",
     "motion_figures",
     "motion_table",
+    "reduction_figures",
     "region_figure",
     "save_figures",
     "scene_of",
@@ -40,6 +43,7 @@ __all__ = [
     "write_coefficients_csv",
     "write_motion_csv",
     "write_motion_netcdf",
+    "write_reduction_csv",
     "write_region_csv",
 ]
 
@@ -52,6 +56,8 @@ _attached, __dir__, _names = lazy_loader.attach(
         "equation_text": ["equations_rows", "equations_text"],
         "figures": ["motion_figures"],
         "reading": ["scene_of"],
+        "reduction_figures": ["reduction_figures"],
+        "reduction_tables": ["write_reduction_csv"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],

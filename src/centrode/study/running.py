@@ -196,5 +196,7 @@ def _notes(mechanism: Mechanism, solved: Solved, words: Words) -> list[str]:
         )
     notes += words.period()
     if mechanism.loads or mechanism.machine is not None:
-        notes.append(_("loads and machine are read; forces are not computed yet"))
+        notes.append(
+            _("the motion is given, loads do not change it: centrode reduce reduces them to the drive")
+        )
     return notes
