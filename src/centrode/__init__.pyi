@@ -50,6 +50,8 @@ from .study.summary import motion_rows as motion_rows
 
 # Forces
 from .dynamics.reduction import reduce as reduce
+from .study.reducing import reduction_rows as reduction_rows
+from .study.reducing import reduction_parts as reduction_parts
 
 # Steady motion of a machine
 from .dynamics.steady import steady_motion as steady_motion
@@ -79,8 +81,10 @@ from .present import sweep_csv as sweep_csv
 from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
 from .present import write_coefficients_csv as write_coefficients_csv
+from .present import write_reduction_csv as write_reduction_csv
 from .present import write_region_csv as write_region_csv
 from .present import motion_figures as motion_figures
+from .present import reduction_figures as reduction_figures
 from .present import region_figure as region_figure
 from .present import save_figures as save_figures
 

@@ -67,7 +67,7 @@ def strongest(data: Any) -> float:
     return 50.0 * (scale_of(data) + float(abs(data.angle).max())) + 10.0 * fast**2
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(descriptions(), SEEDS)
 def test_random_mechanisms(parts: dict[str, Any], seed: int) -> None:
     assume(agree(parts, seed))

@@ -20,6 +20,7 @@ from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.flywheel import flywheel
 from centrode.cli.limits import limits
+from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
@@ -34,6 +35,7 @@ COMMANDS: tuple[click.Command, ...] = (
     check,
     equations,
     rotatability,
+    reduce,
     limits,
     region,
     flywheel,

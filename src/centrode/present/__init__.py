@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from centrode.present.figures import motion_figures
     from centrode.present.machine_figures import machine_figures
     from centrode.present.reading import scene_of
+    from centrode.present.reduction_figures import reduction_figures
+    from centrode.present.reduction_tables import write_reduction_csv
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
@@ -35,6 +37,7 @@ __all__ = [
     "machine_figures",
     "motion_figures",
     "motion_table",
+    "reduction_figures",
     "region_figure",
     "save_figures",
     "scene_of",
@@ -42,6 +45,7 @@ __all__ = [
     "write_coefficients_csv",
     "write_motion_csv",
     "write_motion_netcdf",
+    "write_reduction_csv",
     "write_region_csv",
 ]
 
@@ -55,6 +59,8 @@ _attached, __dir__, _names = lazy_loader.attach(
         "figures": ["motion_figures"],
         "machine_figures": ["machine_figures"],
         "reading": ["scene_of"],
+        "reduction_figures": ["reduction_figures"],
+        "reduction_tables": ["write_reduction_csv"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],

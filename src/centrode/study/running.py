@@ -202,6 +202,6 @@ def _notes(mechanism: Mechanism, solved: Solved, words: Words) -> list[str]:
     notes += words.period()
     if mechanism.loads and mechanism.machine is None:
         notes.append(
-            _("loads are read; centrode reduce computes them, [machine] the motion they bring about")
+            _("the motion is given, loads do not change it: centrode reduce reduces them to the drive")
         )
     return notes
