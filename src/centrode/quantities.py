@@ -183,9 +183,9 @@ _ALL = (
     Quantity("energy_change", "ΔT_I", "J", mark("change of energy of what turns with the drive")),
     Quantity("drive_speed", "ω", "rad/s", mark("speed of the drive")),
     Quantity("drive_acceleration", "ε", "rad/s^2", mark("angular acceleration of the drive")),
-    Quantity("drive_speed_by_source", "ω_1", "rad/s", mark("speed of the drive to first order")),
+    Quantity("drive_speed_first_order", "ω_1", "rad/s", mark("speed of the drive to first order")),
     Quantity(
-        "drive_acceleration_by_source",
+        "drive_acceleration_first_order",
         "ε_1",
         "rad/s^2",
         mark("angular acceleration of the drive to first order"),

@@ -49,7 +49,7 @@ def test_a_flywheel_is_printed(centrode: Centrode, compressor: Path) -> None:
     assert said["inertia needed"].startswith(
         f"{found.inertia:.6g} kg m² exactly ({found.inertia_in_time:.6g}"
     )
-    assert f"{found.inertia_by_source:.6g} kg m² by the first-order formula (+" in done.out
+    assert f"{found.inertia_first_order:.6g} kg m² by the first-order formula (+" in done.out
     assert said["speed of the drive"] == "19.5 to 20.5 rad/s, fluctuation 0.05"
     assert "really" in done.out
     assert [path.name for path in compressor.iterdir()] == ["compressor.toml"]
@@ -64,12 +64,12 @@ def test_the_mean_in_time(centrode: Centrode, compressor: Path) -> None:
 
 
 def test_files_of_a_flywheel(centrode: Centrode, compressor: Path) -> None:
-    done = centrode("flywheel", "compressor.toml", "--out", "f", "--samples", "9", "--method", "source")
+    done = centrode("flywheel", "compressor.toml", "--out", "f", "--samples", "9", "--method", "first-order")
     assert (done.code, done.err) == (0, "")
     names = sorted(path.name for path in (compressor / "f").iterdir())
     assert names == sorted([*PICTURES, "machine.csv", "machine.nc", "summary.json"])
     mechanism = ct.read_mechanism("compressor.toml")
-    data = ct.steady_motion(mechanism, 9, method="source")
+    data = ct.steady_motion(mechanism, 9, method="first-order")
     table = rows(compressor / "f" / "machine.csv")
     for k, row in enumerate(table):
         assert float(row["work_of_loads [J]"]) == float(data["work_of_loads"][k])
@@ -77,7 +77,7 @@ def test_files_of_a_flywheel(centrode: Centrode, compressor: Path) -> None:
         assert float(row["velocity_B_x [m/s]"]) == float(data["velocity"].sel(point="B", axis="x")[k])
     with xr.open_dataset(compressor / "f" / "machine.nc", engine="scipy") as written:
         np.testing.assert_array_equal(written["drive_acceleration"], data["drive_acceleration"])
-        assert written.attrs["speed_by"] == "source"
+        assert written.attrs["speed_by"] == "first-order"
     summary = json.loads((compressor / "f" / "summary.json").read_text())
     found = ct.flywheel(mechanism)
     assert summary["machine_inertia"] == {"value": found.inertia, "unit": "kg m^2"}
@@ -97,7 +97,7 @@ def test_a_run_computes_the_machine(centrode: Centrode, folder: Path) -> None:
     ]  # fmt: skip
     (instant,) = rows(folder / "r" / "machine-instants.csv")
     assert float(instant["turned [deg]"]) == pytest.approx(99.1, abs=1e-9)
-    assert float(instant["drive_acceleration_by_source [deg/s^2]"]) == pytest.approx(
+    assert float(instant["drive_acceleration_first_order [deg/s^2]"]) == pytest.approx(
         math.degrees(-2.768), abs=0.03
     )
     assert len(rows(folder / "r" / "machine.csv")) == 361
@@ -266,7 +266,9 @@ def test_wrong_questions_from_python() -> None:
     mechanism = ct.parse_mechanism(GIVEN)
     with pytest.raises(ct.InputError, match='mean: "best" is not a mean speed; use one of middle, time'):
         ct.flywheel(mechanism, "best")  # type: ignore[arg-type]
-    with pytest.raises(ct.InputError, match="is not a way to compute the speed; use one of exact, source"):
+    with pytest.raises(
+        ct.InputError, match="is not a way to compute the speed; use one of exact, first-order"
+    ):
         ct.steady_motion(mechanism, 3, method="best")  # type: ignore[arg-type]
     with pytest.raises(ct.InputError, match="at: it needs finite values of the drive"):
         ct.steady_motion(mechanism, at=[math.nan])

@@ -49,7 +49,7 @@ def printed() -> ct.Flywheel:
 
 @cache
 def moving() -> xr.Dataset:
-    return ct.steady_motion(ct.example("six-bar-press-printed"), at=[AT], method="source")
+    return ct.steady_motion(ct.example("six-bar-press-printed"), at=[AT], method="first-order")
 
 
 def value(quantity: str, symbol: str) -> float:
@@ -68,8 +68,8 @@ def value(quantity: str, symbol: str) -> float:
     made = found.source_rim if quantity.startswith("rim") else found.source_disc
     if quantity.partition(" ")[0] in ("rim", "disc"):
         return {"D2": made.outer, "D": made.outer, "D1": made.inner, "b": made.width, "m": made.mass}[symbol]
-    assert found.inertia_by_source is not None
-    assert found.added_by_source is not None
+    assert found.inertia_first_order is not None
+    assert found.added_first_order is not None
     return {
         "J2": float(data["inertia_of_links"][0]),
         "M_r": float(data["moment_of_loads"][0]),
@@ -79,11 +79,11 @@ def value(quantity: str, symbol: str) -> float:
         "T1_max": found.energy_greatest,
         "T1_min": found.energy_least,
         "dT1": found.energy_greatest - found.energy_least,
-        "J1": found.inertia_by_source,
-        "d_omega": float(data["drive_speed_by_source"][0]) - found.mean_speed,
-        "omega": float(data["drive_speed_by_source"][0]),
-        "epsilon": float(data["drive_acceleration_by_source"][0]),
-        "J_fly": found.added_by_source,
+        "J1": found.inertia_first_order,
+        "d_omega": float(data["drive_speed_first_order"][0]) - found.mean_speed,
+        "omega": float(data["drive_speed_first_order"][0]),
+        "epsilon": float(data["drive_acceleration_first_order"][0]),
+        "J_fly": found.added_first_order,
     }[symbol]
 
 
@@ -103,11 +103,11 @@ def test_the_right_numbers() -> None:
     """With m3 and the slider: J_II = 15.457, J_I = 1462.0, epsilon = -2.768, T1_max by exact integration."""
     assert abs(printed().energy_greatest - 599.813) <= 0.0005
     right = ct.example("six-bar-press")
-    found, data = ct.flywheel(right), ct.steady_motion(right, at=[AT], method="source")
+    found, data = ct.flywheel(right), ct.steady_motion(right, at=[AT], method="first-order")
     assert abs(float(data["inertia_of_links"][0]) - 15.457) <= 0.0005
-    assert found.inertia_by_source is not None
-    assert abs(found.inertia_by_source - 1462.0) <= 0.05
-    assert abs(float(data["drive_acceleration_by_source"][0]) + 2.768) <= 0.0005
+    assert found.inertia_first_order is not None
+    assert abs(found.inertia_first_order - 1462.0) <= 0.05
+    assert abs(float(data["drive_acceleration_first_order"][0]) + 2.768) <= 0.0005
     assert found.rim is not None
     assert abs(found.rim.outer - 1.744) <= 0.001
     assert abs(found.rim.mass - 2340) <= 3
@@ -117,6 +117,6 @@ def test_the_exact_speed_differs_by_the_second_order() -> None:
     """What the first-order formula leaves out: squares of the fluctuation, and the energy of the links."""
     mechanism = ct.example("six-bar-press")
     data = ct.steady_motion(mechanism, 181)
-    apart = np.abs(data["drive_speed"] - data["drive_speed_by_source"]).max()
+    apart = np.abs(data["drive_speed"] - data["drive_speed_first_order"]).max()
     links = float(data["inertia_of_links"].max()) / data.attrs["inertia"]
     assert 0.0 < apart <= 6.807 * (0.11**2 / 2 + 0.11 * links)

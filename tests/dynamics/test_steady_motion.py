@@ -38,7 +38,7 @@ def test_a_crank_in_closed_form(speed: float, fluctuation: float) -> None:
     assert found.energy_greatest - found.energy_least == pytest.approx(10.0, rel=64 * EPS * 20)
     needed = 10.0 / (100.0 * fluctuation)
     # the energy of the links counts as constant in the source's way: their inertia is not taken off
-    assert found.inertia_by_source == pytest.approx(needed, rel=1e-12)
+    assert found.inertia_first_order == pytest.approx(needed, rel=1e-12)
     assert found.inertia == pytest.approx(needed - 2.0, rel=1e-11)
     assert found.inertia_by_tangents == pytest.approx(needed - 2.0, rel=1e-11)
     assert (found.added == 0.0) == (fluctuation > 0.05)
@@ -194,9 +194,9 @@ def test_first_order_misses_by_the_first_order() -> None:
     for fluctuation in (0.2, 0.1, 0.05, 0.025):
         found = ct.flywheel(engine(f"fluctuation = {fluctuation}"))
         assert found.inertia is not None
-        assert found.inertia_by_source is not None
+        assert found.inertia_first_order is not None
         assert found.inertia_by_tangents == pytest.approx(found.inertia, rel=1e-12)
-        apart.append(abs(found.inertia_by_source - found.inertia) * fluctuation)  # of the energies
+        apart.append(abs(found.inertia_first_order - found.inertia) * fluctuation)  # of the energies
     ratios = [one / finer for one, finer in pairwise(apart)]
     assert all(1.5 < ratio < 2.7 for ratio in ratios), ratios
 
@@ -240,7 +240,7 @@ def test_shafts_are_referred_through_their_ratios() -> None:
 
 def test_no_flywheel_where_the_shafts_are_enough() -> None:
     found = ct.flywheel(engine("fluctuation = 0.05\n[[machine.shafts]]\ninertia = 1000"))
-    assert found.added == found.added_by_source == 0.0
+    assert found.added == found.added_first_order == 0.0
     assert found.rim is found.disc is found.source_rim is None
     assert found.obtained < 0.05
     assert 0.5 * (found.least_speed + found.greatest_speed) == pytest.approx(20.0, rel=1e-13)
@@ -289,9 +289,9 @@ def test_samples_at_given_places() -> None:
     np.testing.assert_allclose(
         at.velocity, even.velocity[:4], rtol=0.0, atol=1e-12 * float(np.abs(even.velocity).max())
     )
-    source = ct.steady_motion(mechanism, 5, method="source")
-    np.testing.assert_array_equal(source.drive_speed_by_source, even.drive_speed_by_source)
+    source = ct.steady_motion(mechanism, 5, method="first-order")
+    np.testing.assert_array_equal(source.drive_speed_first_order, even.drive_speed_first_order)
     np.testing.assert_allclose(
-        source.angular_velocity.sel(link="OA"), source.drive_speed_by_source, rtol=8 * EPS
+        source.angular_velocity.sel(link="OA"), source.drive_speed_first_order, rtol=8 * EPS
     )
     assert ct.parse_mechanism(even.attrs["mechanism"]) == mechanism

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--method",
-    type=click.Choice(["exact", "source"]),
+    type=click.Choice(["exact", "first-order"]),
     default="exact",
     help=mark("Real velocities by the energy equation (the rule), or by the first-order formula."),
 )

@@ -43,7 +43,7 @@ class Flywheel:
         Bound of the error of the works.
     energy_greatest, energy_least : float [J]
         Of the change of energy of group I, at the angles `greatest_at` and `least_at` [rad].
-    inertia_by_source, inertia_by_tangents, inertia : float [kg m^2]
+    inertia_first_order, inertia_by_tangents, inertia : float [kg m^2]
         J_I that is needed: to first order, by Wittenbauer's diagram, exactly for `mean`.
     inertia_in_time : float [kg m^2]
         Exactly where the mean speed is the one in time.
@@ -51,8 +51,8 @@ class Flywheel:
         Of the shafts, reduced to the drive.
     added : float [kg m^2]
         Of the flywheel on its own shaft, exactly; 0 where none is needed.
-    added_by_source : float [kg m^2]
-        The same by `inertia_by_source`.
+    added_first_order : float [kg m^2]
+        The same by `inertia_first_order`.
     least_speed, greatest_speed, time_of_cycle : float [rad/s], [rad/s], [s]
         With the flywheel, exactly.
     obtained : float
@@ -61,7 +61,7 @@ class Flywheel:
     rim, disc : Wheel or None
         Of `added`; None where no flywheel is needed.
     source_rim, source_disc : Wheel or None
-        Of `added_by_source` by the coursework's coefficients, where material and proportions are its own; their
+        Of `added_first_order` by the coursework's coefficients, where material and proportions are its own; their
         `inertia` is what these sizes really have.
     """
 
@@ -81,12 +81,12 @@ class Flywheel:
     greatest_speed: float
     time_of_cycle: float
     obtained: float
-    inertia_by_source: float | None = None
+    inertia_first_order: float | None = None
     inertia_by_tangents: float | None = None
     inertia: float | None = None
     inertia_in_time: float | None = None
     added: float | None = None
-    added_by_source: float | None = None
+    added_first_order: float | None = None
     tangents: Tangents | None = None
     rim: Wheel | None = None
     disc: Wheel | None = None
@@ -155,20 +155,20 @@ def flywheel_of(found: Solution) -> Flywheel:
     by_source = needed_by_source(energies, machine.mean_speed, machine.fluctuation)
     in_time = found if found.kind == "time" else in_other_mean(found, "time")
     shape = machine.flywheel
-    added, added_by_source = (
+    added, added_first_order = (
         max(0.0, (inertia - found.present) / shape.ratio**2) for inertia in (found.needed, by_source)
     )
     speed = abs(shape.ratio) * ends.greatest
     rim, disc = (_sized(added, shape, inner, speed) for inner in (shape.inner, 0.0))
-    source_rim, source_disc = (_by_source(added_by_source, shape, speed, rim=rim) for rim in (True, False))
+    source_rim, source_disc = (_by_source(added_first_order, shape, speed, rim=rim) for rim in (True, False))
     return replace(
         common,
-        inertia_by_source=by_source,
+        inertia_first_order=by_source,
         inertia_by_tangents=found.tangents.inertia,
         inertia=found.needed,
         inertia_in_time=in_time.needed,
         added=added,
-        added_by_source=added_by_source,
+        added_first_order=added_first_order,
         tangents=found.tangents,
         rim=rim,
         disc=disc,

@@ -20,7 +20,7 @@ from centrode.locale import _
 from centrode.model import limits
 from centrode.model.mechanism import Mechanism
 
-Method: TypeAlias = Literal["exact", "source"]
+Method: TypeAlias = Literal["exact", "first-order"]
 METHODS = get_args(Method)
 
 
@@ -42,7 +42,7 @@ def steady_motion(
         Exactly these places instead; whole cycles are taken out of them.
     mean : "middle" or "time"
         What the mean speed is: half of greatest plus least, or turns over time.
-    method : "exact" or "source"
+    method : "exact" or "first-order"
         The speed by the energy equation, or by the coursework's first-order formula.
 
     Returns
@@ -117,8 +117,8 @@ def _curves(found: Solution, turned: Array) -> dict[str, Array]:
         "energy_change": found.balance.energy_change(turned, square),
         "drive_speed": found.speed.at(turned),
         "drive_acceleration": found.speed.acceleration(turned),
-        "drive_speed_by_source": found.by_source.at(turned),
-        "drive_acceleration_by_source": found.by_source.acceleration(turned),
+        "drive_speed_first_order": found.by_source.at(turned),
+        "drive_acceleration_first_order": found.by_source.acceleration(turned),
     }
 
 
@@ -140,6 +140,6 @@ def _facts(found: Solution, method: Method) -> dict[str, float | str | list[floa
         "mean_speed": found.machine.mean_speed,
         "turns_of_cycle": found.cycle.period / tau,
         "inertia": found.speed.inertia,
-        "inertia_by_source": found.by_source.inertia,
+        "inertia_first_order": found.by_source.inertia,
         **touching,
     }

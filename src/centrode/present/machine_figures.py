@@ -93,8 +93,8 @@ def _sheets(motion: Motion) -> dict[str, tuple[str, Rows]]:
         "drive-speed": (
             _("Speed and acceleration of the drive"),
             [
-                [_panel(motion, ("drive_speed", "drive_speed_by_source"), "ω")],
-                [_panel(motion, ("drive_acceleration", "drive_acceleration_by_source"), "ε")],
+                [_panel(motion, ("drive_speed", "drive_speed_first_order"), "ω")],
+                [_panel(motion, ("drive_acceleration", "drive_acceleration_first_order"), "ε")],
             ],
         ),
         "real-angular-velocities": (
@@ -115,7 +115,7 @@ def _panel(motion: Motion, variables: Sequence[str], symbol: str) -> Panel:
     factor, unit = shown_as(QUANTITIES[variables[0]].unit, motion.mechanism.display)
     curves = {QUANTITIES[name].title: factor * motion.dataset[name].to_numpy() for name in variables}
     scale = max(float(np.max(np.abs(curve), initial=0.0)) for curve in curves.values())
-    first_order = {QUANTITIES[name].title for name in variables if name.endswith("_by_source")}
+    first_order = {QUANTITIES[name].title for name in variables if name.endswith("_first_order")}
     drawn = {
         name: Pen(pen.colour, DASHES[1]) if name in first_order else pen for name, pen in pens(curves).items()
     }

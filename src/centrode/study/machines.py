@@ -37,12 +37,12 @@ UNITS = {
     "greatest_speed": "rad/s",
     "time_of_cycle": "s",
     "obtained": "1",
-    "inertia_by_source": "kg m^2",
+    "inertia_first_order": "kg m^2",
     "inertia_by_tangents": "kg m^2",
     "inertia": "kg m^2",
     "inertia_in_time": "kg m^2",
     "added": "kg m^2",
-    "added_by_source": "kg m^2",
+    "added_first_order": "kg m^2",
 }
 WHEEL_UNITS = {
     "outer": "m",
@@ -146,14 +146,14 @@ def _energy_rows(found: Flywheel) -> Rows:
 
 def _inertia_rows(found: Flywheel) -> Rows:
     present = (_("inertia present"), f"{found.present:.6g} kg m²")
-    if found.inertia is None or found.inertia_by_source is None:
+    if found.inertia is None or found.inertia_first_order is None:
         return [present]
     exact = _("{middle:.6g} kg m² exactly ({time:.6g} where the mean speed is turns over time)")
     if found.mean == "time":
         exact = _("{time:.6g} kg m² exactly")
     apart = _("{source:.6g} kg m² by the first-order formula ({difference:+.2%})").format(
-        source=found.inertia_by_source,
-        difference=(found.inertia_by_source - found.inertia) / abs(found.inertia) if found.inertia else 0.0,
+        source=found.inertia_first_order,
+        difference=(found.inertia_first_order - found.inertia) / abs(found.inertia) if found.inertia else 0.0,
     )
     added = f"{found.added:.6g} kg m²" if found.added else _("none is needed")
     return [
@@ -198,8 +198,8 @@ def _size_rows(mechanism: Mechanism, found: Flywheel) -> Rows:
             speed = _("{speed:.4g} m/s at its edge").format(speed=exact.rim_speed)
             bounded = " " + _("(admissible: the width follows)") if exact.bounded else ""
             rows.append((label, f"{size(exact)}, {speed}{bounded}"))
-        if source is not None and found.added_by_source:
-            error = source.inertia / found.added_by_source - 1
+        if source is not None and found.added_first_order:
+            error = source.inertia / found.added_first_order - 1
             said = _(
                 "by the coefficient {coefficient}: {outer:.4g} {unit}, {mass:.5g} kg,"
                 " really {inertia:.6g} kg m² ({error:+.1%})"
