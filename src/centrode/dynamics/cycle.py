@@ -107,7 +107,12 @@ def cycle_of(prepared: Ready, reduction: Reduction, shape: Shape | None, speed: 
         drive = np.ones(len(turned)) if shape is None else shape.at(first + sense * turned, speed)
         return np.concatenate([found, drive[None]])
 
-    panels, values = resolved(functions, _edges(reduction, first, sense, turns), TOLERANCES)
+    def scales(peaks: Array) -> Array:
+        """Moments and slopes count beside what the links' inertia makes of the speed."""
+        inertia, moment, slope, drive = peaks
+        return np.array([inertia, max(moment, inertia * speed**2), max(slope, inertia), drive])
+
+    panels, values = resolved(functions, _edges(reduction, first, sense, turns), TOLERANCES, scales)
     inertia, moment, slope = (panels.series(row) for row in values[:3])
     return Cycle(reduction, first, sense, turns, inertia, slope, moment)
 

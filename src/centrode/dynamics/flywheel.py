@@ -15,7 +15,7 @@ from centrode.dynamics.sizes import (
     wheel,
 )
 from centrode.dynamics.solution import Solution, in_other_mean, solution_of
-from centrode.dynamics.speeds import Tangents
+from centrode.dynamics.speeds import Tangents, with_inertia
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.machines import FlywheelShape
@@ -56,7 +56,7 @@ class Flywheel:
     least_speed, greatest_speed, time_of_cycle : float [rad/s], [rad/s], [s]
         With the flywheel, exactly.
     obtained : float
-        Coefficient of fluctuation that the energies give with it.
+        Coefficient of fluctuation that the energy equation gives with this inertia: a route of its own.
     tangents : Tangents
     rim, disc : Wheel or None
         Of `added`; None where no flywheel is needed.
@@ -132,6 +132,8 @@ def flywheel_of(found: Solution) -> Flywheel:
     """What a solution says of energies and flywheel; what needs a fluctuation is None without one."""
     machine, energies = found.machine, found.by_source.energies
     ends = found.speed.extremes()
+    # by the energy equation for this inertia alone, not by the tangents that gave it
+    checked = with_inertia(found.speed.balance, machine.mean_speed, found.speed.inertia, found.kind)
     common = Flywheel(
         mean=found.kind,
         mean_speed=machine.mean_speed,
@@ -148,7 +150,7 @@ def flywheel_of(found: Solution) -> Flywheel:
         least_speed=ends.least,
         greatest_speed=ends.greatest,
         time_of_cycle=found.cycle.period / found.speed.mean("time"),
-        obtained=ends.range / found.speed.mean(found.kind),
+        obtained=checked.extremes().range / machine.mean_speed,
     )
     if machine.fluctuation is None or found.needed is None or found.tangents is None:
         return common

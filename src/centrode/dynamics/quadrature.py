@@ -22,6 +22,8 @@ Function: TypeAlias = Callable[[Array], Array]
 
 NODES = 12
 """Gauss nodes of a panel."""
+NOISE = 1e-9
+"""Last terms, over the greatest value, that are noise (of change points passed) where halving makes them no smaller."""
 MOST_PANELS = 4000
 MOST_ROUNDS = 45
 """Halvings after which a jump that nobody announced lies in a panel of no importance."""
@@ -111,7 +113,9 @@ def tails(coefficients: Array) -> Array:
     return np.asarray(np.max(np.abs(coefficients[..., -2:]), axis=-1))
 
 
-def resolved(functions: Function, edges: Array, tolerances: Sequence[float]) -> tuple[Panels, Array]:
+def resolved(
+    functions: Function, edges: Array, tolerances: Sequence[float], scales: Function = np.asarray
+) -> tuple[Panels, Array]:
     """Panels on which several functions are smooth enough, and their values at the nodes.
 
     Parameters
@@ -121,6 +125,8 @@ def resolved(functions: Function, edges: Array, tolerances: Sequence[float]) -> 
         The ends of the range with the jumps that are known, and as many places between as a first look needs.
     tolerances : one a function
         What a panel's series may leave out of an integral, over the greatest value times the whole range.
+    scales : greatest values (functions) -> (functions)
+        What counts as the greatest value, where a function may be nothing but rounding beside another.
 
     Returns
     -------
@@ -132,12 +138,16 @@ def resolved(functions: Function, edges: Array, tolerances: Sequence[float]) -> 
     done: list[tuple[Array, Array]] = []
     span, allowed = float(edges[-1] - edges[0]), np.asarray(tolerances)
     count, peak = len(low), np.zeros(0)
+    before = np.full((len(allowed), count), np.inf)  # the last terms of the panel that each one is half of
     for _round in range(MOST_ROUNDS):
         values = functions(_nodes(low, high).reshape(-1)).reshape(-1, len(low), NODES)
         greatest = np.max(np.abs(values), axis=(1, 2))
         peak = greatest if not peak.size else np.maximum(peak, greatest)
-        left_out = tails(values @ _TO_SERIES.T) * (high - low)
-        coarse = (left_out > span * (allowed * peak)[:, None]).any(axis=0)
+        scale = scales(peak)[:, None]
+        last = tails(values @ _TO_SERIES.T)
+        too_great = last * (high - low) > span * allowed[:, None] * scale
+        resolvable = (last < before / 4) | (last > NOISE * scale)
+        coarse: npt.NDArray[np.bool_] = np.any(too_great & resolvable, axis=0)
         if count + int(coarse.sum()) > MOST_PANELS:
             coarse[:] = False
         done.append((low[~coarse], values[:, ~coarse]))
@@ -145,6 +155,7 @@ def resolved(functions: Function, edges: Array, tolerances: Sequence[float]) -> 
             break
         count += int(coarse.sum())
         middle = 0.5 * (low[coarse] + high[coarse])
+        before = np.concatenate([last[:, coarse]] * 2, axis=1)
         low, high = np.concatenate([low[coarse], middle]), np.concatenate([middle, high[coarse]])
     else:
         done.append((low, functions(_nodes(low, high).reshape(-1)).reshape(-1, len(low), NODES)))
