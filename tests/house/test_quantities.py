@@ -29,7 +29,10 @@ def test_every_variable_of_a_motion_is_named() -> None:
     ]
     others = ("time", "drive_value", "position", "velocity", "acceleration", "contact", "status", "residual")
     events = ("event_value", "event_kind", "event_group")
-    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events}
+    reduced = [f"reduced_{name}" for name in ("inertia", "inertia_slope", "moment")]
+    reduced += ["inertia_matrix", "generalised_force"]
+    reduced = [*reduced, *(f"{name}_part" for name in reduced), "christoffel", "jumps", "drive_rate"]
+    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *reduced}
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
 
@@ -45,6 +48,10 @@ def test_every_variable_of_a_motion_is_named() -> None:
         ("slide_velocity_coefficient", "1"),
         ("slide_acceleration_coefficient", "1/m"),
         ("angular_velocity", "rad/s"),
+        ("reduced_inertia", "kg"),
+        ("reduced_inertia_slope", "kg/m"),
+        ("reduced_moment", "N"),
+        ("drive_rate", "m/s"),
     ],
 )
 def test_units_follow_the_kind_of_drive(name: str, displacement: str) -> None:

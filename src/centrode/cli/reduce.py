@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 MISSING = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 
 
-@click.command(help=mark("Reduce masses and loads to the drive: inertia, moments, their parts."))
+@click.command(help=mark("Reduce masses and loads to the drive, part by part."))
 @mechanism_argument
 @click.option(
     "--out",
