@@ -32,7 +32,10 @@ def test_every_variable_of_a_motion_is_named() -> None:
     reduced = [f"reduced_{name}" for name in ("inertia", "inertia_slope", "moment")]
     reduced += ["inertia_matrix", "generalised_force"]
     reduced = [*reduced, *(f"{name}_part" for name in reduced), "christoffel", "jumps", "drive_rate"]
-    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *reduced}
+    steady = ["turned", "moment_of_loads", "driving_moment", "work_of_loads", "work_of_drive", "work"]
+    steady += ["inertia_of_links", "inertia_slope_of_links", "energy_of_links", "energy_change"]
+    steady += [f"drive_{name}{order}" for name in ("speed", "acceleration") for order in ("", "_first_order")]
+    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *reduced, *steady}
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
 
