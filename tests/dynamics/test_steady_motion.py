@@ -326,7 +326,7 @@ def geared(ratio: float) -> ct.Mechanism:
     return ct.parse_mechanism(text.replace("O = [0, 0]", "O = [0, 0]\nE = [3, 0]"))
 
 
-@pytest.mark.parametrize(("ratio", "turns"), [(-2.0, 1), (-1.5, 2), (-1 / 3, 3), (0.7, 10)])
+@pytest.mark.parametrize(("ratio", "turns"), [(-2.0, 1), (-1.5, 2), (-1 / 3, 3), (0.8, 5)])
 def test_the_period_is_found(ratio: float, turns: int) -> None:
     """A wheel behind a gear carries a mass off its axis: everything repeats when both are back."""
     found = solution_of(geared(ratio))
