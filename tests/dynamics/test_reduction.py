@@ -119,7 +119,9 @@ def jet_of_inertia(mechanism: ct.Mechanism, values: Array) -> Jet:
     total: Any = 0.0
     for mass in masses_of(mechanism):
         pose = at.poses[mass.link]
-        place = kinematics.numbers.space.place(JETS, pose, mass.centre)
+        centre = mass.centre
+        x, y = kinematics.numbers.local[mass.link][centre.base]
+        place = kinematics.numbers.space.place(JETS, pose, (x + centre.along, y + centre.across))
         total = total + sum((x.slope() * x.slope() for x in place), Jet((0.0, 0.0))) * mass.mass
         cosine, sine = (x if isinstance(x, Jet) else Jet((x, 0.0, 0.0)) for x in pose.rotor)
         turning = cosine.lowered() * sine.slope() - sine.lowered() * cosine.slope()

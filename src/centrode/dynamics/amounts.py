@@ -8,7 +8,6 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.text import TextFormula, compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
@@ -25,7 +24,7 @@ SLACK = 1e-9
 class Situation:
     """What a load may depend on: time, the drive's value, the load's coordinate and its speed.
 
-    `forwards` is true where the coordinate grows in time. With several drives q has no value.
+    `forwards` is true where the coordinate grows in time. With several drives q has no value. `m` has the functions.
     """
 
     t: Number
@@ -33,6 +32,7 @@ class Situation:
     x: Number
     v: Number
     forwards: Number
+    m: Any
 
 
 class Amount(Protocol):
@@ -54,7 +54,7 @@ class Amount(Protocol):
 class Constant:
     """The same always."""
 
-    value: float
+    value: Number
     uses: frozenset[str] = frozenset()
     levels: tuple[float, ...] = ()
 
@@ -81,7 +81,7 @@ class Formula:
 
     def __call__(self, now: Situation) -> Number:
         with np.errstate(all="ignore"):
-            return self.formula(ARRAYS, t=now.t, q=now.q, x=now.x, v=now.v)
+            return self.formula(now.m, t=now.t, q=now.q, x=now.x, v=now.v)
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ class StraightSpring:
         if self.free == 0.0:
             return -self.stiffness
         with np.errstate(all="ignore"):
-            return -self.stiffness * (1.0 - self.free / np.sqrt(2.0 * now.x))
+            return -self.stiffness * (1.0 - self.free / now.m.sqrt(2.0 * now.x))
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,8 @@ from math import hypot
 from typing import Any, Protocol, TypeAlias
 
 from centrode.algebra.jets import Jet
-from centrode.dynamics.masses import Mass
+from centrode.dynamics.masses import Centre
 from centrode.dynamics.states import Place, State
-from centrode.kinematics.paths import JETS
 from centrode.model.mechanism import FRAME, Vector
 
 Number: TypeAlias = Any
@@ -67,7 +66,7 @@ class Distance:
 
     def _length(self, state: State) -> Jet:
         (x, y), (u, v) = state.point(self.first), state.point(self.second)
-        length: Jet = JETS.sqrt((u - x) * (u - x) + (v - y) * (v - y))
+        length: Jet = state.m.sqrt((u - x) * (u - x) + (v - y) * (v - y))
         return length
 
 
@@ -93,7 +92,7 @@ class HalfSquare:
 class Component:
     """Component of a point's place, or of a link's centre of mass, along a direction fixed in a link or the frame."""
 
-    at: str | Mass
+    at: str | Centre
     direction: Vector
     axes: str = FRAME
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -13,12 +13,13 @@ from centrode.dynamics.masses import Mass
 from centrode.dynamics.states import State
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
 
 
-def coordinates_of(state: State, mass: Mass) -> list[tuple[float, Jet]]:
+def coordinates_of(state: State, mass: Mass) -> list[tuple[Number, Jet]]:
     """Coordinates whose squared speeds make twice the kinetic energy of a link, each with its factor [kg or kg m^2]."""
-    found = [(mass.mass, x) for x in state.centre(mass)] if mass.mass else []
-    return [*found, (mass.inertia, state.angle(mass.link))] if mass.inertia else found
+    found = [(mass.mass, x) for x in state.centre(mass.centre)] if mass.weighs else []
+    return [*found, (mass.inertia, state.angle(mass.link))] if mass.resists else found
 
 
 def shares(state: State, masses: Sequence[Mass], shape: tuple[int, ...]) -> tuple[Array, Array]:
@@ -28,8 +29,16 @@ def shares(state: State, masses: Sequence[Mass], shape: tuple[int, ...]) -> tupl
     """
     inertia, slope = np.zeros((len(masses), *shape)), np.zeros((len(masses), *shape))
     for k, mass in enumerate(masses):
-        for factor, coordinate in coordinates_of(state, mass):
-            first, second = coordinate.derivative(1), coordinate.derivative(2)
-            inertia[k] += factor * first * first
-            slope[k] += 2.0 * factor * first * second
+        inertia[k], slope[k] = share(state, mass)
+    return inertia, slope
+
+
+def share(state: State, mass: Mass) -> tuple[Number, Number]:
+    """Reduced inertia of one link and its derivative, over arrays or expressions."""
+    inertia: Number = 0.0
+    slope: Number = 0.0
+    for factor, coordinate in coordinates_of(state, mass):
+        first, second = coordinate.derivative(1), coordinate.derivative(2)
+        inertia = inertia + factor * (first * first)
+        slope = slope + factor * (2.0 * (first * second))
     return inertia, slope

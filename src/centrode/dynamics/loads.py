@@ -20,7 +20,7 @@ from centrode.dynamics.amounts import (
     TorsionSpring,
 )
 from centrode.dynamics.coordinates import Component, Coordinate, Distance, HalfSquare, Slide, Turn
-from centrode.dynamics.masses import Mass, centre_of
+from centrode.dynamics.masses import Given, Mass, centre_of
 from centrode.dynamics.states import State
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
@@ -46,7 +46,8 @@ class Effort:
         slope = self.coordinate.slope(state).value
         forwards = grows(self.coordinate, state) if "v" in self.amount.uses else True
         q = np.nan if len(state.mechanism.drives) > 1 else state.parameter
-        now = Situation(state.time, q, self.coordinate.value(state), slope * state.rate, forwards)
+        x, v = self.coordinate.value(state), slope * state.rate
+        now = Situation(state.time, q, x, v, forwards, state.m.base)
         amount = self.amount(now)
         return amount if self.gate is None else np.where(grows(self.gate, state), amount, 0.0)
 
@@ -109,7 +110,7 @@ class Acting:
         return sum(strength * effort.coordinate.slope(state).value for effort, strength in pairs)
 
 
-def loads_of(mechanism: Mechanism, masses: Sequence[Mass]) -> tuple[Acting, ...]:
+def loads_of(mechanism: Mechanism, masses: Sequence[Mass], given: Given | None = None) -> tuple[Acting, ...]:
     """Loads of the description, then the weights that gravity adds; each with a label of its own.
 
     Raises
@@ -121,7 +122,7 @@ def loads_of(mechanism: Mechanism, masses: Sequence[Mass]) -> tuple[Acting, ...]
     """
     labels = _labels(mechanism.loads, mechanism, masses)
     described = [
-        Acting(label, tuple(_efforts(mechanism, load, masses, where)), where)
+        Acting(label, tuple(_efforts(mechanism, load, masses, where, given)), where)
         for label, load in zip(labels, mechanism.loads, strict=False)
         for where in [f"[[loads]] {label}"]
     ]
@@ -137,7 +138,7 @@ def _weighing(mechanism: Mechanism, masses: Iterable[Mass]) -> list[Mass]:
     if not mechanism.gravity or not _strength(mechanism):
         return []
     given = {load.link for load in mechanism.loads if load.kind == "weight"}
-    return [mass for mass in masses if mass.mass and mass.link not in given]
+    return [mass for mass in masses if mass.weighs and mass.link not in given]
 
 
 def _labels(loads: Sequence[Load], mechanism: Mechanism, masses: Iterable[Mass]) -> list[str]:
@@ -153,11 +154,13 @@ def _labels(loads: Sequence[Load], mechanism: Mechanism, masses: Iterable[Mass])
     return found
 
 
-def _efforts(mechanism: Mechanism, load: Load, masses: Sequence[Mass], where: str) -> Iterable[Effort]:
+def _efforts(
+    mechanism: Mechanism, load: Load, masses: Sequence[Mass], where: str, given: Given | None
+) -> Iterable[Effort]:
     if load.kind == "friction":
         raise NotComputedYet(where, _("friction is not computed yet"), _("take it out"))
     if load.kind == "weight":
-        return [_given_weight(mechanism, load, masses, where)]
+        return [_given_weight(mechanism, load, masses, where, given)]
     if load.kind == "force":
         return _force(load, where)
     if load.kind == "torque":
@@ -215,11 +218,13 @@ def _down(mechanism: Mechanism, where: str) -> Vector:
     return mechanism.gravity
 
 
-def _weight(mechanism: Mechanism, mass: Mass, size: float) -> Effort:
-    return Effort(Component(mass, _down(mechanism, mass.link)), Constant(size))
+def _weight(mechanism: Mechanism, mass: Mass, size: Number) -> Effort:
+    return Effort(Component(mass.centre, _down(mechanism, mass.link)), Constant(size))
 
 
-def _given_weight(mechanism: Mechanism, load: Load, masses: Sequence[Mass], where: str) -> Effort:
+def _given_weight(
+    mechanism: Mechanism, load: Load, masses: Sequence[Mass], where: str, given: Given | None
+) -> Effort:
     """A weight of its own value, or of mass times gravity, at a link's centre or a point."""
     down = _down(mechanism, where)
     if load.point is not None:
@@ -228,9 +233,9 @@ def _given_weight(mechanism: Mechanism, load: Load, masses: Sequence[Mass], wher
             raise InputError(where, what, _("give the weight's value, or name a link that has a mass"))
         return Effort(Component(load.point, down, FRAME), _amount(load.value, where))
     assert load.link is not None
-    mass = next((mass for mass in masses if mass.link == load.link and mass.mass), None)
+    mass = next((mass for mass in masses if mass.link == load.link and mass.weighs), None)
     if load.value is not None:
-        at = mass or Mass(load.link, 0.0, centre_of(load.link, mechanism.links[load.link]), 0.0)
+        at = centre_of(mechanism, load.link, given) if mass is None else mass.centre
         return Effort(Component(at, down, FRAME), _amount(load.value, where))
     if mass is None:
         what = _("link {link} has no mass").format(link=load.link)

@@ -9,13 +9,14 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.dynamics.masses import Mass
+from centrode.dynamics.masses import Centre
 from centrode.kinematics.layout import Layout
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.sampling import Samples
 from centrode.kinematics.solve import Solved
-from centrode.model.mechanism import FRAME, Mechanism, Vector
+from centrode.model.mechanism import FRAME, Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Place: TypeAlias = tuple[Jet, Jet]
@@ -39,6 +40,8 @@ class State:
         At a jump: the side of the parameter that counts; 0 where a one-sided load counts as acting.
     scale : float [m]
         The greatest length, by which velocities of zero are told from rounding.
+    columns : kind -> what gives value and two derivatives of its k-th number
+    m : functions of jets, over arrays or over expressions
     """
 
     mechanism: Mechanism
@@ -49,6 +52,7 @@ class State:
     side: int
     scale: float
     columns: Mapping[str, Getter]
+    m: JetFunctions = JETS
     known: dict[str, Place | Jet] = field(default_factory=dict)
 
     @classmethod
@@ -105,24 +109,18 @@ class State:
         rotor = self.known.get(f"rotor {link}")
         if rotor is None:
             angle = self.angle(link)
-            rotor = JETS.cos(angle), JETS.sin(angle)
+            rotor = self.m.cos(angle), self.m.sin(angle)
             self.known[f"rotor {link}"] = rotor
         assert isinstance(rotor, tuple)
         return rotor
 
-    def centre(self, mass: Mass) -> Place:
+    def centre(self, centre: Centre) -> Place:
         """Centre of mass of a link."""
-        local = self.mechanism.links[mass.link].coordinates
-        for name, at in local.items():
-            if at == mass.centre:
-                return self.point(name)
-        return self._local(mass.link, mass.centre)
-
-    def _local(self, link: str, at: Vector) -> Place:
-        """Place of a link's point given in its own axes."""
-        name, first = next(iter(self.mechanism.links[link].coordinates.items()))
-        (x, y), (cosine, sine) = self.point(name), self.rotor(link)
-        along, across = at[0] - first[0], at[1] - first[1]
+        x, y = self.point(centre.base)
+        along, across = centre.along, centre.across
+        if isinstance(along, float) and isinstance(across, float) and along == across == 0.0:
+            return x, y
+        cosine, sine = self.rotor(centre.link)
         return x + cosine * along - sine * across, y + sine * along + cosine * across
 
     def _jet(self, kind: str, name: str, names: tuple[str, ...]) -> Jet:
