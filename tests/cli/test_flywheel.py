@@ -155,6 +155,7 @@ WRONG = {
     "speed backwards": ("mean_speed = 20", 'mean_speed = "-65 rpm"', "mean_speed must be positive"),
     "wrong unit": ("mean_speed = 20", 'mean_speed = "65 m/s"', "expected an angular speed (rad/s)"),
     "no fluctuation": ("= 0.05", "= 0", "[machine]: fluctuation must be positive, got 0"),
+    "lost in rounding": ("= 0.05", "= 1e-9", "1e-09 is beyond what can be computed with; stay above 1e-06"),
     "standing still": ("= 0.05", "= 2", "fluctuation must be smaller than 2, got 2"),
     "shaft without inertia": (
         "= 0.05", "= 0.05\n[[machine.shafts]]\nratio = 2", '[[machine.shafts]] 1: "inertia" is missing',

@@ -19,6 +19,9 @@ DRIVING_VARIABLES = ("q", "v")
 
 SHAFTS = 100
 
+LEAST_FLUCTUATION = 1e-6
+"""A smaller one is lost in the rounding of the speeds."""
+
 
 def _ratio(value: object, kind: str) -> float:
     number = si(value, kind)
@@ -29,6 +32,9 @@ def _ratio(value: object, kind: str) -> float:
 
 def _fluctuation(value: object, kind: str) -> float:
     number = positive(value, kind)
+    if number < LEAST_FLUCTUATION:
+        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        raise Problem(what, _("stay above {least:g}").format(least=LEAST_FLUCTUATION))
     if number >= 2:
         what = _("{key} must be smaller than 2, got {value}").format(key=KEY, value=shown(value))
         raise Problem(what, _("it is (greatest less least speed) over the mean one, such as 0.05"))
