@@ -32,7 +32,30 @@ def test_every_variable_of_a_motion_is_named() -> None:
     reduced = [f"reduced_{name}" for name in ("inertia", "inertia_slope", "moment")]
     reduced += ["inertia_matrix", "generalised_force"]
     reduced = [*reduced, *(f"{name}_part" for name in reduced), "christoffel", "jumps", "drive_rate"]
-    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *reduced}
+    centres = (
+        "centre",
+        "centre_direction",
+        "centre_case",
+        "fixed_centrode",
+        "moving_centrode",
+        "fixed_arc",
+        "moving_arc",
+        "centrode_piece",
+        "pole",
+        "inflection_pole",
+        "inflection_diameter",
+        "pole_tangent",
+        "ball_point",
+        "stationary_cubic",
+        "path_curvature",
+        "path_curvature_slope",
+        "curvature_centre",
+    )
+    transmission = ("transmission_angle", "pressure_angle")
+    integrated = ("drift", "angle_difference", "position_difference")
+    known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
+    known |= set(reduced)
+    assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
 

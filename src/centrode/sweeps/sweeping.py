@@ -159,9 +159,7 @@ def _compute(frame: Frame, kept: Kept, task: Task, executor: Executor, progress:
             high = min(low + lanes, stop)
             values = frame.design.rows(low, high)
             numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
-            executor.run(
-                task, numbers, values, {k: x[low - first : high - first] for k, x in results.items()}
-            )
+            executor.run(task, numbers, values, results.part(slice(low - first, high - first)))
             if progress is not None:
                 progress(before + high - first, frame.mechanisms)
         kept.put(block, results, tally_of(task.asked, len(task.span.parameter), results))
