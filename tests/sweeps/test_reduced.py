@@ -113,7 +113,7 @@ def test_a_diagram_is_computed_by_arrays() -> None:
 def test_a_stroke_beside_its_diagram_has_no_number() -> None:
     text = ct.example_text("six-bar-press").replace(
         'point = "H"\nvector = [-9000, 0]\nwhile_moving = [1, 0]',
-        'guide = "H"\ntable = [[1, -9000, 0], [3.5, -9000, 0]]',
+        'guide = "H"\ntable = [[1, -9000, 0], [3.6, -9000, 0]]',
     )
     vary = {"links.DH.points.H.x": [1.7, 1.9]}
     swept = ct.sweep(ct.parse_mechanism(text), vary, "reduced_moment", samples=73)
