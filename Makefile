@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 DEMO := slider-between-cranks
+WITHOUT_EXTRAS := tests/algebra tests/sweeps tests/kinematics/test_many.py tests/cli/test_sweep.py
 
 # A stamp is newer than pyproject.toml when what it stands for is installed.
 BASE := $(VENV)/.stamp-base
@@ -12,15 +13,15 @@ FOR_DEMO := $(VENV)/.stamp-demo
 FOR_TESTS := $(VENV)/.stamp-dev
 
 .DELETE_ON_ERROR:
-.PHONY: help demo test format lint types contracts catalogue-check tests catalogues benchmarks clean
+.PHONY: help demo test format lint types contracts catalogue-check tests tests-without-extras catalogues benchmarks clean
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-22s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 demo: $(FOR_DEMO) ## compute a built-in mechanism into demo-output/
 	$(BIN)/centrode run $(DEMO) --out demo-output
 
-test: lint types contracts catalogue-check tests ## everything that CI checks
+test: lint types contracts catalogue-check tests tests-without-extras ## everything that CI checks
 
 lint: $(FOR_TESTS) ## format and lint, without changing anything
 	$(BIN)/ruff format --check .
@@ -37,6 +38,10 @@ catalogue-check: $(FOR_TESTS) ## translations complete and compiled
 
 tests: $(FOR_TESTS) ## tests and the code blocks of the documentation
 	$(BIN)/pytest -q -n auto --dist loadfile  # the blocks of one document share their names
+
+tests-without-extras: $(FOR_TESTS) ## what machine code and stores are for, as if llvmlite and zarr were not installed
+	PYTHONPATH="$(CURDIR)/tests/absent" CENTRODE_WITHOUT="llvmlite zarr" \
+	$(BIN)/pytest -q -p no:zarr -n auto --dist loadfile $(WITHOUT_EXTRAS)  # zarr brings a plugin of its own
 
 format: $(FOR_TESTS) ## format and mend what can be mended
 	$(BIN)/ruff check --fix .

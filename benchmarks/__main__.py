@@ -11,8 +11,9 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import cold, kernels, machine, motions, peer, sweeps  # noqa: E402
-from benchmarks.table import Row, print_section  # noqa: E402
+from benchmarks import cold, forces, kernels, machine, motions, peer, sweeps  # noqa: E402
+from benchmarks.plans import LANES, SAMPLES  # noqa: E402
+from benchmarks.table import Row, print_promises, print_section  # noqa: E402
 from centrode.algebra import machine_code  # noqa: E402
 
 Section = tuple[str, Callable[[], Iterator[Row]]]
@@ -23,10 +24,11 @@ SECTIONS: Mapping[str, Section] = {
     "batch": (
         f"Batches, {motions.SAMPLES} samples, with derivatives: centrode's time over pylinkage's", motions.batches,
     ),
+    "forces": (f"Reduction to the drive, {forces.SAMPLES} samples", forces.reductions),
     "cold": (f"Whole processes, multiples of {cold.BASE}", cold.cold_starts),
     "machine": ("Bounds of the machine", machine.bounds),
     "kernels": (
-        f"Machine code, {kernels.LANES} mechanisms of {kernels.SAMPLES} samples, a position", kernels.kernels,
+        f"Machine code, {LANES} mechanisms of {SAMPLES} samples, a position", kernels.kernels,
     ),
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
@@ -35,11 +37,12 @@ NEED_COMPILER = {"kernels", "sweeps"}
 
 
 def main(wanted: list[str]) -> int:
-    """Print the sections wanted, all if none is named."""
+    """Print the sections wanted, all if none is named, and what they promise; 1 if a promise is not held."""
     unknown = [name for name in wanted if name not in SECTIONS]
     if unknown:
         print(f"unknown: {', '.join(unknown)}; sections are {', '.join(SECTIONS)}", file=sys.stderr)
         return 2
+    rows: list[Row] = []
     for name in wanted or SECTIONS:
         title, measure = SECTIONS[name]
         if name in NEED_PEER and not peer.PRESENT:
@@ -48,8 +51,8 @@ def main(wanted: list[str]) -> int:
         if name in NEED_COMPILER and not machine_code.PRESENT:
             print(f"\n{title}\n  left out: {kernels.MISSING}")
             continue
-        print_section(title, measure())
-    return 0
+        rows += print_section(title, measure())
+    return 0 if print_promises(rows) else 1
 
 
 if __name__ == "__main__":

@@ -6,114 +6,52 @@ import functools
 import os
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from statistics import median
-from typing import Any
 from unittest.mock import patch
 
 import numpy as np
 import numpy.typing as npt
 
 import centrode as ct
-from benchmarks import peer, rivals
-from benchmarks.motions import peer_of
-from benchmarks.table import Row
-from benchmarks.timing import best_times
+from benchmarks.plans import DIMENSIONS, DRIVE, EACH, LANES, SAMPLES, SIX, Plan, plan_of
+from benchmarks.table import Promise, Row
+from benchmarks.timing import ROUNDS, Shared, Task, best_times, paired_times, ratio, two_threads
+from benchmarks.written import FEW, in_cache, streamed, to_memory
 from centrode.algebra import machine_code
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, variable
+from centrode.algebra.expressions import Node, operated, variable
 from centrode.algebra.graph_arrays import run_on_arrays
-from centrode.algebra.graphs import Graph
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.algebra.machine_code import cache
-from centrode.algebra.reductions import greatest, least, together, total, total_with_gradient
-from centrode.algebra.scans import Scan, call_of
-from centrode.kinematics.evaluate import FixedSigns
-from centrode.kinematics.ready import ready
+from centrode.algebra.reductions import Reduction, greatest, least, together, total, total_with_gradient
+from centrode.algebra.scans import Scan
+from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.structure.dimensions import SPACES
 
 if machine_code.PRESENT:
     from centrode.algebra.machine_code.kernels import Kernel, forget, kernel_of
 
 Array = npt.NDArray[np.float64]
 MISSING = "llvmlite is not installed: pip install 'centrode[fast]'"
-MECHANISMS = ("crank-rocker", "six-bar-press")
-SAMPLES = 361
-LANES = 2000
-"""Mechanisms of a batch: the outputs of one take no more than some hundred megabytes."""
 DIVIDED = 8
-ROUNDS = 7
-OF_PEER = ("peer motion", "peer positions")
-OTHERS = ("gcc", "numba", *OF_PEER)
-
-
-@dataclass(frozen=True)
-class Traced:
-    """A plan as a graph: points and angles with two derivatives, by dimensions and the drive's value.
-
-    The crank, its end and its angle, is left out: they are products with what all mechanisms have in common.
-    """
-
-    outputs: Mapping[str, Node]
-    names: tuple[str, ...]
-    dimensions: Array
-    took: float
-
-    @property
-    def by_lanes(self) -> Array:
-        """Dimensions of a batch, (dimensions, LANES)."""
-        spread = np.random.default_rng(0).uniform(0.98, 1.02, (len(self.names), LANES))
-        return self.dimensions[:, None] * spread
-
-
-def traced(name: str) -> Traced:
-    """The plan of a built-in mechanism, every dimension of it a variable."""
-    prepared = ready(ct.example(name))
-    values: list[float] = []
-
-    def vary(x: Any) -> Any:
-        if x in (0.0, 1.0, -1.0):  # lengths that are left out of the formulas, and directions of guides
-            return x
-        values.append(float(x))
-        return variable(f"dimension {len(values) - 1}")
-
-    start = time.process_time()
-    kinematics = replace(prepared.kinematics, numbers=prepared.kinematics.numbers.mapped(vary))
-    jets = JetFunctions(EXPRESSIONS)
-    drive = Jet.variable(variable("drive"), 2)
-    at = kinematics.positions(jets, drive, FixedSigns(jets, prepared.assembled.signs))
-    crank = prepared.mechanism.drives[0].link
-    moving = [
-        point
-        for point in prepared.mechanism.moving_points
-        if point not in prepared.mechanism.links[str(crank)].coordinates
-    ]
-    found = {f"{point} {axis}": x for point in moving for axis, x in enumerate(at.points[point])}
-    found |= {
-        f"angle {link}": jets.atan2(*reversed(pose.rotor)) for link, pose in at.poses.items() if link != crank
-    }
-    outputs = {
-        f"{label}, {k}": x.derivative(k) for label, x in found.items() if isinstance(x, Jet) for k in range(3)
-    }
-    names = tuple(f"dimension {i}" for i in range(len(values)))
-    return Traced(Graph.of(outputs).outputs, names, np.array(values), time.process_time() - start)
-
-
-DRIVE = np.linspace(0.0, 2.0 * np.pi, SAMPLES)[None]
+FOUR_BAR, SPHERICAL = "crank-rocker", "spherical-four-bar"
+MADE = {FOUR_BAR: 150.0, "six-bar-press": 400.0, SPHERICAL: 400.0}
+"""Greatest times of tracing and compiling together [ms]."""
 
 
 def kernels() -> Iterator[Row]:
     """All rows."""
-    write, divide = _write_bound(), _divider_bound()
-    yield Row("bounds [ns]", {"a number written": write, "a division": divide})
-    for name in MECHANISMS:
-        plan = traced(name)
-        yield _written(name, plan, write)
-        yield from _reduced(name, plan, divide)
-        yield _gradient(name, plan)
-        yield _compiled(name, plan)
+    write, divide, root = _write_bound(), _divider_bound("divide"), _divider_bound("sqrt")
+    yield Row("bounds [ns]", {"a number written": write, "a division": divide, "a root": root})
+    plans = {name: plan_of(name, paths) for name, paths in DIMENSIONS.items()}
+    for name, plan in plans.items():
+        yield to_memory(name, plan)
+        yield in_cache(name, plan)
+        yield from _reduced(name, plan, divide, root)
+        yield _gradient(name)
+        yield _compiled(name)
+    yield _on_the_sphere(plans[SPHERICAL], plans[FOUR_BAR])
 
 
 def _write_bound() -> float:
@@ -122,97 +60,76 @@ def _write_bound() -> float:
     return best_times({"write": functools.partial(large.fill, 1.0)})["write"] / large.size * 1e9
 
 
-def _divider_bound() -> float:
+def _divider_bound(operation: str) -> float:
     """Time of a division or a root in vectors as wide as the kernels' [ns]: several that do not wait for each other."""
-    states = [variable(f"s{i}") for i in range(DIVIDED)]
-    scan = Scan((), ("drive",), {}, {f"s{i}": variable("drive") / state for i, state in enumerate(states)})
+    drive, states = variable(PARAMETER), [variable(f"s{i}") for i in range(DIVIDED)]
+    found = [drive / x if operation == "divide" else operated("sqrt", x) for x in states]
+    scan = Scan((), (PARAMETER,), {}, {f"s{i}": x for i, x in enumerate(found)})
     run = functools.partial(kernel_of(scan).run, None, DRIVE + 1.0, np.ones((DIVIDED, LANES)))
-    return best_times({"divide": run})["divide"] / (LANES * SAMPLES * DIVIDED) * 1e9
+    return best_times({"": run})[""] / (LANES * SAMPLES * DIVIDED) * 1e9
 
 
-def _written(name: str, plan: Traced, write: float) -> Row:
-    """All outputs, into a buffer that is there: lanes are samples, so that each output is one stream."""
-    scan = Scan(("drive",), plan.names, plan.outputs)
-    kernel, lanes = kernel_of(scan, lanes_inside=True), plan.by_lanes
-    out = np.zeros((len(plan.outputs), LANES, SAMPLES))
-    few = lanes[:, : LANES // 20]
-    tasks: dict[str, Callable[[], object]] = {
-        "kernel": functools.partial(kernel.run, DRIVE, lanes, out=out),
-        "write": functools.partial(out.fill, 1.0),
-        "numpy": functools.partial(run_on_arrays, scan, DRIVE, few, out=out[:, : few.shape[1]].copy()),
-    }
-    with tempfile.TemporaryDirectory() as folder:
-        prepared = kernel.tables.added(call_of(scan, DRIVE, lanes, out=out))
-        for rival, there, build in (
-            ("gcc", rivals.HAS_GCC, rivals.by_gcc), ("numba", rivals.HAS_NUMBA, rivals.by_numba),
-        ):  # fmt: skip
-            if there:
-                tasks[rival] = functools.partial(build(kernel.rest, Path(folder)), prepared)
-        if peer.PRESENT:
-            tasks |= _peers(name)
-        times = best_times(tasks, rounds=ROUNDS)
-    times["numpy"] *= LANES / few.shape[1]
-    for run in OF_PEER:
-        if run in times:
-            times[run] *= LANES
-    each = 1e9 / (LANES * SAMPLES)
-    numbers = {
-        "outputs": float(len(plan.outputs)),
-        "ns": times["kernel"] * each,
-        "/ writing": times["kernel"] / times["write"],
-        "numpy /": times["numpy"] / times["kernel"],
-    }
-    numbers |= {f"{rival} /": times[rival] / times["kernel"] for rival in OTHERS if rival in times}
-    return Row(f"{name}, written", numbers)
+def _running(plan: Plan, reduction: Reduction, relaxed: bool = False) -> tuple[Kernel, list[list[float]]]:
+    scan = Scan(plan.names, (PARAMETER,), {}, reduction.state)
+    return kernel_of(scan, relaxed=relaxed), [[value] for value in reduction.start.values()]
 
 
-def _peers(name: str) -> dict[str, Callable[[], object]]:
-    """The peer's compiled runs of one mechanism: with velocities and accelerations, and positions alone."""
-    mechanism = ct.example(name)
-    prepared, motion = ready(mechanism), ct.motion(mechanism, SAMPLES)
-    other = peer_of(prepared, prepared.structure.dimensions, motion)
-    return {
-        "peer motion": functools.partial(other.motion, SAMPLES),
-        "peer positions": functools.partial(other.positions, SAMPLES),
-    }
-
-
-def _reduced(name: str, plan: Traced, divide: float) -> Iterator[Row]:
-    """One number a mechanism: path extremes of a point, and all outputs together."""
-    point = next(iter(plan.outputs.values()))
+def _reductions(plan: Plan) -> dict[str, Reduction]:
+    """One number a mechanism: path extremes of a coordinate, and all outputs together."""
+    coordinate = next(iter(plan.outputs.values()))
     whole = functools.reduce(lambda a, b: a + b, plan.outputs.values())
-    for label, reduction in (
-        ("extremes of a coordinate", together(greatest("hi", point), least("lo", point))),
-        ("all outputs to one number", total("sum", whole)),
-    ):
-        scan = Scan(plan.names, ("drive",), {}, reduction.state)
-        start = [[value] for value in reduction.start.values()]
-        kernel, relaxed = kernel_of(scan), kernel_of(scan, relaxed=True)
-        lanes = plan.by_lanes
-        few = lanes[:, : LANES // 20]
-        tasks = {
-            "kernel": functools.partial(kernel.run, lanes, DRIVE, start),
-            "relaxed": functools.partial(relaxed.run, lanes, DRIVE, start),
-            "numpy": functools.partial(
-                run_on_arrays, Scan(plan.names, ("drive",), _values(reduction.state)), few, DRIVE
-            ),
-        }
-        times = best_times(tasks, rounds=ROUNDS)
-        times["numpy"] *= LANES / few.shape[1]
-        counts = kernel.rest.graph.counts
-        divisions = counts["divide"] + counts["sqrt"] + counts["atan2"]
-        each = 1e9 / (LANES * SAMPLES)
+    return {
+        "extremes of a coordinate": together(greatest("hi", coordinate), least("lo", coordinate)),
+        "all outputs to one number": total("sum", whole),
+    }
+
+
+def _reduced(name: str, plan: Plan, divide: float, root: float) -> Iterator[Row]:
+    lanes = plan.by_lanes
+    for label, reduction in _reductions(plan).items():
+        (kernel, start), (relaxed, _start) = _running(plan, reduction), _running(plan, reduction, True)
+        on_arrays = Scan(plan.names, (PARAMETER,), _values(reduction.state))
+        times = paired_times(
+            {
+                "kernel": functools.partial(kernel.run, lanes, DRIVE, start),
+                "relaxed": functools.partial(relaxed.run, lanes, DRIVE, start),
+                "numpy": functools.partial(run_on_arrays, on_arrays, lanes[:, :FEW], DRIVE),
+            },
+            ROUNDS,
+        )
+        times["numpy"] = [x * LANES / FEW for x in times["numpy"]]
+        quotients, roots = _divided(kernel)
+        ns = median(times["kernel"]) * EACH
+        over = ns / (quotients * divide + roots * root)
+        threads = _two_threads(kernel, lanes, start)
         yield Row(
             f"{name}, {label}",
             {
-                "divisions": float(divisions),
-                "ns": times["kernel"] * each,
-                "/ divider": times["kernel"] * each / (divisions * divide),
-                "relaxed /": times["relaxed"] / times["kernel"],
-                "numpy /": times["numpy"] / times["kernel"],
-                "1 thread / 2": _two_threads(kernel, lanes, start),
+                "divisions": float(quotients),
+                "roots": float(roots),
+                "ns": ns,
+                "/ divider": over,
+                "relaxed /": ratio(times, "relaxed", "kernel"),
+                "numpy /": ratio(times, "numpy", "kernel"),
+                "1 thread / 2": threads.gain,
+                "possible": threads.possible,
             },
+            promises=[
+                *([Promise(f"{name}, {label}, over the divider", over, 2.4)] if name != SPHERICAL else []),
+                Promise(f"{name}, {label}, 1 thread / 2", threads.gain, at_least=1.6),
+            ],
         )
+
+
+def _divided(kernel: Kernel) -> tuple[int, int]:
+    """Divisions (the arc tangent has one) and roots of one step: what does not depend on the step is done before."""
+    moving = {variable(name) for name in (*kernel.rest.inputs, *kernel.rest.state)}
+    counts: Counter[str] = Counter()
+    for node in kernel.rest.graph.order:
+        if any(x in moving for x in node.arguments):
+            moving.add(node)
+            counts[node.operation] += 1
+    return counts["divide"] + counts["atan2"], counts["sqrt"]
 
 
 def _values(state: Mapping[str, Node]) -> dict[str, Node]:
@@ -223,51 +140,44 @@ def _values(state: Mapping[str, Node]) -> dict[str, Node]:
     }
 
 
-def _two_threads(kernel: Kernel, lanes: Array, start: list[list[float]]) -> float:
-    """Elapsed time of one thread over that of two, median of paired runs."""
-    lanes, ratios = np.tile(lanes, 10), []  # long enough for threads to begin
-    for _round in range(ROUNDS):
-        times = []
-        for threads in (1, 2):
-            begin = time.perf_counter()
-            kernel.run(lanes, DRIVE, start, threads=threads)
-            times.append(time.perf_counter() - begin)
-        ratios.append(times[0] / times[1])
-    return median(ratios)
-
-
-def _gradient(name: str, plan: Traced) -> Row:
-    """A path error and its derivatives by six dimensions (or as many as there are), over the error alone."""
-    x, y = (plan.outputs[key] for key in list(plan.outputs)[:6:3])
-    error = (x - 1.0) * (x - 1.0) + (y - 2.0) * (y - 2.0)
-    by = [variable(name) for name in plan.names[:6]]
-    runs = {}
-    for label, reduction in (
-        ("value", total("error", error)),
-        ("gradient", total_with_gradient("error", error, by)),
-    ):
-        scan = Scan(plan.names, ("drive",), {}, reduction.state)
-        start = [[value] for value in reduction.start.values()]
-        runs[label] = functools.partial(kernel_of(scan).run, plan.by_lanes, DRIVE, start)
-    times = best_times(runs, rounds=ROUNDS)
-    each = 1e9 / (LANES * SAMPLES)
-    return Row(
-        f"{name}, path error and gradient",
-        {
-            "by": float(len(by)),
-            "ns": times["value"] * each,
-            "with gradient / value": times["gradient"] / times["value"],
-        },
+def _two_threads(kernel: Kernel, lanes: Array, start: list[list[float]]) -> Shared:
+    many = np.tile(lanes, 40)  # long enough for a processor that slept to wake
+    halves = [np.ascontiguousarray(half) for half in np.split(many, 2, axis=1)]
+    return two_threads(
+        lambda threads: kernel.run(many, DRIVE, start, threads=threads),
+        [functools.partial(kernel.run, half, DRIVE, start) for half in halves],
     )
 
 
-def _compiled(name: str, plan: Traced) -> Row:
+def _gradient(name: str) -> Row:
+    """A path error and its derivatives by six dimensions, over the error alone."""
+    plan = plan_of(name, SIX[name])
+    point = list(plan.positions.values())[: len(SPACES[ct.example(name).space].axes)]
+    error = functools.reduce(lambda a, b: a + b, [(x - 0.5) * (x - 0.5) for x in point])
+    by = [variable(path) for path in SIX[name]]
+    runs: dict[str, Task] = {}
+    for label, reduction in (
+        ("value", total("error", error)), ("gradient", total_with_gradient("error", error, by)),
+    ):  # fmt: skip
+        kernel, start = _running(plan, reduction)
+        runs[label] = functools.partial(kernel.run, plan.by_lanes, DRIVE, start)
+    times = paired_times(runs, ROUNDS)
+    over = ratio(times, "gradient", "value")
+    return Row(
+        f"{name}, path error and gradient",
+        {"by": float(len(by)), "ns": median(times["value"]) * EACH, "with gradient / value": over},
+        promises=[Promise(f"{name}, path error with its gradient by {len(by)}, over the error", over, 3.0)],
+    )
+
+
+def _compiled(name: str) -> Row:
     """Processor time from a plan to a kernel: traced, compiled, found on disk, found in memory; medians."""
-    scan = Scan(("drive",), plan.names, plan.outputs)
     found: dict[str, list[float]] = {"trace": [], "compile": [], "from disk": [], "from memory": []}
     with tempfile.TemporaryDirectory() as folder, patch.dict(os.environ, {cache.FOLDER: folder}):
         for _round in range(ROUNDS):
-            found["trace"].append(traced(name).took)
+            plan = plan_of(name, DIMENSIONS[name])
+            scan = Scan((PARAMETER,), plan.names, plan.outputs)
+            found["trace"].append(plan.took)
             for entry in Path(folder).iterdir():
                 entry.unlink()
             forget()
@@ -277,4 +187,31 @@ def _compiled(name: str, plan: Traced) -> Row:
                 found[label].append(time.process_time() - begin)
                 if label == "compile":
                     forget()
-    return Row(f"{name}, made [ms]", {label: 1e3 * median(times) for label, times in found.items()})
+    numbers = {label: 1e3 * median(times) for label, times in found.items()}
+    made = numbers["trace"] + numbers["compile"]
+    return Row(
+        f"{name}, made [ms]",
+        numbers,
+        promises=[
+            Promise(f"{name}, traced and compiled [ms]", made, MADE[name]),
+            Promise(f"{name}, from the disk cache [ms]", numbers["from disk"], 20.0),
+        ],
+    )
+
+
+def _on_the_sphere(sphere: Plan, plane: Plan) -> Row:
+    """The spherical four-bar linkage over the planar one: the same outputs in the same way."""
+    ways: dict[str, list[Task]] = {"written in cache": [streamed(x, x.outputs)[0] for x in (sphere, plane)]}
+    for label in _reductions(plane):
+        ways[label] = []
+        for plan in (sphere, plane):
+            kernel, start = _running(plan, _reductions(plan)[label])
+            ways[label].append(functools.partial(kernel.run, plan.by_lanes, DRIVE, start))
+    numbers = {}
+    for label, (on_sphere, in_plane) in ways.items():
+        times = paired_times({"sphere": on_sphere, "plane": in_plane}, ROUNDS)
+        numbers[label] = ratio(times, "sphere", "plane")
+    promises = [
+        Promise(f"spherical four-bar, {label}, over the planar", x, 2.5) for label, x in numbers.items()
+    ]
+    return Row("spherical four-bar / planar", numbers, promises=promises)

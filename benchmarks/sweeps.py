@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import functools
-import time
-from collections.abc import Callable, Iterator
+import subprocess
+import sys
+from collections.abc import Iterator
 from statistics import median
 
 import numpy as np
 import numpy.typing as npt
 
 import centrode as ct
-from benchmarks.table import Row
-from benchmarks.timing import best_times
+from benchmarks.plans import SIX
+from benchmarks.table import Promise, Row
+from benchmarks.timing import best_times, paired_times, ratio, two_threads
 from centrode.kinematics.compiled.many import solve_many
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
@@ -21,14 +23,24 @@ from centrode.structure.dimensions import dimensions_of
 Array = npt.NDArray[np.float64]
 SAMPLES = 361
 MANY, FEW = 50_000, 500
-"""Mechanisms of a sweep: reduced by machine code; by arrays, or with every sample written."""
+"""Mechanisms of a sweep: reduced by machine code; by arrays."""
+KEPT = 10_000
+"""Mechanisms of a sweep by machine code with every sample written: what is done once should not count."""
 ROUNDS = 5
 MECHANISMS = {
     "crank-rocker": (("links.AB.length", "links.DB.length"), "B"),
     "six-bar-press": (("links.OA.length", "links.DH.points.H.x"), "D"),
-    "spherical-four-bar": (("links.AB.length",), "C"),
+    "spherical-four-bar": (("links.BC.length", "links.DC.length"), "C"),
 }
 """Dimensions that vary by one per cent, and the point that is looked at."""
+CRANKS = {"crank-rocker": "links.OA.length", "spherical-four-bar": "links.AB.length"}
+LONG = 4
+"""How many times as many mechanisms two threads are given: what is done once should not count."""
+BILLION = 1_000_000_000
+MOST_MEMORY = 1e9
+"""Bytes that a billion positions may take."""
+KILOBYTE = 1 if sys.platform == "darwin" else 1024
+"""Unit in which the system tells the memory of a process [bytes]."""
 
 
 def sweeps() -> Iterator[Row]:
@@ -37,12 +49,16 @@ def sweeps() -> Iterator[Row]:
         yield from _reduced(name, paths, point)
         yield _written(name, paths, point)
         yield _motions(name, paths)
-    yield _with_limits()
+        yield _gradient(name, point)
+        yield _two_threads(name, paths, point)
+    yield _on_the_sphere()
+    yield from _with_events()
+    yield _billion()
 
 
 def _values(name: str, paths: tuple[str, ...], count: int) -> dict[str, Array]:
     mechanism, draw = ct.example(name), np.random.default_rng(0)
-    return {path: ct.value_at(mechanism, path) * draw.uniform(0.99, 1.01, count) for path in paths}
+    return {path: ct.value_at(mechanism, path) + draw.uniform(-0.01, 0.01, count) for path in paths}
 
 
 def _reduced(name: str, paths: tuple[str, ...], point: str) -> Iterator[Row]:
@@ -55,60 +71,100 @@ def _reduced(name: str, paths: tuple[str, ...], point: str) -> Iterator[Row]:
     ):
         run = functools.partial(ct.sweep, mechanism, outputs=outputs, samples=SAMPLES, reduce="range")
         many, few = _values(name, paths, MANY), _values(name, paths, FEW)
-        times = best_times(
+        times = paired_times(
             {
                 "code": functools.partial(run, vary=many, executor="machine code"),
                 "gradient": functools.partial(run, vary=many, executor="machine code", gradient=True),
                 "arrays": functools.partial(run, vary=few, executor="arrays"),
             },
-            rounds=ROUNDS,
+            ROUNDS,
         )
         yield Row(
             f"{name}, {label}",
             {
-                "ns": times["code"] / (MANY * SAMPLES) * 1e9,
-                "arrays /": times["arrays"] / FEW / (times["code"] / MANY),
-                "with gradient /": times["gradient"] / times["code"],
-                "1 thread / 2": _two_threads(run, many),
+                "ns": median(times["code"]) / (MANY * SAMPLES) * 1e9,
+                "arrays /": ratio(times, "arrays", "code") * MANY / FEW,
+                "with gradient /": ratio(times, "gradient", "code"),
             },
         )
 
 
-def _two_threads(run: Callable[..., object], many: dict[str, Array]) -> float:
-    """Elapsed time of one thread over that of two, median of paired runs."""
-    ratios = []
-    for _round in range(ROUNDS):
-        times = []
-        for threads in (1, 2):
-            begin = time.perf_counter()
-            run(vary=many, executor="machine code", threads=threads)
-            times.append(time.perf_counter() - begin)
-        ratios.append(times[0] / times[1])
-    return median(ratios)
+def _two_threads(name: str, paths: tuple[str, ...], point: str) -> Row:
+    """The range of a point by one thread over two, by the clock."""
+    values = _values(name, paths, LONG * MANY)
+    halves = [{path: x[k::2] for path, x in values.items()} for k in (0, 1)]
+    run = functools.partial(
+        ct.sweep, ct.example(name), outputs=f"position.{point}", samples=SAMPLES, reduce="range",
+        executor="machine code",
+    )  # fmt: skip
+    threads = two_threads(
+        lambda count: run(vary=values, threads=count),
+        [functools.partial(run, vary=half) for half in halves],
+        ROUNDS,
+    )
+    return Row(
+        f"{name}, two threads",
+        {"1 thread / 2": threads.gain, "possible": threads.possible},
+        promises=[Promise(f"sweep, {name}, range of a point, 1 thread / 2", threads.gain, at_least=1.6)],
+    )
+
+
+def _gradient(name: str, point: str) -> Row:
+    """The range and the mean of a point with their derivatives by six dimensions."""
+    values, numbers = _values(name, SIX[name], MANY), {}
+    for fold in ("range", "mean"):
+        run = functools.partial(
+            ct.sweep, ct.example(name), values, f"position.{point}", SAMPLES, reduce=fold,
+            executor="machine code",
+        )  # fmt: skip
+        times = paired_times({"value": run, "gradient": functools.partial(run, gradient=True)}, ROUNDS)
+        numbers[f"{fold} with gradient /"] = ratio(times, "gradient", "value")
+    promises = [
+        Promise(f"sweep, {name}, {label.split()[0]} of a point with its gradient by six", over, 3.0)
+        for label, over in numbers.items()
+    ]
+    return Row(f"{name}, gradient by six", numbers, promises=promises)
+
+
+def _on_the_sphere() -> Row:
+    """The spherical four-bar linkage over the planar one: coupler and rocker vary, then the crank."""
+    numbers = {}
+    for label in ("coupler and rocker", "crank"):
+        runs = {}
+        for name, space in (("spherical-four-bar", "sphere"), ("crank-rocker", "plane")):
+            paths, point = MECHANISMS[name]
+            values = _values(name, (CRANKS[name],) if label == "crank" else paths, MANY)
+            runs[space] = functools.partial(
+                ct.sweep, ct.example(name), values, f"position.{point}", SAMPLES,
+                reduce="range", executor="machine code",
+            )  # fmt: skip
+        numbers[label] = ratio(paired_times(runs, ROUNDS), "sphere", "plane")
+    promises = [Promise(f"sweep, spherical over planar four-bar, {x} vary", numbers[x], 2.5) for x in numbers]
+    return Row("spherical / planar, range of a point", numbers, promises=promises)
 
 
 def _written(name: str, paths: tuple[str, ...], point: str) -> Row:
     """Every sample, into memory that is fresh."""
-    mechanism, few = ct.example(name), _values(name, paths, 4 * FEW)
+    mechanism = ct.example(name)
+    many, few = _values(name, paths, KEPT), _values(name, paths, FEW)
     outputs = [f"{kind}.{point}" for kind in ("position", "velocity", "acceleration")]
-    run = functools.partial(ct.sweep, mechanism, few, outputs, SAMPLES)
+    run = functools.partial(ct.sweep, mechanism, outputs=outputs, samples=SAMPLES)
     numbers = 3 * (2 if mechanism.space == "plane" else 3)
     times = best_times(
         {
-            "code": functools.partial(run, executor="machine code"),
-            "arrays": functools.partial(run, executor="arrays"),
-            "fresh": functools.partial(_fresh, 4 * FEW * SAMPLES * numbers),
+            "code": functools.partial(run, vary=many, executor="machine code"),
+            "arrays": functools.partial(run, vary=few, executor="arrays"),
+            "fresh": functools.partial(_fresh, KEPT * SAMPLES * numbers),
         },
         rounds=ROUNDS,
     )
-    positions = 4 * FEW * SAMPLES
     return Row(
         f"{name}, written",
         {
             "numbers": float(numbers),
-            "ns": times["code"] / positions * 1e9,
+            "ns": times["code"] / (KEPT * SAMPLES) * 1e9,
             "/ fresh memory": times["code"] / times["fresh"],
-            "arrays /": times["arrays"] / times["code"],
+            "arrays /": times["arrays"] / FEW / (times["code"] / KEPT),
         },
     )
 
@@ -134,19 +190,64 @@ def _motions(name: str, paths: tuple[str, ...]) -> Row:
     return Row(f"{name}, motions", {"ns": times["code"] * each, "arrays /": times["arrays"] / times["code"]})
 
 
-def _with_limits() -> Row:
-    """A sweep of which some mechanisms meet limits, and are left to the arrays."""
-    draw = np.random.default_rng(0)
-    vary = {"links.AB.length": draw.uniform(1.5, 3.5, 4 * FEW)}
-    run = functools.partial(ct.sweep, ct.example("crank-rocker"), vary, "position.B", SAMPLES, reduce="range")
-    times = best_times(
-        {name: functools.partial(run, executor=name) for name in ("machine code", "arrays")}, rounds=ROUNDS
-    )
-    found = run(executor="arrays")
+def _billion() -> Row:
+    """A billion positions reduced, in a process of its own: time by the clock and memory at most."""
+    count = BILLION // SAMPLES
+    program = f"""
+import numpy as np, resource, time
+import centrode as ct
+values = np.linspace(3.4, 3.6, {count})
+start = time.perf_counter()
+ct.sweep(ct.example("crank-rocker"), {{"links.AB.length": values}}, "position.B", {SAMPLES}, reduce="range")
+print(time.perf_counter() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    seconds, most = (float(word) for word in done.stdout.split())
+    memory = most * KILOBYTE
     return Row(
-        "crank-rocker, some locked",
-        {
-            "share of limits": float((found["samples_ok"] < SAMPLES).mean()),
-            "arrays /": times["arrays"] / times["machine code"],
-        },
+        "crank-rocker, a billion positions",
+        {"s": seconds, "MB": memory / 1e6},
+        promises=[Promise("sweep, a billion positions, memory [MB]", memory / 1e6, MOST_MEMORY / 1e6)],
     )
+
+
+def _with_events() -> Iterator[Row]:
+    """Sweeps and motions of mechanisms that meet limits, or pass change points."""
+    draw = np.random.default_rng(0)
+    size = draw.uniform(0.9, 1.1, 4 * FEW)
+    press = ct.value_at(ct.example("six-bar-press"), "links.OA.length")
+    for label, name, point, vary in (
+        ("some locked", "crank-rocker", "B", {"links.AB.length": draw.uniform(1.5, 3.5, 4 * FEW)}),
+        ("all locked", "crank-rocker", "B", {"links.AB.length": draw.uniform(1.1, 1.9, 4 * FEW)}),
+        ("most locked", "six-bar-press", "D", {"links.OA.length": press * draw.uniform(1.5, 3.0, 4 * FEW)}),
+        ("two change points", "parallelogram", "B", {"links.OA.length": size, "links.DB.length": size}),
+    ):
+        few = {path: values[:FEW] for path, values in vary.items()}
+        run = functools.partial(ct.sweep, ct.example(name), outputs=f"position.{point}", samples=SAMPLES)
+        prepared = ready(ct.example(name))
+        span = asked_span(prepared, SAMPLES, None, None)
+        numbers = dimensions_of(prepared.mechanism, few, np)
+        times = best_times(
+            {
+                "reduced": functools.partial(run, vary=vary, reduce="range", executor="machine code"),
+                "written": functools.partial(run, vary=vary, executor="machine code"),
+                "motions": functools.partial(solve_many, prepared, span, numbers, FEW),
+                "arrays reduced": functools.partial(run, vary=few, reduce="range", executor="arrays"),
+                "arrays written": functools.partial(run, vary=few, executor="arrays"),
+                "arrays motions": functools.partial(solve, prepared, span, numbers, FEW),
+            },
+            rounds=ROUNDS,
+        )
+        found = run(vary=few, reduce="range", executor="arrays")
+        yield Row(
+            f"{name}, {label}",
+            {
+                "not whole": float((found["samples_ok"] < SAMPLES).mean()),
+                "ns reduced": times["reduced"] / (4 * FEW * SAMPLES) * 1e9,
+                "arrays / reduced": 4 * times["arrays reduced"] / times["reduced"],
+                "ns written": times["written"] / (4 * FEW * SAMPLES) * 1e9,
+                "arrays / written": 4 * times["arrays written"] / times["written"],
+                "ns motions": times["motions"] / (FEW * SAMPLES) * 1e9,
+                "arrays / motions": times["arrays motions"] / times["motions"],
+            },
+        )

@@ -36,6 +36,21 @@ from .analysis.rotatability import rotatability as rotatability
 from .analysis.rotatability import Rotatability as Rotatability
 from .analysis.repair import repair as repair
 from .analysis.repair import Repair as Repair
+from .analysis.graphic.diagrams import velocity_diagram as velocity_diagram
+from .analysis.graphic.diagrams import acceleration_diagram as acceleration_diagram
+from .analysis.graphic.diagrams import Diagram as Diagram
+from .analysis.graphic.checking import graphic_check as graphic_check
+from .analysis.graphic.checking import GraphicCheck as GraphicCheck
+from .analysis.position_plan import plan_of_positions as plan_of_positions
+from .analysis.position_plan import PositionPlan as PositionPlan
+from .analysis.transmission import transmission_angles as transmission_angles
+from .study.graphic import graphic_rows as graphic_rows
+from .study.graphic import graphic_about as graphic_about
+from .study.graphic import graphic_steps as graphic_steps
+from .study.graphic import graphic_csv as graphic_csv
+from .study.positions import plan_rows as plan_rows
+from .study.transmission import transmission_rows as transmission_rows
+from .study.transmission import transmission_csv as transmission_csv
 from .study.running import study as study
 from .study.running import range_value as range_value
 from .study.limiting import limits_rows as limits_rows
@@ -69,6 +84,33 @@ from .present import equations_latex as equations_latex
 from .present import equations_markdown as equations_markdown
 from .present import equations_rows as equations_rows
 
+# Instant centres, centrodes, curvature
+from .analysis.centres import instant_centres as instant_centres
+from .analysis.cases import Case as Case
+from .analysis.kennedy import construct_centres as construct_centres
+from .analysis.construction import Construction as Construction
+from .analysis.kennedy import MOST_BODIES as MOST_BODIES
+from .analysis.centrodes import centrodes as centrodes
+from .analysis.curvature import curvature as curvature
+from .study.centres import body_names as body_names
+from .study.centres import initial_place as initial_place
+from .study.centres import place_words as place_words
+from .study.centres import centres_header as centres_header
+from .study.centres import centres_rows as centres_rows
+from .study.centres import steps_leading_to as steps_leading_to
+from .study.centres import centrode_rows as centrode_rows
+from .study.centres import curvature_rows as curvature_rows
+
+# Integration, variants, words
+from .equations.integrated import integrate as integrate
+from .study.integrating import closed_motion as closed_motion
+from .study.integrating import integration_rows as integration_rows
+from .study.integrating import integration_failure as integration_failure
+from .study.variants import variants as variants
+from .study.variants import variant_rows as variant_rows
+from .study.variants import variants_summary as variants_summary
+from .study.describing import describe as describe
+
 # Many mechanisms
 from .sweeps.sweeping import sweep as sweep
 from .sweeps.designs import grid as grid
@@ -83,9 +125,22 @@ from .present import write_motion_netcdf as write_motion_netcdf
 from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_reduction_csv as write_reduction_csv
 from .present import write_region_csv as write_region_csv
+from .present import write_centres_csv as write_centres_csv
+from .present import write_centrodes_csv as write_centrodes_csv
+from .present import centres_figure as centres_figure
+from .present import centrodes_figure as centrodes_figure
+from .present import animate_centrodes as animate_centrodes
+from .present import curvature_figure as curvature_figure
+from .present import darkened as darkened
+from .present import write_integration_csv as write_integration_csv
+from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
 from .present import reduction_figures as reduction_figures
+from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
+from .present import diagram_figures as diagram_figures
+from .present import plan_figure as plan_figure
+from .present import transmission_figure as transmission_figure
 from .present import save_figures as save_figures
 
 # Words, failures, language

@@ -23,7 +23,7 @@ from centrode.algebra.reductions import (
     total,
     total_with_gradient,
 )
-from centrode.algebra.scans import Scan
+from centrode.algebra.scans import LINE, Scan, room_of
 
 EPS = 2.0**-52
 m = EXPRESSIONS
@@ -193,3 +193,22 @@ def test_executors_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     assert executors.chosen("auto") == "arrays"
     with pytest.raises(ValueError, match="no such executor"):
         executors.chosen("abacus")
+
+
+@pytest.mark.parametrize("number", [np.float64, np.float32])
+@pytest.mark.parametrize("lanes", [1, 8, 361])
+def test_rows_of_a_room_begin_at_lines_of_the_cache(lanes: int, number: type[np.floating]) -> None:
+    room = room_of(2, 3, lanes, number)
+    assert room.shape == (2, 3, lanes)
+    assert room.dtype == number
+    room[...] = np.arange(6 * lanes).reshape(room.shape)
+    assert (room.ravel() == np.arange(6 * lanes)).all()
+    assert {room[i, j].ctypes.data % LINE for i in range(2) for j in range(3)} == {0}
+
+
+def test_a_scan_writes_into_a_room() -> None:
+    double = Scan(("x",), ("u",), {"product": variable("x") * variable("u")})
+    room = room_of(1, 2, 5)
+    found = executors.runner(double)([[1.0, 2.0, 3.0, 4.0, 5.0]], [[2.0, 3.0]], out=room)
+    assert found.outputs is room
+    assert room[0].tolist() == [[2.0, 4.0, 6.0, 8.0, 10.0], [3.0, 6.0, 9.0, 12.0, 15.0]]

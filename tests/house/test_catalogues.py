@@ -121,3 +121,12 @@ def test_sentences_new_and_gone_fail_until_updated(
     assert "no longer in the code: 'length {length} is wrong'" in said
     tool.update()
     assert [message.id for message in tool.sentences(tool.read("uk"))].count("new") == 1
+
+
+def test_sentences_that_the_extraction_cannot_see_fail(
+    tool: ModuleType, capsys: pytest.CaptureFixture[str]
+) -> None:
+    translate(tool)
+    tool.compile_all()
+    (tool.CODE / "hall.py").write_text("text = f\"{length} {_('m')}\"\n")
+    assert "hall.py:1: a sentence inside an f-string is not found" in complaints(tool, capsys)

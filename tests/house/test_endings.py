@@ -102,7 +102,11 @@ def test_help_lists_commands_in_reading_order(centrode: Run) -> None:
 
 def test_help_of_every_command_fits_its_line(centrode: Run) -> None:
     for language in ("en", "ru", "uk"):
-        assert "..." not in centrode("--lang", language, "--help").stdout.partition("\n  ")[2]
+        told = centrode("--lang", language, "--help").stdout.partition("\n  ")[2]
+        assert "..." not in told
+        first, last = (told.index(f"\n  {command} ") for command in ("run", "schema"))
+        rows = told[first:last].splitlines()[1:]
+        assert [row for row in rows if not row[2:].strip() or row[2] == " "] == []  # one line each
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,30 @@ def test_every_variable_of_a_motion_is_named() -> None:
     steady = ["turned", "moment_of_loads", "driving_moment", "work_of_loads", "work_of_drive", "work"]
     steady += ["inertia_of_links", "inertia_slope_of_links", "energy_of_links", "energy_change"]
     steady += [f"drive_{name}{order}" for name in ("speed", "acceleration") for order in ("", "_first_order")]
-    assert set(QUANTITIES) == {*bases, *coefficients, *others, *events, *reduced, *steady}
+    centres = (
+        "centre",
+        "centre_direction",
+        "centre_case",
+        "fixed_centrode",
+        "moving_centrode",
+        "fixed_arc",
+        "moving_arc",
+        "centrode_piece",
+        "pole",
+        "inflection_pole",
+        "inflection_diameter",
+        "pole_tangent",
+        "ball_point",
+        "stationary_cubic",
+        "path_curvature",
+        "path_curvature_slope",
+        "curvature_centre",
+    )
+    transmission = ("transmission_angle", "pressure_angle")
+    integrated = ("drift", "angle_difference", "position_difference")
+    known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
+    known |= set(reduced) | set(steady)
+    assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
 

@@ -11,6 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.algebra import machine_code
+from centrode.sweeps.slopes import Slopes, States
 from mechanisms import EPS, four_bar
 
 EXECUTORS = ["arrays", pytest.param("machine code", marks=pytest.mark.skipif(
@@ -129,3 +130,34 @@ def test_what_has_no_derivatives_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(ct.InputError, match="expected true or false"):
         ct.read_sweep(study)
+
+
+def test_both_ways_to_carry_a_sum_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the values at paths, and by the parts of the formula that stand: the sphere by six takes the latter."""
+    mechanism, samples, lanes = ct.example("spherical-four-bar"), 19, np.array([-0.01, 0.0, 0.01])
+    paths = [f"links.{link}.length" for link in ("AB", "BC", "DC")]
+    paths += [f"frame.points.{x}" for x in ("D.longitude", "D.latitude", "A.longitude")]
+    vary = {path: ct.value_at(mechanism, path) + k * lanes for k, path in enumerate(paths, 1)}
+    chosen: list[int] = []
+
+    def watched(self: Slopes, name: str) -> States:
+        states = states_of(self, name)
+        chosen.append(len(states.parts))
+        return states
+
+    def computed() -> np.ndarray:
+        found = ct.sweep(
+            mechanism, vary, "position.C", samples, reduce="mean", gradient=True, executor="arrays"
+        )
+        return found["gradient.position.C"].values
+
+    states_of = Slopes.states_of
+    monkeypatch.setattr(Slopes, "states_of", watched)
+    by_parts = computed()
+    assert max(chosen) > len(paths)
+    monkeypatch.setattr(Slopes, "_by_parts", Slopes._by_paths)
+    by_paths = computed()
+    assert np.abs(by_paths).max() > 0.1
+    # the arcs are of the order of 1, the least sine is that of the crank: each of some hundred operations rounds once
+    allowed = 200 * EPS * max(1.0, np.abs(by_paths).max()) / np.sin(ct.value_at(mechanism, paths[0]))
+    np.testing.assert_allclose(by_parts, by_paths, rtol=0.0, atol=allowed)

@@ -6,7 +6,7 @@ Rules of the coefficients: Griewank and Walther, Evaluating Derivatives (2nd ed.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import factorial
+from math import factorial, frexp
 from typing import Any, TypeAlias, Union
 
 Number: TypeAlias = Any
@@ -110,6 +110,10 @@ def _is_zero(x: Number) -> bool:
     return type(x) is float and x == 0.0
 
 
+def _is_power_of_two(x: Number) -> bool:
+    return type(x) is float and abs(frexp(x)[0]) == 0.5
+
+
 def _sum(a: Number, b: Number) -> Number:
     return b if _is_zero(a) else a if _is_zero(b) else a + b
 
@@ -133,14 +137,17 @@ def product(a: Coefficients, b: Coefficients) -> list[Number]:
 
 def quotient(a: Coefficients, b: Coefficients) -> list[Number]:
     """Coefficients of the quotient of two series."""
+    if len(a) == 1:
+        return [a[0] / b[0]]
     inverse = 1.0 / b[0]
-    result: list[Number] = [a[0] / b[0]]
+    # by a power of two the product has the quotient's bits
+    result: list[Number] = [a[0] * inverse if _is_power_of_two(a[0]) else a[0] / b[0]]
     for k in range(1, len(a)):
         total = a[k]
         for i in range(k):
             if not (_is_zero(result[i]) or _is_zero(b[k - i])):
-                total = total - result[i] * b[k - i]
-        result.append(total * inverse)
+                total = _difference(total, result[i] * b[k - i])
+        result.append(total if _is_zero(total) else total * inverse)
     return result
 
 

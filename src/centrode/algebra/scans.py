@@ -19,6 +19,8 @@ from centrode.algebra.expressions import Node
 from centrode.algebra.graphs import Graph
 
 Array: TypeAlias = npt.NDArray[Any]
+LINE = 64
+"""Bytes of a line of the cache, and of the widest vector: one that begins elsewhere is written twice."""
 NEXT = "next "
 """Before the name of a state: its value after the step, in the scan's graph."""
 
@@ -127,12 +129,17 @@ def call_of(
         out = np.empty(shape, number)
     if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != out.itemsize):
         raise ValueError(f"out has to be {shape} of {np.dtype(number)} with a contiguous last axis")
-    return Call(
-        np.ascontiguousarray(np.broadcast_to(of_lanes, (len(scan.parameters), lanes))),
-        np.ascontiguousarray(np.broadcast_to(of_steps, (len(scan.inputs), count))),
-        np.array(np.broadcast_to(states, (len(scan.state), lanes)), number, order="C"),
-        out,
-    )
+    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes).copy(), out)
+
+
+def room_of(outputs: int, steps: int, lanes: int, number: npt.DTypeLike = np.float64) -> Array:
+    """A buffer for outputs that is used again, (outputs, steps, lanes): rows begin where lines of the cache do."""
+    size = np.dtype(number).itemsize
+    row = -(-lanes * size // LINE) * LINE
+    whole = np.empty(outputs * steps * row + LINE, np.uint8)
+    first = -whole.ctypes.data % LINE
+    rows = whole[first : first + outputs * steps * row].view(number)
+    return rows.reshape(outputs, steps, row // size)[:, :, :lanes]
 
 
 def _rows(names: tuple[str, ...], values: npt.ArrayLike | None, number: npt.DTypeLike) -> Array:
@@ -145,6 +152,15 @@ def _rows(names: tuple[str, ...], values: npt.ArrayLike | None, number: npt.DTyp
     if rows.ndim != 2 or len(rows) != len(names):
         raise ValueError(f"expected ({len(names)}, n) values, got {rows.shape}")
     return rows
+
+
+def _spread(rows: Array, length: int) -> Array:
+    """Rows of that length; one number stands for all. Short kernels are called often, so nothing is done twice."""
+    if not len(rows):
+        return np.empty((0, length), rows.dtype)
+    if rows.shape[1] != length:
+        rows = np.broadcast_to(rows, (len(rows), length))
+    return np.ascontiguousarray(rows)
 
 
 def _length(what: str, arrays: Sequence[Array], otherwise: int) -> int:

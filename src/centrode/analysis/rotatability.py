@@ -222,13 +222,13 @@ def _limit(prepared: Ready, tour: Tour, event: Event, end: str) -> LimitFound:
 
 
 def _change_points(prepared: Ready, tour: Tour) -> tuple[ChangePoint, ...]:
-    found = []
+    found: dict[ChangePoint, None] = {}  # several pairs of positions of a group may meet at one place
     for event in tour.events("change point"):
         if tour.low <= event.at <= tour.high:
             group = prepared.structure.groups[event.group]
-            cause = cause_of(tour, group, event.group, event.at)
-            found.append(
-                ChangePoint(event.at, tour.drive.id, name_of(group), cause.sentence, cause.condition)
+            cause = cause_of(tour, group, event.group, event.at, crossing=True)
+            found[ChangePoint(event.at, tour.drive.id, name_of(group), cause.sentence, cause.condition)] = (
+                None
             )
     return tuple(found)
 

@@ -15,11 +15,18 @@ from typing import Any
 import click
 
 import centrode as ct
+from centrode.cli.angles import angles
+from centrode.cli.centres import centres
+from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
+from centrode.cli.describe import describe
+from centrode.cli.diagrams import diagrams
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.flywheel import flywheel
+from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
+from centrode.cli.plan import plan
 from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
@@ -27,18 +34,27 @@ from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.sweep import sweep
 from centrode.cli.translation import language_option, translated, wished_language, with_language
+from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
 from centrode.locale import _, choose_language_of_process, mark
 
 COMMANDS: tuple[click.Command, ...] = (
     run,
     check,
+    describe,
     equations,
+    integrate,
     rotatability,
     reduce,
+    variants,
     limits,
     region,
     flywheel,
+    centres,
+    centrodes,
+    diagrams,
+    plan,
+    angles,
     sweep,
     examples,
     schema,

@@ -48,6 +48,7 @@ def translated(command: click.Command) -> click.Command:
     """A copy of the command, its subcommands and parameters with every text in the chosen language."""
     spoken = copy.copy(command)
     spoken.help, spoken.epilog = _said(command.help), _said(command.epilog)
+    spoken.short_help = spoken.help  # whole: click cuts off two letters more than its list of commands needs
     spoken.params = [_parameter(parameter) for parameter in command.params]
     spoken.options_metavar = _said(command.options_metavar)
     if isinstance(spoken, click.Group) and isinstance(command, click.Group):

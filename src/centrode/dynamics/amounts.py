@@ -144,22 +144,22 @@ class Diagram:
 
     def __call__(self, now: Situation) -> Number:
         at, *forces = np.array(self.rows).T
-        self._check(np.asarray(now.x), float(at[0]), float(at[-1]))
-        there = np.where(np.isnan(now.x), np.nan, np.interp(now.x, at, forces[0]))
+        inside = self._inside(np.asarray(now.x))
+        there = np.where(inside, np.interp(now.x, at, forces[0]), np.nan)
         if len(forces) == 1:
             return there
-        return np.where(now.forwards, there, np.interp(now.x, at, forces[1]))
+        return np.where(now.forwards, there, np.where(inside, np.interp(now.x, at, forces[1]), np.nan))
 
-    def _check(self, x: Array, low: float, high: float) -> None:
+    def _inside(self, x: Array) -> npt.NDArray[np.bool_]:
+        """Where a displacement lies on the diagram; that of an absent position does not."""
+        low, high = self.rows[0][0], self.rows[-1][0]
         slack = SLACK * (high - low)
-        beyond = (x < low - slack) | (x > high + slack)
-        if beyond.any():
-            first = float(x[beyond].flat[0])
-            what = _(
-                "the stroke reaches {value:.6g} m, and the diagram lies between {low:.6g} m and {high:.6g} m"
-            )
-            raise InputError(
-                self.label,
-                what.format(value=first, low=low, high=high),
-                _("add rows up to the ends of the stroke"),
-            )
+        return np.asarray((x >= low - slack) & (x <= high + slack))
+
+    def refusal(self, x: float) -> InputError:
+        """What is said of a displacement beside the diagram."""
+        what = _(
+            "the stroke reaches {value:.6g} m, and the diagram lies between {low:.6g} m and {high:.6g} m"
+        )
+        text = what.format(value=x, low=self.rows[0][0], high=self.rows[-1][0])
+        return InputError(self.label, text, _("add rows up to the ends of the stroke"))

@@ -23,6 +23,7 @@ from centrode.dynamics.coordinates import Component, Coordinate, Distance, HalfS
 from centrode.dynamics.masses import Given, Mass, centre_of
 from centrode.dynamics.states import State
 from centrode.errors import InputError, NotComputedYet
+from centrode.kinematics.paths import JETS
 from centrode.locale import _
 from centrode.model.loads import Load
 from centrode.model.mechanism import FRAME, Mechanism, Vector
@@ -44,12 +45,17 @@ class Effort:
     def strength(self, state: State) -> Number:
         """The force [N] or moment [N m] itself."""
         slope = self.coordinate.slope(state).value
-        forwards = grows(self.coordinate, state) if "v" in self.amount.uses else True
+        forwards = grows(self.coordinate, state) if isinstance(self.amount, Diagram) else True
         q = np.nan if len(state.mechanism.drives) > 1 else state.parameter
         x, v = self.coordinate.value(state), slope * state.rate
         now = Situation(state.time, q, x, v, forwards, state.m.base)
         amount = self.amount(now)
-        return amount if self.gate is None else np.where(grows(self.gate, state), amount, 0.0)
+        if self.gate is None:
+            return amount
+        if state.m is JETS:
+            return np.where(grows(self.gate, state), amount, 0.0)
+        speed = self.gate.slope(state).value * state.rate
+        return state.m.base.where(state.m.base.less(speed, 0.0), 0.0, amount)
 
     @property
     def switches(self) -> tuple[Coordinate, ...]:
@@ -96,13 +102,22 @@ class Acting:
     def strengths(self, state: State, known: Number) -> list[Number]:
         """How great each effort is [N or N m]; raises InputError as `moment` does."""
         found = [effort.strength(state) for effort in self.efforts]
-        for strength in found:
+        for effort, strength in zip(self.efforts, found, strict=True):
             lacking = known & ~np.isfinite(strength)
             if np.any(lacking):
-                value = float(np.broadcast_to(state.parameter, lacking.shape)[lacking].flat[0])
-                what = _("it has no finite value at {value:.6g}").format(value=value)
-                raise InputError(self.where, what, _("correct its formula"))
+                raise self._refusal(effort, state, lacking)
         return found
+
+    def _refusal(self, effort: Effort, state: State, lacking: Number) -> InputError:
+        """Why an effort has no amount at the first of the samples that lack one."""
+
+        def first(values: Number) -> float:
+            return float(np.broadcast_to(values, lacking.shape)[lacking].flat[0])
+
+        if isinstance(effort.amount, Diagram):
+            return effort.amount.refusal(first(effort.coordinate.value(state)))
+        what = _("it has no finite value at {value:.6g}").format(value=first(state.parameter))
+        return InputError(self.where, what, _("correct its formula"))
 
     def along(self, state: State, strengths: Sequence[Number]) -> Number:
         """What efforts of these strengths do along the parameter of a state: the sum of strength times slope."""

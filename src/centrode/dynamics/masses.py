@@ -83,23 +83,6 @@ def centre_of(mechanism: Mechanism, link: str, given: Given | None = None) -> Ce
     return _Reader(link, mechanism.links[link], given or {}).centre()
 
 
-def paths_of_masses(mechanism: Mechanism) -> frozenset[str]:
-    """Paths of the numbers that masses have in the description."""
-    numbers = {
-        f"links.{name}.{key}"
-        for name, link in mechanism.links.items()
-        for key in ("mass", "inertia", "radius")
-        if getattr(link, key) is not None
-    }
-    spots = {
-        f"links.{name}.centre.{axis}"
-        for name, link in mechanism.links.items()
-        if isinstance(link.centre, tuple)
-        for axis in "xy"
-    }
-    return frozenset(numbers | spots)
-
-
 def massless_links(mechanism: Mechanism) -> tuple[str, ...]:
     """Links without mass and without inertia."""
     heavy = {mass.link for mass in masses_of(mechanism)}

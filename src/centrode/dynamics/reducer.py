@@ -12,7 +12,7 @@ import numpy.typing as npt
 from centrode.dynamics.inertia import shares
 from centrode.dynamics.jumps import jumps_of
 from centrode.dynamics.loads import Acting, loads_of
-from centrode.dynamics.masses import Mass, masses_of
+from centrode.dynamics.masses import Given, Mass, masses_of
 from centrode.dynamics.states import Moving, State
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.places import Places
@@ -60,8 +60,8 @@ class Burden:
     loads: tuple[Acting, ...]
 
     @classmethod
-    def of(cls, mechanism: Mechanism) -> Burden:
-        """What the description gives.
+    def of(cls, mechanism: Mechanism, given: Given | None = None) -> Burden:
+        """What the description gives; `given` are numbers by their paths in place of its own.
 
         Raises
         ------
@@ -74,8 +74,8 @@ class Burden:
             raise NotComputedYet(
                 "space", _("forces on the sphere are not computed yet"), _("describe a plane one")
             )
-        masses = masses_of(mechanism)
-        loads = loads_of(mechanism, masses)
+        masses = masses_of(mechanism, given)
+        loads = loads_of(mechanism, masses, given)
         if not masses and not loads:
             what = _("there are neither masses nor loads to reduce")
             raise InputError("", what, _("give links a mass, or [[loads]]"))

@@ -7,13 +7,10 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from centrode.equations.letters import Letter, Parts, Wave
 from centrode.equations.sums import Coefficient, Sum, Term
-
-if TYPE_CHECKING:
-    from centrode.equations.formulas import Formula
 
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "epsilon": "ε", "theta": "θ", "kappa": "κ", "rho": "ρ",
@@ -23,6 +20,25 @@ SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 POWERS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 DOTS = {"": "", "dot": "\u0307", "ddot": "\u0308"}
 NAME = re.compile(r"([A-Za-z]+?)(\d*)(?:_(?!d?dot$)(.+?))?(?:_(dot|ddot))?")
+
+
+class Factored(Protocol):
+    """What is spelled: a number, a product, and a sum whose terms share nothing."""
+
+    @property
+    def number(self) -> Coefficient: ...
+
+    @property
+    def product(self) -> Term: ...
+
+    @property
+    def rest(self) -> Sum: ...
+
+    @property
+    def total(self) -> Sum: ...
+
+    @property
+    def single(self) -> bool: ...
 
 
 def parts_of(name: str) -> tuple[str, str, str]:
@@ -137,7 +153,7 @@ def spelled_sum(total: Sum, spelling: Spelling) -> str:
 
 
 def spelled(
-    formula: Formula, spelling: Spelling, differences_first: bool = False, turned: bool = False
+    formula: Factored, spelling: Spelling, differences_first: bool = False, turned: bool = False
 ) -> str:
     """A formula.
 
@@ -155,7 +171,7 @@ def spelled(
     return sign + pieces.text(size_of(formula.number), formula.product, rest)
 
 
-def _turnable(formula: Formula) -> Wave | None:
+def _turnable(formula: Factored) -> Wave | None:
     """The sine of a difference into which a sign may go."""
     for one, power in formula.product.waves:
         if power == 1 and one.kind == "sin" and len(one.parts) > 1:

@@ -145,6 +145,9 @@ class Plane:
         arm = turned(local, pose.rotor)
         return [((1.0, 0.0), (-1.0, 0.0, arm[1])), ((0.0, 1.0), (0.0, -1.0, -arm[0]))]
 
+    def apart(self, m: Namespace, point: Vector, pose: Pose, local: Vector) -> list[Number]:
+        return self.in_link(m, point, pose, local)
+
     def on_guide(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Number:
         through, direction = _line(pose, curve)
         return cross(direction, subtract(point, through))

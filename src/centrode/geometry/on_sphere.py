@@ -170,6 +170,9 @@ class Sphere:
         gradients = slopes.stereographic_slopes(m, point, pose, local)
         return [slopes.of_both(m, point, gradient) for gradient in gradients]
 
+    def apart(self, m: Namespace, point: Vector, pose: Attitude, local: Coordinates) -> list[Number]:
+        return list(subtract(point, self.place(m, pose, local)))
+
     def on_guide(self, m: Namespace, point: Vector, pose: Attitude, curve: Curve) -> Number:
         pole, (radius,) = curve
         return sphere.arc(m, self.place(m, pose, pole), point) - radius

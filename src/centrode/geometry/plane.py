@@ -110,11 +110,19 @@ def pose_by_two_points(first: Vector, second: Vector, at_first: Vector, at_secon
     The rotor is a unit vector as far as the places keep the link's own distance; the residual of a motion
     contains the second point, so a distance that does not fit shows.
     """
-    local = subtract(second, first)
-    rotor = turned(reversed_rotor(local), subtract(at_second, at_first))
-    # a link's own numbers do not move: one division serves all places, and all derivatives
-    inverse = 1.0 / dot(local, local)
-    return pose_with_point(first, at_first, (rotor[0] * inverse, rotor[1] * inverse))
+    rotor = turned(_inverse(subtract(second, first)), subtract(at_second, at_first))
+    return pose_with_point(first, at_first, rotor)
+
+
+def _inverse(a: Vector) -> Vector:
+    """What turns a vector back to the first axis and to unit length.
+
+    A link's own numbers do not move: one division serves all places, and all derivatives.
+    """
+    if is_literal_zero(a[1]):
+        return 1.0 / a[0], 0.0
+    factor = 1.0 / dot(a, a)
+    return a[0] * factor, -(a[1] * factor)
 
 
 def moved_point(m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:

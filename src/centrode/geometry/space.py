@@ -164,6 +164,9 @@ class Space(Protocol):
     def in_link_rows(self, m: Namespace, point: Place, pose: Pose, local: Coordinates) -> list[Rows]:
         """Their derivatives by point and link."""
 
+    def apart(self, m: Namespace, point: Place, pose: Pose, local: Coordinates) -> list[Number]:
+        """Components of a place less that of a link's point: for looking at, where `in_link` is for Newton's method."""
+
     def on_guide(self, m: Namespace, point: Place, pose: Pose, curve: Curve) -> Number:
         """Distance of a point from the curve of a guide, signed."""
 

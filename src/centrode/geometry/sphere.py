@@ -187,8 +187,9 @@ def meet_circles(centre_1: Vector, half_1: HalfArc, centre_2: Vector, half_2: Ha
     radicand = 4.0 * (h - difference * difference) * (total * total - h)
     squared = 4.0 * h * (1.0 - h)
     lowered = 2.0 * half_1[0] * half_1[0]
-    ahead = 2.0 * (total * difference + h - lowered * h) / squared
-    left = root(radicand) / squared
+    factor = 1.0 / squared
+    ahead = 2.0 * (total * difference + h - lowered * h) * factor
+    left = root(radicand) * factor
     return combined(
         (1.0 + (2.0 * h * ahead - lowered), centre_1), (ahead, line), (left, cross(centre_1, line))
     )

@@ -78,16 +78,19 @@ def _bridged(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
     if np.isfinite(cosine.sum() + sine.sum()):
         return cosine, sine
     known = np.isfinite(cosine + sine)
-    nodes = np.arange(known.shape[1])
-    ahead = np.maximum.accumulate(np.where(known & (nodes >= start), nodes, -1), axis=1)
-    behind = np.where(known & (nodes <= start), nodes, known.shape[1])
+    lanes, count = known.shape
+    nodes = np.arange(count, dtype=np.int32)
+    source = np.where(known, nodes, np.int32(-1))
+    behind = np.where(known[:, : start + 1], nodes[: start + 1], np.int32(count))
     behind = np.minimum.accumulate(behind[:, ::-1], axis=1)[:, ::-1]
-    source = np.where(nodes >= start, ahead, behind)
-    missing = (source < 0) | (source >= known.shape[1])
-    source = np.where(missing, np.argmax(known, axis=1)[:, None], source)
-    cosine, sine = (np.take_along_axis(x, source, axis=1) for x in (cosine, sine))
-    found = np.isfinite(cosine + sine)
-    return np.where(found, cosine, 1.0), np.where(found, sine, 0.0)
+    source[:, start:] = np.maximum.accumulate(source[:, start:], axis=1)
+    source[:, :start] = behind[:, :start]
+    missing = (source < 0) | (source >= count)
+    source = np.where(missing, np.argmax(known, axis=1).astype(np.int32)[:, None], source)
+    flat = source + (np.arange(lanes) * count)[:, None]
+    somewhere = known.any(axis=1, keepdims=True)
+    cosine, sine = (np.ascontiguousarray(x).reshape(-1)[flat] for x in (cosine, sine))
+    return np.where(somewhere, cosine, 1.0), np.where(somewhere, sine, 0.0)
 
 
 def angle_and_rates(rotor: Array, nodes: NodeTurns, nearest: npt.NDArray[np.intp], angle: Array) -> None:

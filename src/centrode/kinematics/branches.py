@@ -94,10 +94,6 @@ class Branches:
         between = ((table > low) & (table < high)).sum(axis=-1)
         return np.asarray(base * (1.0 - 2.0 * (between % 2)))
 
-    def greatest(self, group: int) -> Array:
-        """Greatest radicand of a group on the mesh: shape (lanes, 1)."""
-        return self.largest[group][:, None]
-
     def reach(self, lane: int) -> tuple[float, float]:
         """Nearest limits on both sides of the initial position; infinite where there is none."""
         low, high = self.reaches()[lane]

@@ -27,13 +27,12 @@ from centrode.kinematics.mending import (
     NODES,
     WEIGHTS,
     Index,
-    Window,
+    Windows,
+    finite,
     inside,
     mended,
     numbers_of,
-    of_window,
     set_numbers,
-    value_of,
 )
 from centrode.kinematics.paths import JETS
 from centrode.structure.dimensions import Dimensions
@@ -63,8 +62,10 @@ class Continuation:
     branches: Branches
     start: Positions
     nominal: Dimensions
+    order: int = 2
+    """Derivatives that interpolated stretches carry."""
     _tracks: dict[int, Tracks] = field(default_factory=dict)
-    _windows: dict[int, list[Window]] = field(default_factory=dict)
+    _windows: dict[int, Windows | None] = field(default_factory=dict)
     _known: dict[tuple[int, bool], list[Number]] = field(default_factory=dict)
 
     def hooks(self, m: Namespace, parameter: Array, lanes: Lanes | None) -> Smooth:
@@ -98,67 +99,70 @@ class Continuation:
 
     def mend(self, group: int, at: Positions, parameter: Array, lanes: Lanes | None) -> list[Index]:
         """Interpolate what a group gives wherever a change point of it is near; returns where that was."""
-        windows = self._windows_of(group)
-        if not windows:
+        windows = self.windows_of(group)
+        if windows is None:
             return []
         shape = (self.branches.lanes, parameter.shape[-1]) if lanes is None else parameter.shape
-        along = np.broadcast_to(parameter, shape)
-        places = []
-        for number, window in enumerate(windows):
-            index = inside(window, along, lanes)
-            if index is not None:
-                offsets = (along[index] - window.centre) / window.half
-                if self._replace(group, at, shape, number, index, offsets):
-                    places.append(index)
-        return places
-
-    def _windows_of(self, group: int) -> list[Window]:
-        if not self.branches.smooth:
+        index, chosen = inside(windows, parameter.reshape(-1), lanes)
+        if not len(chosen):
             return []
-        if group not in self._windows:
-            self._windows[group] = [
-                Window(event.lane, event.at, self._half_width(group, event.lane, event.at))
-                for event in self.branches.events
-                if event.group == group and event.kind == "change point"
-            ]
-        return self._windows[group]
-
-    def _half_width(self, group: int, lane: int, at: float) -> float:
-        """Limits of the groups before it and all events of its own bound the stretch on which a group is smooth."""
-        unit = self.kinematics.path.unit_at(at)
-        others = [
-            abs(event.at - at)
-            for event in self.branches.events
-            if event.lane == lane
-            and (event.group == group or (event.group < group and event.kind == "limit"))
-            and abs(event.at - at) > 1e-9 * unit
-        ]
-        higher = isinstance(self.kinematics.structure.groups[group], Newton)
-        return min(WINDOW * unit, min(others, default=np.inf) / (CLEAR_OF_HIGHER if higher else CLEAR))
-
-    def _replace(
-        self, group: int, at: Positions, shape: tuple[int, ...], window: int, index: Index, offsets: Array
-    ) -> bool:
-        basis = WEIGHTS / (offsets[:, None] - NODES)
+        bounded = any(isinstance(number, Rounded) for number in numbers_of(self.kinematics, group, at))
+        known = self._at_nodes(group, bounded)
+        whole = finite(known, len(windows))[chosen]
+        if not whole.all():  # another event lies inside some: the closed form has to do there
+            index, chosen = tuple(part[whole] for part in index), chosen[whole]
+        along = parameter.reshape(-1)[index[-1]]
+        basis = WEIGHTS / (((along - windows.centre[chosen]) / windows.half[chosen])[:, None] - NODES)
         basis /= basis.sum(axis=1, keepdims=True)
         numbers = numbers_of(self.kinematics, group, at)
-        bounded = any(isinstance(number, Rounded) for number in numbers)
-        known = [of_window(number, window) for number in self._at_nodes(group, bounded)]
-        if not all(np.isfinite(value_of(number)).all() for number in known):
-            return False  # another event lies inside: the closed form has to do
-        smooth = [mended(old, node, shape, index, basis) for old, node in zip(numbers, known, strict=True)]
+        smooth = [
+            mended(old, node, shape, index, chosen, basis) for old, node in zip(numbers, known, strict=True)
+        ]
         set_numbers(self.kinematics, group, at, smooth)
-        return True
+        return [index]
+
+    def windows_of(self, group: int) -> Windows | None:
+        """The stretches on which a group is interpolated, once its events are known; None if there are none."""
+        if not self.branches.smooth:
+            return None
+        if group not in self._windows:
+            self._windows[group] = self._found_windows(group)
+        return self._windows[group]
+
+    def _found_windows(self, group: int) -> Windows | None:
+        events = self.branches.events
+        centres = [event for event in events if event.group == group and event.kind == "change point"]
+        if not centres:
+            return None
+        bounds: dict[int, list[float]] = {event.lane: [] for event in centres}
+        for event in events:
+            if event.lane in bounds and (
+                event.group == group or (event.group < group and event.kind == "limit")
+            ):
+                bounds[event.lane].append(event.at)
+        return Windows(
+            np.array([event.lane for event in centres], dtype=np.intp),
+            np.array([event.at for event in centres]),
+            np.array([self._half_width(group, event.at, bounds[event.lane]) for event in centres]),
+        )
+
+    def _half_width(self, group: int, at: float, bounds: list[float]) -> float:
+        """Limits of the groups before it and all events of its own bound the stretch on which a group is smooth."""
+        unit = self.kinematics.path.unit_at(at)
+        others = [abs(bound - at) for bound in bounds if abs(bound - at) > 1e-9 * unit]
+        higher = isinstance(self.kinematics.structure.groups[group], Newton)
+        return min(WINDOW * unit, min(others, default=np.inf) / (CLEAR_OF_HIGHER if higher else CLEAR))
 
     def _at_nodes(self, group: int, bounded: bool) -> list[Number]:
         """What a group gives at the nodes of all its windows, as jets or with bounds: arrays (windows * nodes,)."""
         key = (group, bounded)
         if key not in self._known:
-            windows = self._windows_of(group)
-            lanes = np.repeat([window.lane for window in windows], len(NODES)).astype(np.intp)
-            nodes = np.concatenate([window.centre + window.half * NODES for window in windows])
+            windows = self.windows_of(group)
+            assert windows is not None
+            lanes = np.repeat(windows.lane, len(NODES))
+            nodes = (windows.centre[:, None] + windows.half[:, None] * NODES).reshape(-1)
             m: Namespace = ROUNDED if bounded else JETS
-            lifted: Number = Rounded.of(nodes) if bounded else Jet.variable(nodes, 2)
+            lifted: Number = Rounded.of(nodes) if bounded else Jet.variable(nodes, self.order)
             used = self.kinematics.taken(lanes)
             at = used.frame(m, lifted)
             with np.errstate(all="ignore"):

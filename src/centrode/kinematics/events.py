@@ -116,7 +116,7 @@ class Scan:
     def _limits(self, group: int, lanes: Lanes, at: Array) -> list[Event]:
         if not len(lanes):
             return []
-        rises = self._guard(group, lanes, at, 1).derivative(1) > 0.0
+        rises = self.guard(group, lanes, at, 1).derivative(1) > 0.0
         return [
             Event("limit", group, int(lane), float(x), bool(up))
             for lane, x, up in zip(lanes, at, rises, strict=True)
@@ -132,7 +132,8 @@ class Scan:
         settled[lanes[near], np.maximum(cells[near] - 1, 0)] = True
         settled[lanes[near], np.minimum(cells[near] + 1, last)] = True
 
-    def _guard(self, group: int, lanes: Lanes, at: Array, order: int) -> Jet:
+    def guard(self, group: int, lanes: Lanes, at: Array, order: int) -> Jet:
+        """Radicand, or divisor, of a group with derivatives at parameters, one mechanism for each."""
         hooks = self.continuation.hooks(JETS, at, lanes)
         with np.errstate(all="ignore"):
             guard = self.kinematics.taken(lanes).guard(JETS, Jet.variable(at, order), group, hooks)
@@ -142,14 +143,14 @@ class Scan:
 
     def _minima(self, group: int, lanes: Lanes, low: Array, high: Array) -> Array:
         def slope(x: Array) -> tuple[Array, Array]:
-            jet = self._guard(group, lanes, x, 2)
+            jet = self.guard(group, lanes, x, 2)
             return jet.derivative(1), jet.derivative(2)
 
         return bracketed_roots(slope, low, high)
 
     def _roots(self, group: int, lanes: Lanes, low: Array, high: Array) -> Array:
         def guard(x: Array) -> tuple[Array, Array]:
-            jet = self._guard(group, lanes, x, 1)
+            jet = self.guard(group, lanes, x, 1)
             return jet.value, jet.derivative(1)
 
         return bracketed_roots(guard, low, high) if len(lanes) else np.zeros(0)

@@ -29,21 +29,37 @@ WEIGHTS = np.array([1.0 / np.prod(node - np.delete(NODES, k)) for k, node in enu
 
 
 @dataclass(frozen=True)
-class Window:
-    """The stretch about a change point of one mechanism of a batch."""
+class Windows:
+    """The stretches about the change points of a group, of all mechanisms of a batch: arrays (windows,)."""
 
-    lane: int
-    centre: float
-    half: float
+    lane: Lanes
+    centre: Array
+    half: Array
+
+    def __len__(self) -> int:
+        return len(self.lane)
 
 
-def inside(window: Window, along: Array, lanes: Lanes | None) -> Index | None:
-    """Index of the parameters inside a window; None if there are none."""
+def inside(windows: Windows, along: Array, lanes: Lanes | None) -> tuple[Index, Lanes]:
+    """Index of the parameters inside a window, and which window that is; of two the later one counts.
+
+    `along` are parameters (n,) of all mechanisms, or with `lanes` one mechanism's each.
+    """
     if lanes is None:
-        found = np.nonzero(np.abs(along[window.lane] - window.centre) < window.half)[0]
-        return (window.lane, found) if len(found) else None
-    found = np.nonzero((lanes == window.lane) & (np.abs(along - window.centre) < window.half))[0]
-    return (found,) if len(found) else None
+        order = np.argsort(along, kind="stable")
+        ends = windows.centre - windows.half, windows.centre + windows.half
+        # one more on both sides: the last bit is left to the comparison below
+        first = np.maximum(np.searchsorted(along[order], ends[0]) - 1, 0)
+        last = np.minimum(np.searchsorted(along[order], ends[1], side="right") + 1, len(along))
+    else:
+        order = np.argsort(lanes, kind="stable")
+        first, last = (np.searchsorted(lanes[order], windows.lane, side=side) for side in ("left", "right"))
+    counts = last - first
+    chosen = np.repeat(np.arange(len(windows)), counts)
+    places = order[np.arange(len(chosen)) + np.repeat(first - np.cumsum(counts) + counts, counts)]
+    within = np.abs(along[places] - windows.centre[chosen]) < windows.half[chosen]
+    chosen, places = chosen[within], places[within]
+    return ((windows.lane[chosen], places) if lanes is None else (places,)), chosen
 
 
 def numbers_of(kinematics: Kinematics, group: int, at: Positions) -> list[Number]:
@@ -68,50 +84,56 @@ def set_numbers(kinematics: Kinematics, group: int, at: Positions, numbers: list
             at.angles[link] = next(rest)
 
 
-def of_window(number: Number, window: int) -> Number:
-    """The nodes of one window."""
-    part = slice(window * len(NODES), (window + 1) * len(NODES))
+def finite(numbers: list[Number], windows: int) -> npt.NDArray[np.bool_]:
+    """The windows at whose nodes (windows * nodes,) all numbers are finite, so that they are of use."""
+    found = np.ones((windows, len(NODES)), dtype=bool)
+    for number in numbers:
+        found &= np.isfinite(_at_nodes(_summed(number), windows))
+    return np.asarray(found.all(axis=1))
+
+
+def _summed(number: Number) -> Number:
     if isinstance(number, Jet):
-        return Jet([_cut(c, part) for c in number.coefficients])
-    if isinstance(number, Rounded):
-        return Rounded(_cut(number.value, part), _cut(number.bound, part))
-    return np.full(len(NODES), number)
+        return sum(number.coefficients)
+    return number.value + number.bound if isinstance(number, Rounded) else number
 
 
-def _cut(x: Number, part: slice) -> Array:
-    return np.full(len(NODES), x) if np.ndim(x) == 0 else x[part]
+def _at_nodes(x: Number, windows: int) -> Array:
+    """A number at the nodes of all windows as (windows, nodes)."""
+    return np.broadcast_to(x, (windows * len(NODES),)).reshape(windows, len(NODES))
 
 
-def value_of(number: Number) -> Array:
-    """What must be finite for a node to be of use."""
-    if isinstance(number, Jet):
-        return np.asarray(sum(number.coefficients))
-    return np.asarray(number.value + number.bound if isinstance(number, Rounded) else number)
-
-
-def mended(old: Number, node: Number, shape: tuple[int, ...], index: Index, basis: Array) -> Number:
-    """A number with the entries at `index` interpolated from those at the nodes."""
+def mended(
+    old: Number, node: Number, shape: tuple[int, ...], index: Index, chosen: Lanes, basis: Array
+) -> Number:
+    """A number with the entries at `index` interpolated from those at the nodes of the chosen windows."""
     if isinstance(old, Rounded):
         known = Rounded.of(node)
-        value = _interpolated(known.value, basis)
-        bound = _interpolated(known.bound + UNIT_ROUNDOFF * np.abs(known.value), np.abs(basis))
+        value = _interpolated(known.value, chosen, basis)
+        bound = _interpolated(known.bound + UNIT_ROUNDOFF * np.abs(known.value), chosen, np.abs(basis))
         return Rounded(_put(old.value, shape, index, value), _put(old.bound, shape, index, bound))
-    nodes = node.coefficients if isinstance(node, Jet) else (node, 0.0 * node, 0.0 * node)
+    still = [0.0 * node] * old.order if isinstance(old, Jet) and not isinstance(node, Jet) else []
+    nodes = node.coefficients if isinstance(node, Jet) else (node, *still)
     if isinstance(old, Jet):
         return Jet(
             [
-                _put(c, shape, index, _interpolated(k, basis))
+                _put(c, shape, index, _interpolated(k, chosen, basis))
                 for c, k in zip(old.coefficients, nodes, strict=False)
             ]
         )
-    return _put(old, shape, index, _interpolated(nodes[0], basis))
+    return _put(old, shape, index, _interpolated(nodes[0], chosen, basis))
 
 
-def _interpolated(at_nodes: Array, basis: Array) -> Array:
+def _interpolated(at_nodes: Number, chosen: Lanes, basis: Array) -> Array:
+    windows = int(chosen[-1]) + 1 if len(chosen) else 0
+    if np.ndim(at_nodes) == 0:
+        known = np.full((windows, len(NODES)), at_nodes)
+    else:
+        known = at_nodes.reshape(-1, len(NODES))
     # node by node: a matrix product rounds differently for different numbers of samples
-    total = np.zeros(basis.shape[0])
-    for k in range(basis.shape[1]):
-        total += at_nodes[k] * basis[:, k]
+    total = np.zeros(len(chosen))
+    for k in range(len(NODES)):
+        total += known[chosen, k] * basis[:, k]
     return total
 
 

@@ -15,7 +15,7 @@ from centrode.errors import Status
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.sampling import Samples, settle
 from centrode.locale import _
-from centrode.structure.constraints import Constraint
+from centrode.structure.constraints import Constraint, PointInLink
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -63,7 +63,8 @@ def each_residual(kinematics: Kinematics, m: Namespace, at: Positions) -> Iterat
     """Every constraint, drives included, with the size of its residual over any algebra, and whether it has no unit."""
     numbers, space = kinematics.numbers, kinematics.numbers.space
     for constraint in kinematics.structure.constraints:
-        size = [m.abs(r) for r in constraint.residual(m, numbers, at)]
+        left = constraint.apart if isinstance(constraint, PointInLink) else constraint.residual
+        size = [m.abs(r) for r in left(m, numbers, at)]
         yield constraint, functools.reduce(m.max, size), constraint.angular
     for link in kinematics.structure.mechanism.links:
         stretch = [m.abs(x) for x in space.stretch(space.attitude(at.poses[link]))]

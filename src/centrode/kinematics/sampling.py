@@ -15,6 +15,7 @@ import numpy.typing as npt
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import SAFETY
 from centrode.errors import Status
+from centrode.kinematics.branches import Branches
 from centrode.kinematics.continuation import Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import guard_with_bound
@@ -60,14 +61,20 @@ class Samples:
         return complete if complete.all() else np.asarray(np.isfinite(self.columns).all(axis=(0, 1)))
 
 
-def evaluate_columns(continuation: Continuation, samples: Samples, parameter: Array) -> Judging:
-    """Fill in columns and known angles; returns where groups are open, at a limit, or not converged."""
-    along, layout = parameter[None, :], samples.layout
-    judging = Judging(continuation, along, samples.status.shape)
+def evaluate_columns(
+    continuation: Continuation, samples: Samples, parameter: Array, lanes: Lanes | None = None
+) -> Judging:
+    """Fill in columns and known angles; returns where groups are open, at a limit, or not converged.
+
+    With `lanes` every parameter belongs to one mechanism of the batch: arrays have (k,) in place of (lanes, n).
+    """
+    along, layout = parameter if lanes is not None else parameter[None, :], samples.layout
+    kinematics = continuation.kinematics if lanes is None else continuation.kinematics.taken(lanes)
+    judging = Judging(continuation, along, samples.status.shape, lanes)
     with np.errstate(all="ignore"):
-        at = continuation.kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)
-        fill_columns(continuation.kinematics, layout, at, samples.columns)
-    judging.opened |= continuation.kinematics.path.impossible(parameter)
+        at = kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)
+        fill_columns(kinematics, layout, at, samples.columns)
+    judging.opened |= kinematics.path.impossible(parameter)
     for k, link in enumerate(layout.angles):
         if layout.runs_on and link in at.angles:
             fill_number(samples.angles[:, k], at.angles[link])
@@ -78,21 +85,26 @@ def evaluate_columns(continuation: Continuation, samples: Samples, parameter: Ar
 class Judging(Smooth):
     """Notes where groups are open, and where at zero of their radicand."""
 
-    def __init__(self, continuation: Continuation, along: Array, shape: tuple[int, ...]) -> None:
-        super().__init__(continuation, JETS, along, None)
+    def __init__(
+        self, continuation: Continuation, along: Array, shape: tuple[int, ...], lanes: Lanes | None = None
+    ) -> None:
+        super().__init__(continuation, JETS, along, lanes)
         self.shape = shape
         self.opened, self.zero = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
         self.lost = np.zeros(shape, dtype=bool)
         self._judged: dict[int, tuple[Mask, Mask]] = {}
 
     def root(self, group: int, radicand: Number) -> Number:
-        sign = self.continuation.branches.sign(group, self.parameter)
+        sign = self.continuation.branches.sign(group, self.parameter, self.lanes)
         if not isinstance(radicand, Jet):
             radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
         value = np.broadcast_to(radicand.value, self.shape)
-        below = _at_zero(self.continuation, group, value, self.parameter[0])
+        below = self._at_zero(group, value)
         if below is None:
-            np.logical_or(self.opened, value < 0.0, out=self.opened)
+            if self.continuation.windows_of(group) is None:
+                np.logical_or(self.opened, value < 0.0, out=self.opened)
+            else:
+                self._judged[group] = (value < 0.0, np.zeros(self.shape, dtype=bool))
             return JETS.sqrt(radicand) * sign
         self._judged[group] = ((value < 0.0) & ~below, below)
         return JETS.sqrt(Jet((np.where(below, 0.0, value), *radicand.coefficients[1:]))) * sign
@@ -102,22 +114,27 @@ class Judging(Smooth):
         self._judged[group] = (judged.opened, judged.limit)
 
     def after(self, group: int, at: Positions) -> None:
-        mended = self.continuation.mend(group, at, self.parameter, None)
+        mended = self.continuation.mend(group, at, self.parameter, self.lanes)
         for total, found in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):
             for index in mended:
                 found[index] = False  # there the motion goes on smoothly
             np.logical_or(total, found, out=total)
 
-
-def _at_zero(continuation: Continuation, group: int, value: Array, parameter: Array) -> Mask | None:
-    """Where a radicand is zero within its rounding error; None if nowhere."""
-    suspects = np.nonzero(np.abs(value) <= SUSPECT * continuation.branches.greatest(group))
-    if not len(suspects[0]):
-        return None
-    _value, bound = guard_with_bound(continuation, group, suspects[0], parameter[suspects[1]])
-    zero = np.zeros(value.shape, dtype=bool)
-    zero[suspects] = np.abs(value[suspects]) <= SAFETY * bound
-    return zero if zero.any() else None
+    def _at_zero(self, group: int, value: Array) -> Mask | None:
+        """Where a radicand is zero within its rounding error; None if nowhere."""
+        greatest = self.continuation.branches.largest[group]
+        greatest = greatest[:, None] if self.lanes is None else greatest[self.lanes]
+        suspects = np.nonzero(np.abs(value) <= SUSPECT * greatest)
+        if not len(suspects[0]):
+            return None
+        if self.lanes is None:
+            lanes, parameter = suspects[0], self.parameter[0, suspects[1]]
+        else:
+            lanes, parameter = self.lanes[suspects[0]], self.parameter[suspects[0]]
+        _value, bound = guard_with_bound(self.continuation, group, lanes, parameter)
+        zero = np.zeros(value.shape, dtype=bool)
+        zero[suspects] = np.abs(value[suspects]) <= SAFETY * bound
+        return zero if zero.any() else None
 
 
 def fill_columns(kinematics: Kinematics, layout: Layout, at: Positions, columns: Array) -> None:
@@ -136,16 +153,23 @@ def fill_number(column: Array, number: Number) -> None:
         column[1:] = 0.0
 
 
-def sample(continuation: Continuation, parameter: Array, samples: Samples) -> None:
-    """Fill in columns and statuses."""
-    judged = evaluate_columns(continuation, samples, parameter)
-    reach = continuation.branches.reaches()
-    margin = 4.0 * np.spacing(np.abs(parameter))
-    beyond = (parameter < reach[:, :1] - margin) | (parameter > reach[:, 1:] + margin)
+def sample(
+    continuation: Continuation, parameter: Array, samples: Samples, lanes: Lanes | None = None
+) -> None:
+    """Fill in columns and statuses; with `lanes` as in `evaluate_columns`."""
+    judged = evaluate_columns(continuation, samples, parameter, lanes)
     samples.status[judged.zero | ~samples.complete] = Status.SINGULAR
-    samples.status[beyond] = Status.CUT_OFF
+    samples.status[beyond_limits(continuation.branches, parameter, lanes)] = Status.CUT_OFF
     samples.status[judged.lost] = Status.UNCONVERGED
     samples.status[judged.opened] = Status.OPEN
+
+
+def beyond_limits(branches: Branches, parameter: Array, lanes: Lanes | None = None) -> Mask:
+    """Where a mechanism would have to pass a limit: (lanes, n), or (k,) with a lane for each parameter."""
+    reach = branches.reaches()
+    low, high = (reach[:, :1], reach[:, 1:]) if lanes is None else reach[lanes].T
+    margin = 4.0 * np.spacing(np.abs(parameter))
+    return np.asarray((parameter < low - margin) | (parameter > high + margin))
 
 
 def settle(samples: Samples) -> None:

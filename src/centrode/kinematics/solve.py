@@ -9,8 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.errors import InputError, Status
+from centrode.errors import InputError
 from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.contacts import contacts_at
 from centrode.kinematics.evaluate import Kinematics
@@ -21,12 +20,11 @@ from centrode.kinematics.phases import with_phases
 from centrode.kinematics.places import Places, start_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept
-from centrode.kinematics.sampling import ORDERS, Samples
+from centrode.kinematics.rooms import Room
+from centrode.kinematics.sampling import Samples
 from centrode.kinematics.spans import Span, span_of
-from centrode.kinematics.spins import spins_of
 from centrode.locale import _
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -94,40 +92,41 @@ def solve(
 ) -> Solved:
     """Motion at the samples of a span."""
     ready = fit_for(ready, span)
-    kinematics = ready.kinematics if numbers is None else _varied(ready.kinematics, numbers)
+    kinematics = ready.kinematics if numbers is None else of_batch(ready.kinematics, numbers)
     samples = len(span.parameter)
     layout = layout_of(kinematics)
-    axes, fixed = layout.axes, layout.axes * len(kinematics.numbers.frame)
     check_size(layout, lanes, samples)
-    size = max(1, CHUNK // max(samples, len(mesh_of(kinematics.path, span.parameter))))
-    # one room for everything that depends on the samples: what is big is written once
-    room = np.empty((ORDERS, fixed + layout.width, lanes, samples))
-    angles = np.empty((ORDERS, len(layout.angles), lanes, samples))
-    whole = Samples(layout, room[:, fixed:], angles, np.zeros((lanes, samples), dtype=np.int8))
+    size = lanes_at_once(kinematics, span)
+    room = Room.of(layout, kinematics.numbers, lanes, samples)
     parts = []
     for first in range(0, lanes, size):
         rows = slice(first, min(first + size, lanes))
-        part = kinematics if lanes == 1 else _lanes(kinematics, rows)
-        parts.append(_solve_part(ready, part, span, whole.of(rows)))
+        part = kinematics if lanes == 1 else of_lanes(kinematics, rows)
+        parts.append(_solve_part(ready, part, span, room.samples.of(rows)))
         if progress is not None:
             progress(rows.stop, lanes)
-    _fill_frame(room[:, :fixed], kinematics.numbers, whole)
-    points = room[:, : fixed + layout.first_attitude].reshape(ORDERS, -1, axes, lanes, samples)
+    room.fill_frame(kinematics.numbers)
+    points = room.all_points
     return Solved(
         ready,
         span,
         layout,
         _joined([part.branches for part in parts]),
-        np.moveaxis(points, (1, 2), (3, 4)),
-        np.moveaxis(points[:, fixed // axes :], (1, 2), (3, 4)),
-        np.moveaxis(angles, 1, 3),
-        np.moveaxis(whole.columns[:, layout.first_slide : layout.first_rotor], 1, 3),
-        spins_of(layout, whole.columns),
-        whole.status,
+        points,
+        points[:, :, :, len(kinematics.numbers.frame) :],
+        room.turned,
+        room.slides,
+        room.spins,
+        room.status,
         np.concatenate([part.residual for part in parts]),
         max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0))).worst_constraint,
         np.concatenate([part.contacts for part in parts]),
     )
+
+
+def lanes_at_once(kinematics: Kinematics, span: Span) -> int:
+    """How many mechanisms of a batch are solved together."""
+    return max(1, CHUNK // max(len(span.parameter), len(mesh_of(kinematics.path, span.parameter))))
 
 
 def check_size(layout: Layout, lanes: int, samples: int) -> None:
@@ -161,7 +160,7 @@ def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> t
     return (max(low, 0.0), high) if path.driven[0].drive.kind == "distance" else (low, high)
 
 
-def _varied(kinematics: Kinematics, numbers: Dimensions) -> Kinematics:
+def of_batch(kinematics: Kinematics, numbers: Dimensions) -> Kinematics:
     """The plan with the numbers of a batch; wheels mesh as they do in the description."""
     phases = kinematics.numbers.gearing.phase
     return with_phases(replace(kinematics, numbers=_upright(numbers)), phases)
@@ -172,7 +171,9 @@ def _upright(numbers: Dimensions) -> Dimensions:
     return numbers.mapped(lambda x: x if isinstance(x, float) else np.asarray(x, dtype=np.float64)[:, None])
 
 
-def _lanes(kinematics: Kinematics, rows: slice) -> Kinematics:
+def of_lanes(kinematics: Kinematics, rows: slice | npt.NDArray[np.intp]) -> Kinematics:
+    """The plan with the numbers of some mechanisms of a batch."""
+
     def cut(x: Number) -> Number:
         return x if isinstance(x, float) else x[rows]
 
@@ -195,17 +196,6 @@ def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Sampl
     found = places.fill(span.parameter, samples)
     contacts = contacts_at(kinematics, found.at, samples)
     return _Part(places.continuation.branches, found.residual, found.worst_constraint, contacts)
-
-
-def _fill_frame(columns: Array, numbers: Dimensions, samples: Samples) -> None:
-    """Points of the frame: their places are constant, absent where the motion is."""
-    columns[1:] = 0.0
-    fixed = Positions.of_frame(numbers, {}, ARRAYS).points
-    for k, place in enumerate(x for at in fixed.values() for x in at):
-        columns[0, k] = place
-    opened = samples.status == Status.OPEN
-    if opened.any():
-        columns[:, :, opened] = np.nan
 
 
 def _joined(parts: Sequence[Branches]) -> Branches:

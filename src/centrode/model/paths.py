@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from centrode.errors import InputError
@@ -46,11 +47,34 @@ def with_value(mechanism: Mechanism, path: str, value: float | str) -> Mechanism
     now on); `replace_placed` places anew. Raises InputError where there is no such path, or where the
     value does not fit.
     """
-    words = _words(mechanism, path)
+    return with_values(mechanism, {path: value})
+
+
+def with_values(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mechanism:
+    """The same with several numbers at once: only all of them together have to fit."""
     tables = document(mechanism)
-    container, key = _spot(tables, words, path)
-    container[key] = value
+    for path, value in values.items():
+        container, key = _spot(tables, _words(mechanism, path), path)
+        container[key] = value
     return mechanism_from(tables)
+
+
+def kind_at(mechanism: Mechanism, path: str) -> str:
+    """Kind of quantity that a path names ("length", "angle", ...); raises InputError where there is no such path."""
+    words = _words(mechanism, path)
+    _spot(document(mechanism), words, path)
+    key, on_sphere = words[-1], mechanism.space == "sphere"
+    if words[0] == "drives":
+        angular = on_sphere or mechanism.drive(words[1]).kind == "angle"
+        return (
+            {"start": "angle", "speed": "angular speed"}[key]
+            if angular
+            else {"start": "length"}.get(key, key)
+        )
+    if key in ("length", "radius"):
+        return "arc" if on_sphere else "length"
+    coordinates = {"x": "length", "y": "length", "longitude": "angle", "latitude": "angle"}
+    return {**coordinates, "direction": "angle"}.get(key, key)
 
 
 def _direction_of_track(mechanism: Mechanism, identity: str, path: str) -> float:

@@ -13,12 +13,21 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.centres import centres_figure
+    from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
+    from centrode.present.centrodes import animate_centrodes, centrodes_figure
     from centrode.present.coefficient_tables import write_coefficients_csv
+    from centrode.present.curvature import curvature_figure
+    from centrode.present.dark import darkened
     from centrode.present.drawing import draw_mechanism
     from centrode.present.equation_latex import equations_latex, equations_markdown
     from centrode.present.equation_text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
     from centrode.present.machine_figures import machine_figures
+    from centrode.present.instant_drawing import diagram_figures
+    from centrode.present.integration_tables import write_integration_csv
+    from centrode.present.integrations import integration_figures
+    from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
     from centrode.present.reduction_figures import reduction_figures
     from centrode.present.reduction_tables import write_reduction_csv
@@ -27,37 +36,61 @@ if TYPE_CHECKING:
     from centrode.present.saving import save_figures
     from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
+    from centrode.present.transmission_curves import transmission_figure
+    from centrode.present.variant_folders import write_variants
 
 __all__ = [
+    "animate_centrodes",
+    "centres_figure",
+    "centrodes_figure",
+    "curvature_figure",
+    "darkened",
     "draw_mechanism",
     "equations_latex",
     "equations_markdown",
     "equations_rows",
     "equations_text",
     "machine_figures",
+    "diagram_figures",
+    "integration_figures",
     "motion_figures",
     "motion_table",
     "reduction_figures",
+    "plan_figure",
     "region_figure",
     "save_figures",
     "scene_of",
     "sweep_csv",
+    "write_centres_csv",
+    "write_centrodes_csv",
+    "transmission_figure",
     "write_coefficients_csv",
+    "write_integration_csv",
     "write_motion_csv",
     "write_motion_netcdf",
     "write_reduction_csv",
     "write_region_csv",
+    "write_variants",
 ]
 
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "centres": ["centres_figure"],
+        "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
+        "centrodes": ["animate_centrodes", "centrodes_figure"],
+        "curvature": ["curvature_figure"],
+        "dark": ["darkened"],
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
         "equation_latex": ["equations_latex", "equations_markdown"],
         "equation_text": ["equations_rows", "equations_text"],
         "figures": ["motion_figures"],
         "machine_figures": ["machine_figures"],
+        "instant_drawing": ["diagram_figures"],
+        "plan_drawing": ["plan_figure"],
+        "integration_tables": ["write_integration_csv"],
+        "integrations": ["integration_figures"],
         "reading": ["scene_of"],
         "reduction_figures": ["reduction_figures"],
         "reduction_tables": ["write_reduction_csv"],
@@ -66,6 +99,8 @@ _attached, __dir__, _names = lazy_loader.attach(
         "saving": ["save_figures"],
         "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
+        "transmission_curves": ["transmission_figure"],
+        "variant_folders": ["write_variants"],
     },
 )
 

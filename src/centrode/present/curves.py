@@ -130,7 +130,7 @@ def draw_parts(
 ) -> Line2D:
     """A line: its regular part in its own pen, its cut-off part grey and dashed; returns the regular part."""
     if np.isfinite(y[1]).any():
-        cut = f"{name} ({_('cut off')})"
+        cut = f"{name} (" + _("cut off") + ")"
         axes.plot(
             x[1],
             y[1],

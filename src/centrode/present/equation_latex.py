@@ -168,7 +168,8 @@ def _markdown(block: Block) -> str:
     if isinstance(block, System):
         return "$$\n" + _system(block) + "\n$$\n"
     if isinstance(block, Symbols):
-        head = f"| {_('symbol')} | {_('value')} | {_('meaning')} |\n|---|---|---|\n"
+        heads = " | ".join((_("symbol"), _("value"), _("meaning")))
+        head = f"| {heads} |\n|---|---|---|\n"
         return head + "".join(f"| ${name}$ | {value} | {words} |\n" for name, value, words in block.rows)
     return block.text + "\n"
 

@@ -32,6 +32,13 @@ def traced_point(axes: Axes, place: Array, size: float, colour: str, alpha: floa
     )
 
 
+def cross(axes: Axes, place: Array, size: float, colour: str) -> None:
+    """A slanting cross: an instant centre."""
+    for slope in (1.0, -1.0):
+        stroke = np.array([[-1.0, -slope], [1.0, slope]]) * size + place
+        axes.plot(stroke[:, 0], stroke[:, 1], color=colour, linewidth=1.2, zorder=7)
+
+
 def ground(axes: Axes, start: Array, end: Array, away: Array, size: float, colour: str = GROUND) -> None:
     """A line of the frame, hatched on the side that the unit vector `away` points to."""
     along = (end - start) / max(float(np.hypot(*(end - start))), np.finfo(float).tiny)

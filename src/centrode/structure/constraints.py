@@ -71,6 +71,11 @@ class PointInLink:
         point, pose = at.points[self.point], at.poses[self.link]
         return numbers.space.in_link(m, point, pose, self._local(numbers))
 
+    def apart(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
+        """By how much the point is not there, in each direction of space: the size of the residual at less cost."""
+        point, pose = at.points[self.point], at.poses[self.link]
+        return numbers.space.apart(m, point, pose, self._local(numbers))
+
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
         point, pose = at.points[self.point], at.poses[self.link]
         slopes = numbers.space.in_link_rows(PLAIN, point, pose, self._local(numbers))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from centrode.locale import _
+from centrode.locale import _, ngettext
 from centrode.structure.groups import (
     Aim,
     Group,
@@ -95,7 +95,8 @@ def _locus(locus: Locus) -> str:
 def name_of(group: Group) -> str:
     """A group by its links and points, as messages and tables name it."""
     links = "-".join(links_of(group))
-    points = ", ".join(points_of(group))
+    count, points = len(points_of(group)), ", ".join(points_of(group))
     if links and points:
-        return _("group {links} (point {points})").format(links=links, points=points)
+        name = ngettext("group {links} (point {points})", "group {links} (points {points})", count)
+        return name.format(links=links, points=points)
     return _("group {links}").format(links=links or points)

@@ -13,7 +13,7 @@ from centrode.errors import Status
 from centrode.kinematics.layout import layout_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
-from centrode.kinematics.solve import solve
+from centrode.kinematics.solve import Solved, solve
 from centrode.kinematics.spans import Span
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
@@ -68,12 +68,16 @@ class ArraysExecutor:
     def run(self, task: Task, numbers: Dimensions, values: Rows, results: Results) -> None:
         """Fill in all columns for the mechanisms of these dimensions; `values` are those that vary, one a mechanism."""
         lanes = len(next(iter(values.values())))
-        solved = solve(task.ready, task.span, numbers, lanes)
-        ok = solved.status == Status.OK
-        # copied at once: what is asked for may be a view of everything that was computed
-        for name, part in task.asked.results(solved, values, ok).items():
-            results[name][...] = part
-        for name in task.asked.slopes.values():
-            results[name][...] = np.nan
-        results["samples_ok"][...] = ok.sum(axis=1, dtype=np.int32)
-        results["worst_residual"][...] = np.fmax.reduce(solved.residual, axis=1)
+        fill_columns(task, solve(task.ready, task.span, numbers, lanes), values, results)
+
+
+def fill_columns(task: Task, solved: Solved, values: Rows, results: Results) -> None:
+    """Fill in all columns from the motions of some mechanisms."""
+    ok = solved.status == Status.OK
+    # copied at once: what is asked for may be a view of everything that was computed
+    for name, part in task.asked.results(solved, values, ok).items():
+        results[name][...] = part
+    for name in task.asked.slopes.values():
+        results[name][...] = np.nan
+    results["samples_ok"][...] = ok.sum(axis=1, dtype=np.int32)
+    results["worst_residual"][...] = np.fmax.reduce(solved.residual, axis=1)

@@ -11,9 +11,10 @@ import numpy.typing as npt
 
 from centrode.algebra.expressions import Node, as_node, variable
 from centrode.algebra.graphs import Graph
+from centrode.kinematics.compiled.drives import inputs_of
 from centrode.kinematics.compiled.judging import Judging
 from centrode.kinematics.compiled.traced import Traced, centre_of
-from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of
+from centrode.kinematics.compiled.variables import SCALE, Varied, boxed
 from centrode.sweeps.arrays import Task
 from centrode.sweeps.folds import Folds
 from centrode.sweeps.slopes import Slopes
@@ -51,13 +52,13 @@ class Expressed:
     def columns(self) -> dict[str, list[Node]]:
         """Column -> its numbers: of a sample, or reduced."""
         asked, solved = self.task.asked, self.traced.solved
+        given = {path: boxed([variable(path)]) for path in self.task.paths}
         if asked.formulas:
-            given = {path: boxed([variable(path)]) for path in self.task.paths}
             return {
                 formula.name: [as_node(formula.traced(self.folds, solved, given))]
                 for formula in asked.formulas
             }
-        found = {output.name: output.of(solved).ravel().tolist() for output in asked.outputs}
+        found = {output.name: output.of(solved, given).ravel().tolist() for output in asked.outputs}
         if asked.reduction is None:
             return {name: [as_node(x) for x in nodes] for name, nodes in found.items()}
         return {
@@ -99,12 +100,13 @@ class Expressed:
     @cached_property
     def inputs(self) -> Values:
         """What the variables of a place stand for at the samples."""
-        return inputs_of(self.task.span)
+        return inputs_of(self.task.ready.kinematics.path, self.task.span)
 
     @property
     def states(self) -> int:
         """Numbers of one mechanism while samples are passed."""
         folds = len(self.folds.found) if self.columns else 0
-        by = 1 + (len(self.task.paths) if self.task.asked.slopes else 0)
+        if self.task.asked.slopes:
+            folds += sum(len(self.slopes.states_of(fold.name).parts) for fold in self.folds.found.values())
         angles = 10 * len(self.judging.links)
-        return len(self.varied.names) + folds * by + angles + 2 * len(self.traced.radicands) + 2
+        return len(self.varied.names) + folds + angles + 2 * len(self.traced.radicands) + 2

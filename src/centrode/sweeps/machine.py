@@ -1,12 +1,13 @@
-"""Sweeps as machine code: what has no events is computed by compiled kernels, the rest by the arrays.
+"""Sweeps as machine code: what has no events is computed in one go, the rest as motions with events.
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
-and the formulas of `traced`; all others are computed as `ArraysExecutor` does it, so their statuses are the same.
+and the formulas of `traced`; the motions of all others have the bits of the arrays (`compiled.eventful`), and what is
+asked for is taken from them as `ArraysExecutor` does it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -21,28 +22,28 @@ from centrode.algebra.expressions import Node, as_node, variable
 from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
-from centrode.algebra.scans import Scan
 from centrode.errors import Status
+from centrode.kinematics.compiled.eventful import Eventful
 from centrode.kinematics.compiled.judging import scan_of
 from centrode.kinematics.compiled.traced import Untraceable, traced
-from centrode.kinematics.compiled.variables import PARAMETER, varied_of
+from centrode.kinematics.compiled.variables import taken, varied_of
 from centrode.kinematics.residuals import CLOSED
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
 from centrode.sweeps import limits
-from centrode.sweeps.arrays import ArraysExecutor, Task
+from centrode.sweeps.arrays import ArraysExecutor, Task, fill_columns
 from centrode.sweeps.designs import Rows
+from centrode.sweeps.every_sample import NUMBER, EverySample
 from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
+from centrode.sweeps.streams import Columns, columns_for
 
 Array: TypeAlias = npt.NDArray[np.float64]
 AnyArray: TypeAlias = npt.NDArray[Any]
 Mask: TypeAlias = npt.NDArray[np.bool_]
+Lanes: TypeAlias = npt.NDArray[np.intp]
 Values: TypeAlias = dict[str, Array]
 
 m = EXPRESSIONS
-
-NUMBER = 8
-"""Bytes of a float64."""
 COPIES = 4
 """Of what a mechanism has while samples are passed: before, after, as kernels are given it."""
 
@@ -106,20 +107,40 @@ class MachineCodeExecutor:
             kernels = self._reduced if task.asked.reduced else self._written
             clear[at] = kernels(some, at, results)
         left = np.nonzero(~clear)[0]
-        most = self.arrays.lanes(task)
-        for first in range(0, len(left), most):
-            some_lanes = left[first : first + most]
-            self._on_arrays(some_lanes, numbers, values, results)
+        worth = len(left) * task.places >= limits.WORTH_COMPILING and self.kernels == MACHINE_CODE
+        if worth and self._eventful.possible:
+            self._with_events(left, numbers, values, results)
+        else:
+            self._on_arrays(left, numbers, values, results)
+
+    @cached_property
+    def _eventful(self) -> Eventful:
+        task, asked = self.task, self.asked
+        return Eventful(task.ready, task.span, asked.varied, asked.traced, self.kernels, self.threads)
+
+    def _with_events(
+        self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
+    ) -> None:
+        """Fill in the mechanisms that have events: their motions as machine code, columns as by arrays."""
+        for lanes, solved in self._eventful.solved(numbers, left):
+            parts = self._room(len(lanes))
+            fill_columns(self.task, solved, _rows_at(values, lanes), parts)
+            _put(parts, lanes, results)
 
     def _on_arrays(
-        self, lanes: npt.NDArray[np.intp], numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
+        self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
     ) -> None:
-        taken = numbers.mapped(lambda x: x if isinstance(x, float) else x[lanes])
-        rows = {path: np.asarray(x)[lanes] for path, x in values.items()}
-        parts = {column.name: results[column.name][: len(lanes)].copy() for column in self.task.asked.columns}
-        self.arrays.run(self.task, taken, rows, parts)
-        for name, part in parts.items():
-            results[name][lanes] = part
+        """The same for few of them, by arrays alone."""
+        most = self.arrays.lanes(self.task)
+        for first in range(0, len(left), most):
+            lanes = left[first : first + most]
+            parts = self._room(len(lanes))
+            self.arrays.run(self.task, taken(numbers, lanes), _rows_at(values, lanes), parts)
+            _put(parts, lanes, results)
+
+    def _room(self, lanes: int) -> Columns:
+        """Columns of mechanisms that do not stand side by side."""
+        return columns_for(self.task.asked.columns, lanes)
 
     # one number a motion
 
@@ -147,6 +168,9 @@ class MachineCodeExecutor:
             parts += [self.asked.slopes.of_fold(fold) for fold in self.asked.folds.at_depth(depth)]
         if depth == 0:
             parts.append(_judging_states(self.asked.judges))
+        return self._states(parts, rows, lanes)
+
+    def _states(self, parts: Sequence[Reduction], rows: Values, lanes: int) -> Values:
         reduction = together(*parts)
         scan = scan_of(reduction, tuple(rows), tuple(self.asked.inputs))
         parameters = np.stack([rows[name] for name in scan.parameters]) if scan.parameters else None
@@ -167,48 +191,20 @@ class MachineCodeExecutor:
     # every sample
 
     @cached_property
-    def _written_scan(self) -> Scan:
-        """Lanes are samples, steps are mechanisms: every output is written as one stream."""
-        outputs = {
-            f"{name} {k}": node for name, nodes in self.asked.columns.items() for k, node in enumerate(nodes)
-        }
-        outputs |= self.asked.judges
-        used = Graph(outputs).variables
-        along = tuple(name for name in self.asked.inputs if name in used or name == PARAMETER)
-        return Scan(along, tuple(name for name in used if name not in along), outputs)
+    def _samples(self) -> EverySample:
+        return EverySample(self.asked, self.kernels, self.threads)
 
     def _written(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
         """Fill in every sample of the mechanisms at some places; returns which of them stay clear."""
-        scan, samples = self._written_scan, len(self.task.span.parameter)
         lanes = len(next(iter(rows.values())))
-        places = np.arange(len(results["samples_ok"]))[at]
-        along = np.stack([self.asked.inputs[name] for name in scan.parameters])
-        steps = max(1, limits.KERNEL_BUFFER // (NUMBER * len(scan.outputs) * samples))
-        buffer = np.empty((len(scan.outputs), min(steps, lanes), samples))
-        clear = np.empty(lanes, dtype=bool)
-        run = runner(scan, self.kernels, lanes_inside=True, threads=self.threads)
-        for first in range(0, lanes, steps):
-            part = slice(first, min(first + steps, lanes))
-            inputs = np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None
-            out = buffer[:, : part.stop - first]
-            run(along, inputs, out=out, steps=part.stop - first)
-            clear[part] = self._kept(out, places[part], results)
+        streams = results.streams if isinstance(results, Columns) else None
+        if streams is not None and isinstance(at, slice):
+            self._samples.write(rows, streams)
+        else:
+            self._samples.put(rows, np.arange(len(results["samples_ok"]))[at], results)
         results["status"][at] = Status.OK
-        return clear
-
-    def _kept(self, out: Array, places: npt.NDArray[np.intp], results: Mapping[str, AnyArray]) -> Mask:
-        """Take the outputs of some mechanisms from the buffer: (outputs, mechanisms, samples)."""
-        whole = slice(int(places[0]), int(places[-1]) + 1)
-        where: Any = whole if whole.stop - whole.start == len(places) else places
-        row = 0
-        for name, nodes in self.asked.columns.items():
-            target = results[name].reshape(*results[name].shape[:2], len(nodes))
-            for k in range(len(nodes)):
-                target[where, :, k] = out[row]
-                row += 1
-        residual = out[row].max(axis=1)
-        slack = out[row + 1].min(axis=1) if SLACK in self.asked.judges else None
-        return self._judged(residual, slack, where, results)
+        states = self._states([_judging_states(self.asked.judges)], rows, lanes)
+        return self._judged(states[RESIDUAL], states.get(SLACK), at, results)
 
 
 def _judging_states(judges: Mapping[str, Node]) -> Reduction:
@@ -219,3 +215,12 @@ def _judging_states(judges: Mapping[str, Node]) -> Reduction:
         state[SLACK] = as_node(m.min(judges[SLACK], variable(SLACK)))
         start[SLACK] = np.inf
     return Reduction(state, start)
+
+
+def _rows_at(values: Rows, lanes: Lanes) -> Rows:
+    return {path: np.asarray(x)[lanes] for path, x in values.items()}
+
+
+def _put(parts: Columns, lanes: Lanes, results: Mapping[str, AnyArray]) -> None:
+    for name, part in parts.items():
+        results[name][lanes] = part

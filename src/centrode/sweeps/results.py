@@ -14,6 +14,7 @@ import xarray as xr
 from centrode.sweeps.asked import PATH, Asked
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import Design
+from centrode.sweeps.streams import Columns, columns_for
 from centrode.sweeps.tallies import Tally
 
 AnyArray: TypeAlias = npt.NDArray[Any]
@@ -28,7 +29,7 @@ class Kept(Protocol):
     def has(self, block: int) -> bool:
         """Whether a block is there already."""
 
-    def room(self, block: int) -> dict[str, AnyArray]:
+    def room(self, block: int) -> Columns:
         """Arrays that the results of a block are written to, before it is put."""
 
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
@@ -53,12 +54,14 @@ class Frame:
         """What the columns take."""
         return self.mechanisms * sum(column.bytes for column in self.asked.columns)
 
-    def room(self, mechanisms: int) -> dict[str, AnyArray]:
-        """Arrays for the columns of some mechanisms, as memory has them."""
-        return {
-            column.name: np.empty((mechanisms, *column.shape), dtype=column.kind)
-            for column in self.asked.columns
-        }
+    def room(self, mechanisms: int) -> Columns:
+        """Arrays for the columns of some mechanisms, as files have them."""
+        return Columns(
+            {
+                column.name: np.empty((mechanisms, *column.shape), dtype=column.kind)
+                for column in self.asked.columns
+            }
+        )
 
 
 def frame_of(
@@ -95,14 +98,13 @@ class InMemory:
         self.frame = frame
         self.blocks = blocks
         self.tally = Tally()
-        self.arrays = frame.room(frame.mechanisms)
+        self.arrays = columns_for(frame.asked.columns, frame.mechanisms)
 
     def has(self, block: int) -> bool:
         return False
 
-    def room(self, block: int) -> dict[str, AnyArray]:
-        first, stop = self.blocks.mechanisms(block)
-        return {name: array[first:stop] for name, array in self.arrays.items()}
+    def room(self, block: int) -> Columns:
+        return self.arrays.part(slice(*self.blocks.mechanisms(block)))
 
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
         self.tally.add(tally)  # the results stand where they belong

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.gradients import gradient
-from centrode.algebra.graphs import Graph, rebuilt
+from centrode.algebra.graphs import Graph, rebuilt, split
+from centrode.algebra.operations import CONSTANT, VARIABLE
 from centrode.algebra.reductions import Reduction
 from centrode.kinematics.compiled.traced import Traced, Untraceable
-from centrode.kinematics.compiled.variables import Varied
+from centrode.kinematics.compiled.variables import PARAMETER, RATE, SECOND_RATE, TIME, Varied
 from centrode.locale import mark
 from centrode.structure.gearing import Straight
 from centrode.sweeps.folds import Fold, Folds
@@ -21,6 +22,22 @@ Through: TypeAlias = Sequence[tuple[Node, Operand]]
 """The variables that a value moves, each with its derivative by that value."""
 
 m = EXPRESSIONS
+MOVING = frozenset({PARAMETER, TIME, RATE, SECOND_RATE})
+"""Variables that differ from sample to sample."""
+
+
+@dataclass(frozen=True)
+class States:
+    """Derivatives of a fold.
+
+    Attributes
+    ----------
+    parts : state -> what is folded into it: a derivative of the formula at a sample
+    at_end : path -> derivative by the value there, from the states when all samples are passed
+    """
+
+    parts: Mapping[str, Node]
+    at_end: Mapping[str, Node]
 
 
 @dataclass(frozen=True)
@@ -31,12 +48,14 @@ class Slopes:
     ----------
     through : path -> the variables of the plan that it moves
     turns : name -> whole turns in angles, which jump and have no derivative
-    folds : whose results have derivatives of their own, variables called by `by`
+    folds : whose results have derivatives of their own
+    known : fold -> its states, once they have been asked for
     """
 
     through: Mapping[str, Through]
     turns: Mapping[str, Node]
     folds: Folds
+    known: dict[str, States] = field(default_factory=dict)
 
     @classmethod
     def of(cls, paths: Sequence[str], varied: Varied, traced: Traced, folds: Folds) -> Slopes:
@@ -47,8 +66,7 @@ class Slopes:
 
     def of_node(self, node: Node) -> dict[str, Node]:
         """Path -> derivative of an expression, that of the folds it uses included."""
-        standing = {turns: variable(name) for name, turns in self.turns.items()}
-        still = rebuilt({"": node}, lambda x, _arguments: standing.get(x))[""]
+        still = self._without_turns(node)
         used = frozenset(Graph({"": still}).variables)
         names = [fold.name for fold in self.folds.found.values() if fold.name in used]
         moved = list(dict.fromkeys(x for path in self.through.values() for x, _factor in path))
@@ -61,7 +79,7 @@ class Slopes:
             for x, factor in through:
                 total = total + partial[x] * factor
             for name, part in of_folds.items():
-                total = total + part * variable(by(name, path))
+                total = total + part * self.states_of(name).at_end[path]
             found[path] = total
         return dict(Graph.of(found).substituted(self.turns).outputs)
 
@@ -70,11 +88,70 @@ class Slopes:
         so_far = variable(fold.name)
         better = m.less(fold.value, so_far) if fold.kind == "min" else m.less(so_far, fold.value)
         state = {}
-        for path, part in self.of_node(fold.value).items():
-            label = by(fold.name, path)
+        for label, part in self.states_of(fold.name).parts.items():
             more = variable(label) + part if fold.kind == "sum" else m.where(better, part, variable(label))
             state[label] = as_node(more)
         return Reduction(state, dict.fromkeys(state, 0.0))
+
+    def states_of(self, name: str) -> States:
+        """What a scan carries of the derivatives of a fold of this name: whichever is less work at a sample."""
+        if name not in self.known:
+            fold = next(fold for fold in self.folds.found.values() if fold.name == name)
+            ways = [self._by_paths(fold)]
+            if (
+                fold.kind == "sum"
+            ):  # an extreme selects for each state, and its two ends have the chain in common
+                ways.append(self._by_parts(fold))
+            self.known[name] = min(ways, key=_work)
+        return self.known[name]
+
+    def _by_paths(self, fold: Fold) -> States:
+        """A state for each path."""
+        slopes = self.of_node(fold.value)
+        labels = {path: by(fold.name, path) for path in slopes}
+        parts = {labels[path]: slope for path, slope in slopes.items()}
+        return States(parts, {path: variable(label) for path, label in labels.items()})
+
+    def _by_parts(self, fold: Fold) -> States:
+        """A state for each part of the formula that stands while the samples are passed.
+
+        To fold is linear in derivatives. So the chain from these parts down to the values at paths is gone through
+        once a mechanism, at the end.
+        """
+        still = self._without_turns(fold.value)
+        variables = [x for x in Graph({"": still}).variables if x not in MOVING and x not in self.turns]
+        parts, rest = split(Graph({"": still}), variables, f"{fold.name} part")
+        standing = {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
+        factors = {x: self.of_node(node) for x, node in standing.items()}
+        moved = [x for x, factor in factors.items() if any(map(_is_something, factor.values()))]
+        slopes = gradient(rest.outputs[""], [variable(x) for x in moved])
+        labels = {x: f"{fold.name} through {x}" for x in moved}
+        found = Graph.of(dict(zip(labels.values(), slopes, strict=True)))
+        ends: dict[str, Operand] = dict.fromkeys(self.through, 0.0)
+        for x in moved:
+            for path, factor in factors[x].items():
+                ends[path] = (
+                    ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
+                )
+        outputs = found.substituted({**self.turns, **parts.outputs}).outputs
+        return States(outputs, {path: as_node(end) for path, end in ends.items()})
+
+    def _without_turns(self, node: Node) -> Node:
+        standing = {turns: variable(name) for name, turns in self.turns.items()}
+        return rebuilt({"": node}, lambda x, _arguments: standing.get(x))[""]
+
+
+def _is_something(factor: Node) -> bool:
+    return factor.operation != CONSTANT or factor.detail != 0.0
+
+
+def _work(states: States) -> int:
+    """Operations that are carried out at every sample."""
+    order, moving = Graph(states.parts).order, set()
+    for node in order:
+        if (node.operation == VARIABLE and node.detail in MOVING) or any(x in moving for x in node.arguments):
+            moving.add(node)
+    return len(moving) + len(states.parts)
 
 
 def by(name: str, path: str) -> str:
@@ -82,9 +159,15 @@ def by(name: str, path: str) -> str:
     return f"{name} by {path}"
 
 
+def _of_a_mass(path: str) -> bool:
+    """Whether a path is that of a mass, which no dimension of the plan is."""
+    room, *_name, last = path.split(".")
+    return room == "links" and (last in ("mass", "inertia", "radius") or ".centre." in path)
+
+
 def _through(path: str, varied: Varied) -> Through:
     """The variables that the value at a path moves: itself, or cosine and sine of a direction."""
-    if path in varied.names:
+    if path in varied.names or _of_a_mass(path):
         return [(variable(path), 1.0)]
     directions = {f"guides.{guide}.direction": x for guide, x in varied.numbers.direction.items()}
     for wheel, track in varied.numbers.gearing.track.items():

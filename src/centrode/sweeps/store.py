@@ -30,6 +30,7 @@ from centrode.sweeps.designs import described
 from centrode.sweeps.executors import bare
 from centrode.sweeps.locking import locked
 from centrode.sweeps.results import Frame
+from centrode.sweeps.streams import Columns
 from centrode.sweeps.tallies import Tally
 
 AnyArray: TypeAlias = npt.NDArray[Any]
@@ -55,7 +56,7 @@ class Store:
         self.arrays = {column.name: root[column.name] for column in frame.asked.columns}
         self.tally = Tally()
         self.done: set[int] = set()
-        self._room: dict[str, AnyArray] = {}
+        self._room = Columns()
         self._roomy = 0
         for block, tally in _marked(self.markers):
             self.done.add(block)
@@ -64,11 +65,11 @@ class Store:
     def has(self, block: int) -> bool:
         return block in self.done
 
-    def room(self, block: int) -> dict[str, AnyArray]:
+    def room(self, block: int) -> Columns:
         first, stop = self.blocks.mechanisms(block)
         if stop - first > self._roomy:
             self._room, self._roomy = self.frame.room(stop - first), stop - first
-        return {name: array[: stop - first] for name, array in self._room.items()}
+        return self._room.part(slice(0, stop - first))
 
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
         region = self.blocks.region(block)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from collections import OrderedDict
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -72,20 +74,20 @@ class Kernel:
     def _run(self, call: Call, threads: int) -> Scanned:
         prepared = self.tables.added(call)
         state = np.empty_like(call.state)
-        parts = list(self._parts(prepared, state, threads))
-        if len(parts) == 1:
-            self._call(*parts[0])
+        if threads == 1:
+            self._call(prepared, state)
         else:
-            with ThreadPoolExecutor(threads) as pool:
-                for done in [pool.submit(self._call, *part) for part in parts]:
-                    done.result()
+            pool = _pool_of(threads, os.getpid())
+            running = [pool.submit(self._call, *part) for part in self._parts(prepared, state, threads)]
+            for done in as_completed(running):
+                done.result()
         return Scanned(call.outputs, state)
 
     def _parts(self, call: Call, state: Array, threads: int) -> Iterator[tuple[Call, Array]]:
         """The call in parts that do not touch one another."""
         inside, width = self.shape.lanes_inside, self.shape.vector.width
         length = call.steps if inside else call.lanes // width
-        count = 1 if threads == 1 else min(threads * PARTS, length)
+        count = min(threads * PARTS, length)
         bounds = [i * length // count for i in range(count + 1)]
         if not inside:
             bounds = [bound * width for bound in bounds[:-1]] + [call.lanes]
@@ -97,12 +99,12 @@ class Kernel:
                 yield _of_lanes(call, some), state[:, some]
 
     def _call(self, call: Call, state: Array) -> None:
+        size, outputs = self.number.itemsize, call.outputs
         arguments: list[int] = [call.lanes, call.steps]
         for array in (call.parameters, call.inputs, call.state, state):
-            arguments += [array.ctypes.data, array.strides[0] // array.itemsize]
-        outputs = call.outputs
-        strides = [stride // outputs.itemsize for stride in outputs.strides[:2]]
-        self.function.call(*arguments, outputs.ctypes.data, *strides)
+            arguments += [_address(array), array.strides[0] // size]
+        output, row, _one = outputs.strides
+        self.function.call(*arguments, _address(outputs), output // size, row // size)
 
 
 def kernel_of(
@@ -168,6 +170,16 @@ def _function(text: str, machine: Target) -> Loaded:
     code = object_code(text, machine)
     cache.write(name, code)
     return loaded(code, machine)
+
+
+def _address(array: Array) -> int:
+    return int(array.ctypes.data) if array.size else 0
+
+
+@lru_cache(maxsize=4)
+def _pool_of(threads: int, process: int) -> ThreadPoolExecutor:
+    """Threads that wait for the next call: to begin them takes as long as a short kernel. A fork has none of them."""
+    return ThreadPoolExecutor(threads, "kernel")
 
 
 def _padded(call: Call, width: int) -> Call:

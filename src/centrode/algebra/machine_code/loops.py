@@ -91,8 +91,13 @@ class _Writer:
         inner = "%lane" if inside else "%step"
         self._axis(inner)
         self._take(inner)
-        self._compute([node for node in self.scan.graph.order if node not in early])
-        self._write(bases)
+        places = self._places(bases)
+        self._write([node for node in places if node in early], places)
+        for node in self.scan.graph.order:
+            if node not in early:
+                self.operating.compute(node)
+                # at once: a number that waits to be written takes a register
+                self._write([node] if node in places else [], places)
         after_inner = block.label
         self._next(inner, "inner", "outer_end")
         block.begin("outer_end")
@@ -163,13 +168,20 @@ class _Writer:
         lanes = f"<{vector.width} x i32> zeroinitializer"
         return block.put(f"shufflevector {vector.name} {first}, {vector.name} poison, {lanes}")
 
-    def _write(self, bases: list[Value]) -> None:
-        if not bases:
-            return
-        of_step = self.block.put("mul i64 %step, %output_row")
-        index = self.block.put(f"add i64 {of_step}, %at")
-        for base, node in zip(bases, self.scan.outputs.values(), strict=True):
-            self._store(self.operating.value(node), self._at(base, index))
+    def _places(self, bases: list[Value]) -> dict[Node, list[Value]]:
+        """Where outputs are written."""
+        found: dict[Node, list[Value]] = {}
+        if bases:
+            of_step = self.block.put("mul i64 %step, %output_row")
+            index = self.block.put(f"add i64 {of_step}, %at")
+            for base, node in zip(bases, self.scan.outputs.values(), strict=True):
+                found.setdefault(node, []).append(self._at(base, index))
+        return found
+
+    def _write(self, nodes: list[Node], places: dict[Node, list[Value]]) -> None:
+        for node in nodes:
+            for place in places[node]:
+                self._store(self.operating.value(node), place)
 
     def _write_state(self) -> None:
         for i, node in enumerate(self.scan.state.values()):

@@ -89,9 +89,10 @@ def _extreme(predicate: str, nan_wins: bool) -> Callable[[Code, Value, Value], V
     """The first if it is less (greater), else the second, and what becomes of NaN."""
 
     def extreme(code: Code, a: Value, b: Value) -> Value:
+        # this selection is one instruction; it gives the second where one is NaN
+        further = code.select(code.compare(predicate, a, b), a, b)
         asked = a if nan_wins else b
-        first = code.logical("or", code.compare(predicate, a, b), code.compare("uno", asked, asked))
-        return code.select(first, a, b)
+        return code.select(code.compare("uno", asked, asked), a, further)
 
     return extreme
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -76,6 +76,5 @@ class Tables:
 
     def added(self, call: Call) -> Call:
         """The arrays of a call of the scan as those of the rest."""
-        return replace(
-            call, inputs=self.of_steps.below(call.inputs), parameters=self.of_lanes.below(call.parameters)
-        )
+        parameters, inputs = self.of_lanes.below(call.parameters), self.of_steps.below(call.inputs)
+        return Call(parameters, inputs, call.state, call.outputs)

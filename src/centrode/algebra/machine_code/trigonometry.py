@@ -23,6 +23,9 @@ REDUCED = 1e5
 ROUNDER = 1.5 * 2.0**52
 """Adding it rounds to a whole number, which then stands in the lowest bits."""
 SIGN_OF_DOUBLE = 63
+SMALLEST = 5e-324
+BY_HORNER = 8
+"""Terms of the arctangent by Horner's rule: with fewer its greatest error grows."""
 
 
 def sine_and_cosine(code: Code, x: Value) -> tuple[Value, Value]:
@@ -113,26 +116,32 @@ def angle(code: Code, y: Value, x: Value) -> Value:
     steep = code.compare("ogt", ay, ax)
     least, most = code.select(steep, ax, ay), code.select(steep, ay, ax)
     t = _arctangent(code, _slope(code, least, most))
-    left = code.compare("ult", code.intrinsic("copysign", code.constant(1.0), x), code.constant(0.0))
-    # the angle in the upper half plane is base +- t, base being 0, pi/2 or pi; pi/2 and pi come in two parts
-    parts = []
-    for part in QUARTER_TURN[:2]:
-        by_x = code.select(left, code.constant(2.0 * part), code.constant(0.0))
-        parts.append(code.select(steep, code.constant(part), by_x))
+    left = _is_negative(code, x)
+    # the angle in the upper half plane is base +- t, base being 0, pi/2 or pi; its second part is a share of the first
+    quarter, rest = QUARTER_TURN[:2]
+    by_x = code.select(left, code.constant(2.0 * quarter), code.constant(0.0))
+    base = code.select(steep, code.constant(quarter), by_x)
     backwards = code.logical("xor", steep, left)
-    offset = code.add(code.select(backwards, code.negate(t), t), parts[1])
-    return code.intrinsic("copysign", code.add(parts[0], offset), y)
+    towards = code.select(backwards, code.negate(t), t)
+    offset = code.multiply_add(base, code.constant(rest / quarter), towards)
+    return code.intrinsic("copysign", code.add(base, offset), y)
 
 
 def _slope(code: Code, least: Value, most: Value) -> Value:
     """The quotient least / most in [0, 1]; 0 of two zeros, 1 of two infinities; NaN stays."""
-    equal = code.compare("oeq", least, most)
-    zero, one = code.constant(0.0), code.constant(1.0)
-    of_equals = code.select(code.compare("oeq", most, zero), zero, one)
-    return code.select(equal, of_equals, code.divide(least, most))
+    tiny = code.constant(SMALLEST)
+    divisor = code.select(code.compare("ogt", tiny, most), tiny, most)
+    equal = code.compare("oeq", least, divisor)
+    return code.select(equal, code.constant(1.0), code.divide(least, divisor))
+
+
+def _is_negative(code: Code, x: Value) -> Value:
+    """Whether the sign of a number is set, that of a zero included."""
+    return code.block.put(f"icmp slt {code.vector.whole} {code.bits_of(x)}, {code.vector.whole_constant(0)}")
 
 
 def _arctangent(code: Code, x: Value) -> Value:
     """Arctangent on [0, 1]."""
     z = code.multiply(x, x)
-    return code.multiply_add(code.multiply(x, z), code.polynomial(ARCTANGENT, z), x)
+    rest = code.polynomial_in_halves(ARCTANGENT, z, BY_HORNER)
+    return code.multiply_add(code.multiply(x, z), rest, x)

@@ -37,16 +37,19 @@ class Cause:
     condition: str
 
 
-def cause_of(tour: Tour, group: Group, index: int, value: float) -> Cause:
-    """Why a group is at a limit or a change point at a value of the drive."""
+def cause_of(tour: Tour, group: Group, index: int, value: float, *, crossing: bool = False) -> Cause:
+    """Why a group is at a limit, or at a change point (`crossing`), at a value of the drive."""
     mechanism, numbers = tour.prepared.mechanism, tour.continuation.kinematics.numbers
     about = _About(tour, mechanism, numbers, index, value)
     if isinstance(group, Aim):
         return _of_aim(about, group)
     if not isinstance(group, Meet):
-        return Cause(
-            _("the positions of the group turn back: the determinant of its equations is zero"), HIGHER
+        sentence = (
+            _("positions of the group meet: the determinant of its equations is zero")
+            if crossing
+            else _("the positions of the group turn back: the determinant of its equations is zero")
         )
+        return Cause(sentence, HIGHER)
     if group.kind == "RRR":
         return _of_two_rods(about, group)
     if group.kind == "RRP":

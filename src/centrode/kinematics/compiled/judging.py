@@ -23,10 +23,11 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.jets import Jet
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
+from centrode.kinematics.compiled.drives import places_of
 from centrode.kinematics.compiled.traced import TURN, WHOLE, Traced, centre_of, winding_of
-from centrode.kinematics.compiled.variables import PARAMETER
 from centrode.kinematics.mesh import LOW, mesh_of
-from centrode.kinematics.sampling import SUSPECT
+from centrode.kinematics.paths import Path
+from centrode.kinematics.sampling import ORDERS, SUSPECT
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
@@ -42,8 +43,7 @@ MOST = 0.8
 """Greatest change of an angle [rad] from one of these nodes to the next: faster links are left to the arrays."""
 AWAY = 0.2
 """How far [rad] angles stay from half a turn off their centre."""
-WINDINGS = (0, 1, -1)
-SLACK, FIRST, START = "slack", "first", "start"
+SLACK, FIRST, START, STEP = "slack", "first", "start", "step"
 
 
 @dataclass(frozen=True)
@@ -68,11 +68,18 @@ class Judging:
     @cached_property
     def mesh(self) -> Array:
         """The nodes on which the arrays look for events."""
-        return mesh_of(self.traced.solved.ready.kinematics.path, self.samples)
+        return mesh_of(self._path, self.samples)
+
+    @property
+    def _path(self) -> Path:
+        return self.traced.solved.ready.kinematics.path
+
+    def _places(self, parameter: Array) -> Values:
+        return places_of(self._path, parameter, ORDERS - 1)
 
     def judge(self, values: Mapping[str, Array]) -> Judged:
         """Judge the mechanisms of a batch."""
-        found = self._run(self._of_events, self._events_scan, values, {PARAMETER: self.mesh})
+        found = self._run(self._of_events, self._events_scan, values, self._nodes)
         lanes = len(next(iter(values.values())))
         clear = np.ones(lanes, dtype=bool)
         if SLACK in found:
@@ -104,12 +111,19 @@ class Judging:
 
     @cached_property
     def _events_scan(self) -> Scan:
-        return scan_of(self._of_events, self.names, (PARAMETER,))
+        return scan_of(self._of_events, self.names, tuple(self._nodes))
+
+    @cached_property
+    def _nodes(self) -> Values:
+        """The mesh; with several drives also how far from each node the next one may be."""
+        gaps = np.diff(self.mesh)
+        either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
+        return self._places(self.mesh) | ({STEP: either} if self._path.by_time else {})
 
     @cached_property
     def _of_events(self) -> Reduction:
         """States: how far the worst radicand is from what the search would look into; ends of divisors."""
-        step = self.traced.solved.ready.kinematics.path.step
+        step = variable(STEP) if self._path.by_time else self._path.step
         slacks, parts = [], []
         for group, radicand in self.traced.radicands.items():
             value, slope = _with_slope(radicand)
@@ -128,18 +142,18 @@ class Judging:
     @cached_property
     def _sparse(self) -> Values:
         """Every fourth node, the one nearest to the initial position among them."""
-        start = int(np.argmin(np.abs(self.mesh - self.traced.solved.ready.kinematics.path.initial)))
+        start = int(np.argmin(np.abs(self.mesh - self._path.initial)))
         nodes = np.arange(len(self.mesh))
         chosen = np.unique(np.concatenate([nodes[start % SPARSE :: SPARSE], nodes[[0, -1]]]))
         return {
-            PARAMETER: self.mesh[chosen],
+            **self._places(self.mesh[chosen]),
             START: (chosen == start).astype(np.float64),
             FIRST: (chosen == 0).astype(np.float64),
         }
 
     @cached_property
     def _angles_scan(self) -> Scan:
-        return scan_of(self._of_angles, self.names, (PARAMETER, START, FIRST))
+        return scan_of(self._of_angles, self.names, tuple(self._sparse))
 
     @cached_property
     def _of_angles(self) -> Reduction:
@@ -158,9 +172,11 @@ class Judging:
                 )
             )
             parts.append(_greatest(f"jump {link}", as_node(jump)))
-            for turns in WINDINGS:
-                rest = as_node(angle - float(turns) * variable(PARAMETER) if turns else angle)
-                parts += [_greatest(f"high {turns} {link}", rest), _least(f"low {turns} {link}", rest)]
+            for k, winding in enumerate(self._windings):
+                rest = angle
+                for drive, turns in winding.items():
+                    rest = as_node(rest - turns * self.traced.winders[drive])
+                parts += [_greatest(f"high {k} {link}", rest), _least(f"low {k} {link}", rest)]
         return together(*parts)
 
     def _centred(self, link: str, found: Values, further: Values) -> Mask:
@@ -168,15 +184,23 @@ class Judging:
         start = self.traced.solved.ready.assembled.angles[link]
         whole = np.round((start - found[f"at start {link}"]) / TURN)
         off = np.abs(start - found[f"at start {link}"] - TURN * whole)
-        halves = np.stack([found[f"high {k} {link}"] - found[f"low {k} {link}"] for k in WINDINGS]) / 2.0
+        kinds = range(len(self._windings))
+        halves = np.stack([found[f"high {k} {link}"] - found[f"low {k} {link}"] for k in kinds]) / 2.0
         best = np.argmin(np.where(np.isnan(halves), INFINITE, halves), axis=0)
-        middles = np.stack([found[f"high {k} {link}"] + found[f"low {k} {link}"] for k in WINDINGS]) / 2.0
+        middles = np.stack([found[f"high {k} {link}"] + found[f"low {k} {link}"] for k in kinds]) / 2.0
         lanes = np.arange(len(best))
-        further[winding_of(link)] = np.array(WINDINGS, dtype=np.float64)[best]
+        for drive in self.traced.winders:
+            of_each = np.array([winding.get(drive, 0.0) for winding in self._windings])
+            further[winding_of(link, drive)] = of_each[best]
         further[centre_of(link)] = middles[best, lanes] + TURN * whole
         jump = found[f"jump {link}"]
         fits: Mask = halves[best, lanes] + jump < np.pi - AWAY
         return fits & (jump < MOST) & (off < np.pi - AWAY)
+
+    @cached_property
+    def _windings(self) -> list[dict[str, float]]:
+        """Turns that a link may make for one of a drive: none, or one to either side for one of the drives."""
+        return [{}, *[{drive: sense} for drive in self.traced.winders for sense in (1.0, -1.0)]]
 
     @cached_property
     def slack_at_samples(self) -> Node | None:

@@ -1,4 +1,4 @@
-"""The motions of many mechanisms: those without events as machine code where that pays, to the bits of `solve`.
+"""The motions of many mechanisms as machine code where that pays, to the bits of `solve`.
 
 What is not rounded alike everywhere, the arc tangent, stays with NumPy. So a result does not tell how many
 mechanisms were computed with it.
@@ -8,18 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra import machine_code
-from centrode.algebra.executors import MACHINE_CODE, runner
-from centrode.algebra.expressions import as_node
+from centrode.algebra.executors import MACHINE_CODE
+from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
-from centrode.algebra.scans import Scan
 from centrode.errors import Status
 from centrode.kinematics.branches import Branches, branches_at_start
+from centrode.kinematics.compiled.drives import inputs_of
+from centrode.kinematics.compiled.eventful import Eventful
 from centrode.kinematics.compiled.judging import Judged, Judging
 from centrode.kinematics.compiled.traced import (
     TURN,
@@ -30,7 +32,8 @@ from centrode.kinematics.compiled.traced import (
     traced,
     winding_of,
 )
-from centrode.kinematics.compiled.variables import PARAMETER, SCALE, Varied, boxed, inputs_of, varied_of
+from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, taken, varied_of
+from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, streams_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED, Kept
@@ -46,9 +49,7 @@ WORTH_COMPILING = 200_000
 """Samples, or nodes of the mesh if they are more, of all mechanisms from which on compiling pays."""
 AT_ONCE = 256
 """Mechanisms between two reports of progress."""
-ORDERED = frozenset({"all_points", "angles", "slides", "spins"})
-"""Arrays with the derivatives in front."""
-ROOMS = ("all_points", "angles", "slides", "spins", "contacts", "residual")
+SLACK = "slack"
 
 
 def solve_many(
@@ -67,11 +68,9 @@ def solve_many(
     names = tuple(dict.fromkeys([*varied.names, SCALE]))
     judging = Judging(plan, span.parameter, names, tuple(plan.turning), MACHINE_CODE)
     values = varied.values(numbers)
-    if not values:
+    if not values or not Writer(nodes_of(plan), inputs_of(ready.kinematics.path, span), MACHINE_CODE).alike:
         return solve(ready, span, numbers, lanes, progress)
     judged = judging.judge(values)
-    if np.mean(judged.clear) < 0.5:
-        return solve(ready, span, numbers, lanes, progress)
     return _Many(ready, span, numbers, lanes, varied, plan, judging, judged).solved(progress)
 
 
@@ -87,18 +86,21 @@ class _Many:
     judged: Judged
 
     def solved(self, progress: Progress | None) -> Solved:
-        rooms, sines, slack = self._written(progress)
-        self._angles(rooms["angles"], sines)
-        residual = rooms["residual"]
+        writer = Writer(self._outputs(), self._inputs, MACHINE_CODE)
+        room = writer.room(self.lanes)
+        self._write(writer, room, progress)
+        found = writer.placed(room)
+        residual = found["residual"]
         clear = self.judged.clear & (residual.max(axis=1) <= 0.5 * CLOSED)
-        if slack is not None:
-            clear &= slack.min(axis=1) > 0.0
+        if SLACK in found:
+            clear &= found[SLACK].min(axis=1) > 0.0
+        self._angles(found["angles"], found[SINES])
         status = np.full(residual.shape, Status.OK, dtype=np.int8)
         branches = self._branches()
         left = np.nonzero(~clear)[0]
         if len(left):
-            self._filled(left, rooms, status, branches)
-        points = rooms["all_points"]
+            self._fill(left, found, status, branches)
+        points = found["all_points"]
         moving = points[:, :, :, len(self.numbers.frame) :]
         return replace(
             self.plan.solved,
@@ -107,52 +109,32 @@ class _Many:
             branches=branches,
             all_points=points,
             points=moving,
-            angles=rooms["angles"],
-            slides=rooms["slides"],
-            spins=rooms.get("spins"),
+            angles=found["angles"],
+            slides=found["slides"],
+            spins=found.get("spins"),
             status=status,
             residual=residual,
             worst_constraint=self._worst(residual),
-            contacts=rooms["contacts"],
+            contacts=found["contacts"],
         )
 
     def _outputs(self) -> dict[str, Nodes]:
-        """What is written: arrays of a Solved of one lane and one sample; cosines stand where angles will."""
-        solved = self.plan.solved
-        angles: Nodes = solved.angles.copy()
-        for k, link in enumerate(solved.layout.angles):
-            if link in self.plan.turning:
-                angles[0, 0, 0, k] = self.plan.turning[link][0]
-        found: dict[str, Nodes | None] = {name: getattr(solved, name) for name in ROOMS}
-        found["angles"] = angles
-        found["sines"] = boxed([sine for _cosine, sine in self.plan.turning.values()]).reshape(1, 1, -1)
+        found = nodes_of(self.plan)
         slack = self.judging.slack_at_samples
-        if slack is not None:
-            found["slack"] = boxed([slack]).reshape(1, 1)
-        return {name: nodes for name, nodes in found.items() if nodes is not None}
+        return found if slack is None else {**found, SLACK: boxed([slack]).reshape(1, 1)}
 
-    def _written(self, progress: Progress | None) -> tuple[dict[str, Array], Array, Array | None]:
-        """All samples of all mechanisms, each number one stream; arrays as `Solved` has them are views of that."""
-        outputs = self._outputs()
-        flat = [as_node(x) for nodes in outputs.values() for x in nodes.ravel()]
-        graph = Graph({str(k): node for k, node in enumerate(flat)})
-        inputs = inputs_of(self.span)
-        along = tuple(name for name in inputs if name in graph.variables or name == PARAMETER)
-        scan = Scan(along, tuple(name for name in graph.variables if name not in along), graph.outputs)
-        run = runner(scan, MACHINE_CODE, lanes_inside=True)
-        room = np.empty((len(flat), self.lanes, len(self.span.parameter)))
+    @cached_property
+    def _inputs(self) -> dict[str, Array]:
+        return inputs_of(self.ready.kinematics.path, self.span)
+
+    def _write(self, writer: Writer, room: Array, progress: Progress | None) -> None:
+        """All samples of all mechanisms, but where none of some is clear."""
         values = self.varied.values(self.numbers) | self.judged.values
-        of_samples = np.stack([inputs[name] for name in along])
         for rows in self._parts():
-            of_lanes = np.stack([values[name][rows] for name in scan.inputs]) if scan.inputs else None
-            run(of_samples, of_lanes, out=room[:, rows], steps=rows.stop - rows.start)
+            if self.judged.clear[rows].any():
+                writer.write({name: row[rows] for name, row in values.items()}, room[:, rows])
             if progress is not None:
                 progress(rows.stop, self.lanes)
-        found, first = {}, 0
-        for name, nodes in outputs.items():
-            found[name] = _placed(name, room[first : first + nodes.size], nodes.shape)
-            first += nodes.size
-        return found, found["sines"], found.get("slack")
 
     def _parts(self) -> Iterator[slice]:
         for first in range(0, self.lanes, AT_ONCE):
@@ -160,13 +142,17 @@ class _Many:
 
     def _angles(self, angles: Array, sines: Array) -> None:
         """Angles with their turns where their cosines stand."""
-        layout, parameter = self.plan.solved.layout, self.span.parameter
+        layout, values = self.plan.solved.layout, self.judged.values
+        drives = evaluate(Graph.of(self.plan.winders), self._inputs)
         for k, link in enumerate(self.plan.turning):
-            centre, winding = (self.judged.values[of(link)][:, None] for of in (centre_of, winding_of))
             for rows in self._parts():
+                if not self.judged.clear[rows].any():
+                    continue
                 angle = angles[0, rows, :, layout.angles.index(link)]
                 np.arctan2(sines[rows, :, k], angle, out=angle)
-                middle = centre[rows] + winding[rows] * parameter
+                middle = values[centre_of(link)][rows, None]
+                for drive, value in drives.items():
+                    middle = middle + values[winding_of(link, drive)][rows, None] * value
                 turns = ((middle - angle) * (1.0 / TURN) + WHOLE) - WHOLE
                 angle += TURN * turns
 
@@ -177,34 +163,41 @@ class _Many:
 
     def _some(self, lanes: Lanes) -> Solved:
         """Some mechanisms by arrays."""
-        numbers = self.numbers.mapped(lambda x: x if isinstance(x, float) else x[lanes])
-        return solve(self.ready, self.span, numbers, len(lanes))
+        return solve(self.ready, self.span, taken(self.numbers, lanes), len(lanes))
 
-    def _filled(
-        self, left: Lanes, rooms: dict[str, Array], status: npt.NDArray[np.int8], branches: Branches
+    def _fill(
+        self, left: Lanes, found: dict[str, Array], status: npt.NDArray[np.int8], branches: Branches
     ) -> None:
-        """Fill in the mechanisms that are left to the arrays."""
-        some = self._some(left)
-        for name in ROOMS:
-            if name in rooms:
-                rooms[name][(slice(None), left) if name in ORDERED else left] = getattr(some, name)
-        status[left] = some.status
-        branches.events += [replace(event, lane=int(left[event.lane])) for event in some.branches.events]
+        """Fill in the mechanisms that have events."""
+        for lanes, some in self._with_events(left):
+            for name in ROOMS:
+                if name in found:
+                    streams_of(name, found[name])[..., lanes, :] = streams_of(name, getattr(some, name))
+            status[lanes] = some.status
+            branches.events += [replace(event, lane=int(lanes[event.lane])) for event in some.branches.events]
+
+    def _with_events(self, left: Lanes) -> Iterator[tuple[Lanes, Solved]]:
+        if len(left) * self._places < WORTH_COMPILING:
+            self._events.unclosed.update(left.tolist())  # nobody has looked
+            yield left, self._some(left)
+        else:
+            yield from self._events.solved(self.numbers, left)
+
+    @cached_property
+    def _events(self) -> Eventful:
+        return Eventful(self.ready, self.span, self.varied, self.plan, MACHINE_CODE)
+
+    @property
+    def _places(self) -> int:
+        return max(len(self.span.parameter), len(self.judging.mesh))
 
     def _worst(self, residual: Array) -> Kept:
         """The constraint that is worst of all, as `solve` finds it: in the first of its parts that has the worst."""
-        places = max(len(self.span.parameter), len(self.judging.mesh))
-        size = max(1, CHUNK // places)
+        size = max(1, CHUNK // self._places)
         worst = np.fmax.reduce(residual, axis=1)
         lanes = np.nonzero(worst == np.fmax.reduce(worst))[0]
-        first = lanes[:1] if len(lanes) else np.zeros(1, dtype=np.intp)
-        return self._some(
-            lanes[lanes < (first[0] // size + 1) * size] if len(lanes) else first
-        ).worst_constraint
-
-
-def _placed(name: str, room: Array, shape: tuple[int, ...]) -> Array:
-    """Numbers (numbers, lanes, samples) as an array of a shape that has one lane and one sample."""
-    lane = 1 if name in ORDERED else 0
-    whole = room.reshape(*shape[:lane], *shape[lane + 2 :], *room.shape[1:])
-    return np.moveaxis(whole, (-2, -1), (lane, lane + 1))
+        first = int(lanes[0]) // size * size if len(lanes) else 0
+        # what does not close counts as well, though it has no residual any more
+        chosen = np.union1d(lanes, sorted(self._events.unclosed)).astype(np.intp)
+        chosen = chosen[(chosen >= first) & (chosen < first + size)]
+        return self._some(chosen if len(chosen) else np.zeros(1, dtype=np.intp)).worst_constraint

@@ -2,13 +2,13 @@
 
 The plan runs over expression nodes as it runs over arrays. What differs from mechanism to mechanism are variables;
 so are the parameter of the path, the time, and the rates of the parameter. Signs are those of the initial position,
-which holds for mechanisms without events alone: `judging` tells which these are.
+which holds for mechanisms without change points alone (`judging` tells which these are), or flip at change points whose
+places are variables too.
 """
 
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
@@ -22,6 +22,8 @@ from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.branches import branches_at_start
+from centrode.kinematics.compiled.drives import traced_path, winders_of
+from centrode.kinematics.compiled.signs import signs_of
 from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, span_of_variables
 from centrode.kinematics.evaluate import Hooks, Kinematics
 from centrode.kinematics.layout import Layout, layout_of, positions_from
@@ -64,6 +66,7 @@ class Traced:
     solved : arrays of nodes and floats, of one lane and one sample
     radicands, divisors : group -> jet of first order, or what does not move with the drive: events are their zeros
     turning : link -> cosine and sine of its angle where its turns have to be found
+    winders : drive -> its value, with which links may turn
     turns : link -> the turns that stand in its angle: a whole number
     """
 
@@ -71,22 +74,30 @@ class Traced:
     radicands: Mapping[int, Number]
     divisors: Mapping[int, Number]
     turning: Mapping[str, tuple[Operand, Operand]]
+    winders: Mapping[str, Operand]
 
     @property
     def turns(self) -> dict[str, Node]:
-        return {link: as_node(turns_of(link, *rotor)) for link, rotor in self.turning.items()}
+        return {link: as_node(turns_of(link, *rotor, self.winders)) for link, rotor in self.turning.items()}
 
 
 class _Signs(Hooks):
-    """The signs of the initial position; radicands and divisors are kept."""
+    """Signs as they are given; radicands and divisors are kept.
 
-    def __init__(self, signs: Mapping[int, float]) -> None:
+    At samples a root that does not move has derivatives that are zero, on the mesh none, as with arrays: quotients by
+    what depends on it are rounded otherwise.
+    """
+
+    def __init__(self, signs: Mapping[int, Operand], on_mesh: bool) -> None:
         self.signs = signs
+        self.on_mesh = on_mesh
         self.radicands: dict[int, Number] = {}
         self.divisors: dict[int, Number] = {}
 
     def root(self, group: int, radicand: Number) -> Number:
         self.radicands[group] = radicand
+        if not isinstance(radicand, Jet) and not self.on_mesh:
+            radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
         return NODE_JETS.sqrt(radicand) * self.signs[group]
 
     def divisor(self, group: int, divisor: Number) -> Number:
@@ -103,8 +114,6 @@ class _Signs(Hooks):
 def refuse_untraceable(ready: Ready, span: Span) -> None:
     """Raise Untraceable for what is known before the plan is run."""
     kinematics = ready.kinematics
-    if kinematics.path.by_time:
-        raise Untraceable(mark("several drives"))
     if any(isinstance(group, Newton) for group in ready.structure.groups):
         raise Untraceable(mark("groups of higher class"))
     if np.any(kinematics.path.impossible(span.parameter)):
@@ -114,22 +123,29 @@ def refuse_untraceable(ready: Ready, span: Span) -> None:
         raise Untraceable(mark("guides that close"))
 
 
-def traced(ready: Ready, span: Span, varied: Varied) -> Traced:
-    """The motion of a mechanism of a batch at one place of the path.
+def traced(
+    ready: Ready,
+    span: Span,
+    varied: Varied,
+    crossings: Mapping[int, int] | None = None,
+    on_mesh: bool = False,
+) -> Traced:
+    """The motion of a mechanism of a batch at one place of the path, a sample or a node of the mesh.
 
-    Raises Untraceable.
+    `crossings` says of how many change points of a group the sign is to know (see `signs`). Raises Untraceable.
     """
     refuse_untraceable(ready, span)
-    kinematics = with_phases(
-        replace(ready.kinematics, numbers=varied.numbers), ready.kinematics.numbers.gearing.phase
-    )
-    hooks = _Signs(ready.assembled.signs)
+    known = ready.kinematics
+    path = traced_path(known.path, span.parameter, ORDERS - 1)
+    kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
+    hooks = _Signs(signs_of(ready, crossings or {}), on_mesh)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
     columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))
-    angles, turning = _angles(kinematics, layout, at, columns, ready.assembled.angles)
+    winders = winders_of(path)
+    angles, turning = _angles(kinematics, layout, at, columns, ready.assembled.angles, winders)
     solved = _solved(_Parts(ready, kinematics, layout, columns, angles), span, varied)
-    return Traced(solved, hooks.radicands, hooks.divisors, turning)
+    return Traced(solved, hooks.radicands, hooks.divisors, turning, winders)
 
 
 @dataclass(frozen=True)
@@ -152,7 +168,12 @@ def _derivative(x: Number, order: int) -> Operand:
 
 
 def _angles(
-    kinematics: Kinematics, layout: Layout, at: Positions, columns: Nodes, start: Mapping[str, float]
+    kinematics: Kinematics,
+    layout: Layout,
+    at: Positions,
+    columns: Nodes,
+    start: Mapping[str, float],
+    winders: Mapping[str, Operand],
 ) -> tuple[Nodes, dict[str, tuple[Operand, Operand]]]:
     """Angles with their derivatives as `turning.fill_angles` has them: (3, angles); rotors of those that may turn."""
     found = np.empty((ORDERS, len(layout.angles)), dtype=object)
@@ -167,7 +188,9 @@ def _angles(
             found[0, k] = _standing(cosine[0], sine[0], start[link])
             continue
         turning[link] = cosine[0], sine[0]
-        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns_of(link, cosine[0], sine[0])
+        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns_of(
+            link, cosine[0], sine[0], winders
+        )
         for order in (1, 2):
             found[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
     return found, turning
@@ -175,13 +198,15 @@ def _angles(
 
 def _standing(cosine: float, sine: float, start: float) -> float:
     """The angle of a link that never turns, on the turn of the initial position."""
-    angle = math.atan2(sine, cosine)
+    angle = float(np.arctan2(sine, cosine))
     return angle + TURN * round((start - angle) / TURN)
 
 
-def turns_of(link: str, cosine: Operand, sine: Operand) -> Operand:
-    """The turns that bring an angle within half a turn of a centre that runs on with the drive."""
-    centre = variable(centre_of(link)) + variable(winding_of(link)) * variable(PARAMETER)
+def turns_of(link: str, cosine: Operand, sine: Operand, winders: Mapping[str, Operand]) -> Operand:
+    """The turns that bring an angle within half a turn of a centre that runs on with a drive."""
+    centre: Operand = variable(centre_of(link))
+    for drive, value in winders.items():
+        centre = centre + variable(winding_of(link, drive)) * value
     return ((centre - EXPRESSIONS.atan2(sine, cosine)) * (1.0 / TURN) + WHOLE) - WHOLE
 
 
@@ -190,9 +215,9 @@ def centre_of(link: str) -> str:
     return f"centre {link}"
 
 
-def winding_of(link: str) -> str:
-    """Name of the turns that a link makes for one of the drive: -1, 0 or 1."""
-    return f"winding {link}"
+def winding_of(link: str, drive: str) -> str:
+    """Name of the turns that a link makes for one of a drive: -1, 0 or 1."""
+    return f"winding {link} with {drive}"
 
 
 def _solved(parts: _Parts, span: Span, varied: Varied) -> Solved:

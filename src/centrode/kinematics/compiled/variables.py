@@ -68,6 +68,11 @@ def varied_of(numbers: Dimensions, values: Mapping[str, Array]) -> Varied:
     return Varied(nodes, tuple(names), scale if isinstance(scale, float) else variable(SCALE))
 
 
+def taken(numbers: Dimensions, lanes: npt.NDArray[np.intp]) -> Dimensions:
+    """The numbers of some mechanisms of a batch."""
+    return numbers.mapped(lambda x: x if isinstance(x, float) else x[lanes])
+
+
 def arrays_of(numbers: Dimensions) -> list[Array]:
     """The arrays of a batch's numbers, in the order in which `mapped` meets them."""
     found: list[Array] = []
@@ -104,10 +109,9 @@ def span_of_variables(span: Span) -> TracedSpan:
     return TracedSpan(boxed([variable(TIME)]), place, row(RATE, span.rate), second, accelerates)
 
 
-def inputs_of(span: Span) -> dict[str, Array]:
-    """What the variables of a place stand for at the samples of a span: name -> (samples,)."""
+def times_of(span: Span) -> dict[str, Array]:
+    """What the variables of a place that tell of time stand for at the samples of a span: name -> (samples,)."""
     return {
-        PARAMETER: span.parameter,
         TIME: span.time,
         RATE: span.rate,
         SECOND_RATE: span.second_rate,

@@ -1,0 +1,133 @@
+"""Kernels whose every output is written: to memory, and into a buffer that stays in the cache as a sweep's does."""
+
+from __future__ import annotations
+
+import functools
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+
+import centrode as ct
+from benchmarks import peer, rivals
+from benchmarks.motions import peer_of
+from benchmarks.plans import DRIVE, EACH, LANES, SAMPLES, Plan
+from benchmarks.table import Promise, Row
+from benchmarks.timing import ROUNDS, Task, Times, paired_times, ratio
+from centrode.algebra import machine_code
+from centrode.algebra.expressions import Node
+from centrode.algebra.graph_arrays import run_on_arrays
+from centrode.algebra.scans import Scan, call_of, room_of
+from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.kinematics.ready import ready
+from centrode.sweeps.limits import KERNEL_BUFFER
+
+if machine_code.PRESENT:
+    from centrode.algebra.machine_code.kernels import kernel_of
+
+FEW = LANES // 20
+"""Mechanisms that NumPy computes: its time for a position does not depend on their number."""
+OVER_WRITING = {"crank-rocker": 1.5, "six-bar-press": 1.6}
+OVER_PEER = {"crank-rocker": {"peer motion": 60.0, "peer positions": 20.0}}
+
+
+def to_memory(name: str, plan: Plan) -> Row:
+    """All outputs, into a large buffer that is there: lanes are samples, so that each output is one stream."""
+    scan = Scan((PARAMETER,), plan.names, plan.outputs)
+    kernel, lanes = kernel_of(scan, lanes_inside=True), plan.by_lanes
+    out = np.zeros((len(plan.outputs), LANES, SAMPLES))
+    tasks: dict[str, Task] = {
+        "kernel": functools.partial(kernel.run, DRIVE, lanes, out=out),
+        "write": functools.partial(out.fill, 1.0),
+        "numpy": functools.partial(run_on_arrays, scan, DRIVE, lanes[:, :FEW], out=out[:, :FEW].copy()),
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        prepared = kernel.tables.added(call_of(scan, DRIVE, lanes, out=out))
+        for rival, there, build in (
+            ("gcc", rivals.HAS_GCC, rivals.by_gcc), ("numba", rivals.HAS_NUMBA, rivals.by_numba),
+        ):  # fmt: skip
+            if there:
+                tasks[rival] = functools.partial(build(kernel.rest, Path(folder)), prepared)
+        times = paired_times(tasks, ROUNDS)
+    times["numpy"] = [x * LANES / FEW for x in times["numpy"]]
+    over = ratio(times, "kernel", "write")
+    numbers = {"outputs": float(len(plan.outputs)), "ns": median(times["kernel"]) * EACH, "/ writing": over}
+    numbers |= {f"{x} /": ratio(times, x, "kernel") for x in ("numpy", "gcc", "numba") if x in times}
+    what = f"{name}, {len(plan.outputs)} numbers written to memory, over writing"
+    promises = [Promise(what, over, OVER_WRITING[name])] if name in OVER_WRITING else []
+    return Row(f"{name}, written to memory", numbers, promises=promises)
+
+
+def streamed(plan: Plan, outputs: Mapping[str, Node], relaxed: bool = False) -> tuple[Task, Task]:
+    """The batch through a buffer that stays in the cache, as a sweep takes it; the same buffer only filled."""
+    scan = Scan((PARAMETER,), plan.names, outputs)
+    kernel, lanes = kernel_of(scan, lanes_inside=True, relaxed=relaxed), plan.by_lanes
+    chunk = KERNEL_BUFFER // (8 * len(outputs) * SAMPLES)
+    buffer = room_of(len(outputs), chunk, SAMPLES)
+    parts = [lanes[:, first : first + chunk] for first in range(0, LANES, chunk)]
+
+    def run() -> None:
+        for part in parts:
+            kernel.run(DRIVE, part, out=buffer[:, : part.shape[1]])
+
+    def fill() -> None:
+        for part in parts:
+            buffer[:, : part.shape[1]] = 1.0
+
+    return run, fill
+
+
+def in_cache(name: str, plan: Plan) -> Row:
+    """All outputs, and positions alone, into a small buffer that is used again; the peer keeps nothing either."""
+    tasks = _peers(name) if peer.PRESENT and ct.example(name).space == "plane" else {}
+    tasks["kernel"], tasks["write"] = streamed(plan, plan.outputs)
+    tasks["relaxed"], _ = streamed(plan, plan.outputs, relaxed=True)
+    tasks["positions"], _ = streamed(plan, plan.positions)
+    times = paired_times(tasks, ROUNDS)
+    for run in ("peer motion", "peer positions"):
+        if run in times:
+            times[run] = [x * LANES for x in times[run]]
+    return Row(
+        f"{name}, written in cache",
+        {
+            "outputs": float(len(plan.outputs)),
+            "ns": median(times["kernel"]) * EACH,
+            "/ writing": ratio(times, "kernel", "write"),
+            "relaxed /": ratio(times, "relaxed", "kernel"),
+            "positions alone, ns": median(times["positions"]) * EACH,
+            **_over_peer(times),
+        },
+        promises=_promised_over_peer(name, times) if "peer motion" in times else (),
+    )
+
+
+def _over_peer(times: Times) -> dict[str, float]:
+    if "peer motion" not in times:
+        return {}
+    return {
+        "peer motion /": ratio(times, "peer motion", "kernel"),
+        "peer positions /": ratio(times, "peer positions", "kernel"),
+        "peer positions / positions": ratio(times, "peer positions", "positions"),
+    }
+
+
+def _promised_over_peer(name: str, times: Times) -> list[Promise]:
+    promises = []
+    for label, run in (("", "kernel"), (", relaxed", "relaxed")):
+        for theirs, bound in OVER_PEER.get(name, {}).items():
+            what = f"{name}, written in cache{label}: pylinkage's {theirs.removeprefix('peer ')}, times"
+            promises.append(Promise(what, ratio(times, theirs, run), at_least=bound))
+    return promises
+
+
+def _peers(name: str) -> dict[str, Task]:
+    """The peer's compiled functions alone, one mechanism: with velocities and accelerations, and positions."""
+    mechanism = ct.example(name)
+    prepared, motion = ready(mechanism), ct.motion(mechanism, SAMPLES)
+    other = peer_of(prepared, prepared.structure.dimensions, motion)
+    return {
+        "peer motion": functools.partial(peer.run_batch, [other], SAMPLES),
+        "peer positions": functools.partial(other.positions, SAMPLES),
+    }

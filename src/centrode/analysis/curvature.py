@@ -1,0 +1,227 @@
+"""Curvature of point paths at given places: inflection circle, Euler and Savary, stationary curvature, Ball's point."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.algebra.jets import Jet
+from centrode.analysis.bodies import ROUNDED, Array, described, refuse_batch, sliders_of, vectors
+from centrode.analysis.relative import Seen
+from centrode.errors import InputError, NotComputedYet, Status
+from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
+from centrode.kinematics.dataset import coordinates_of, judgements_of, labels_of, named
+from centrode.kinematics.events import Scan
+from centrode.kinematics.mesh import mesh_of
+from centrode.kinematics.paths import JETS
+from centrode.kinematics.places import start_of
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.solve import fit_for, solve
+from centrode.kinematics.spans import Span, is_uniform, span_at
+from centrode.locale import _
+from centrode.model.mechanism import FRAME, Mechanism
+from centrode.model.problems import nearest, shown
+from centrode.structure.positions import Positions
+
+Local: TypeAlias = Mapping[str, tuple[float, float]]
+ORDER = 3
+
+
+def curvature(
+    source: Mechanism | xr.Dataset,
+    link: str,
+    at: npt.ArrayLike | None = None,
+    against: str = "frame",
+    points: Local | None = None,
+) -> xr.Dataset:
+    """How the paths of a link's points bend, at given places of a motion.
+
+    Parameters
+    ----------
+    source : Mechanism or Dataset
+        A planar mechanism, or its motion (of a batch, one mechanism).
+    link, against : str
+        Bodies: links, "frame", sliders ("slider C"); the paths are those that `against` sees.
+    at : (n,) values of the drive [rad or m], or times [s] where the drive is a law or there are several
+        Of a motion its samples if left out.
+    points : name -> (x, y) [m], optional
+        Further points of the link, in its own axes.
+
+    Returns
+    -------
+    Dataset
+        In the frame's axes: `pole` and `inflection_pole` (sample, axis) [m], ends of a diameter of the
+        inflection circle; `inflection_diameter` (sample) [m]; `pole_tangent` (sample) [rad], the x axis of
+        the pole's own axes, whose y axis points to the inflection pole; `stationary_cubic` (sample,
+        coefficient) [1/m], a and b of (x^2 + y^2)(a x + b y) = x y in these axes; `ball_point` (sample, axis)
+        [m]. Of each point: `path_curvature` (sample, point) [1/m], positive to the left as the drive's value
+        (or time) grows; `path_curvature_slope` [1/m^2] by the arc; `curvature_centre` (sample, point, axis).
+
+    Raises
+    ------
+    InputError
+        Unknown bodies, no places.
+    NotComputedYet
+        The mechanism moves on the sphere.
+
+    Notes
+    -----
+    Exact: from jets of the third order. Absent (NaN) in a translation is what belongs to the pole, at the
+    pole the curvature, on the inflection circle the centre of curvature; Ball's point where every point of
+    the inflection circle is one.
+    """
+    mechanism, places = _asked(source, at)
+    if mechanism.space == "sphere":
+        raise NotComputedYet(
+            "space", _("curvature is not computed on the sphere"), _("ask for a planar mechanism")
+        )
+    for name in (link, against):
+        _check_body(mechanism, name)
+    if link == against:
+        raise InputError("link", _("{name} does not move against itself").format(name=link))
+    prepared = ready(mechanism)
+    if places is None:
+        uniform = is_uniform(prepared.kinematics.path)
+        assert isinstance(source, xr.Dataset)
+        places = (source["drive_value"].isel(drive=0) if uniform else source["time"]).to_numpy()
+    span = span_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64))
+    solved = solve(prepared, span)
+    positions = jet_positions(prepared, span)
+    present = np.isin(solved.status[0], (Status.OK, Status.CUT_OFF))
+    seen = _seen(mechanism, positions, link, against, present)
+    own = _local_points(mechanism, link) | dict(points or {})
+    scale = float(prepared.kinematics.numbers.scale)
+    with np.errstate(all="ignore"):
+        variables = _of_pole(seen, scale) | _of_points(seen, own, scale)
+    coordinates = coordinates_of(solved)
+    kept = {name: coordinates[name] for name in ("time", "drive_value", "drive", "axis")}
+    variables["status"] = judgements_of(solved, ())["status"]
+    coordinate = {"point": labels_of(tuple(own)), "coefficient": labels_of(("a", "b"))}
+    return xr.Dataset(variables, coords=kept | coordinate, attrs={"link": link, "against": against})
+
+
+def _asked(
+    source: Mechanism | xr.Dataset, at: npt.ArrayLike | None
+) -> tuple[Mechanism, npt.ArrayLike | None]:
+    if isinstance(source, Mechanism):
+        if at is None:
+            raise InputError("at", _("it needs values of the drive"), _("give one or more"))
+        return source, at
+    refuse_batch(source)
+    return described(source), at
+
+
+def _check_body(mechanism: Mechanism, name: str) -> None:
+    names = (FRAME, *mechanism.link_names, *sliders_of(mechanism))
+    if name not in names:
+        what = _("there is no link {name}").format(name=shown(name))
+        raise InputError("link", what, nearest(name, names))
+
+
+def jet_positions(prepared: Ready, span: Span) -> Positions:
+    """Positions with three derivatives by the path's parameter, (1, samples) each, on the branch of the motion."""
+    fitted = fit_for(prepared, span)
+    continuation = start_of(fitted, fitted.kinematics)
+    continuation.order = ORDER
+    Scan(continuation, mesh_of(fitted.kinematics.path, span.parameter)).run()
+    along = span.parameter[None, :]
+    with np.errstate(all="ignore"):
+        return continuation.kinematics.positions(
+            JETS, Jet.variable(along, ORDER), continuation.hooks(JETS, along, None)
+        )
+
+
+def _seen(
+    mechanism: Mechanism, at: Positions, link: str, against: str, present: npt.NDArray[np.bool_]
+) -> Seen:
+    """Three derivatives of the pose of a link in the axes of another."""
+    pose, base = _pose(mechanism, at, link), _pose(mechanism, at, against)
+    back = reversed_rotor(base.rotor)
+    origin, rotor = turned(subtract(pose.origin, base.origin), back), turned(pose.rotor, back)
+    x, y, cosine, sine = (_jet(number) for number in (*origin, *rotor))
+    spin = cosine.lowered() * sine.slope() - sine.lowered() * cosine.slope()
+
+    def along(number: object) -> Array:
+        values = np.broadcast_to(np.asarray(number, dtype=np.float64), (1, len(present)))[0]
+        return np.where(present, values, np.nan)
+
+    return Seen(
+        tuple(along(x.derivative(k)) + 1j * along(y.derivative(k)) for k in range(ORDER + 1)),
+        tuple(along(spin.derivative(k)) for k in range(ORDER)),
+        along(cosine.value) + 1j * along(sine.value),
+        *(along(_jet(v[0]).value) + 1j * along(_jet(v[1]).value) for v in (base.origin, base.rotor)),
+    )
+
+
+def _pose(mechanism: Mechanism, at: Positions, name: str) -> Pose:
+    guide = sliders_of(mechanism).get(name)
+    if guide is None:
+        return Pose(*at.poses[name])
+    x, y = at.points[guide.point]
+    return Pose((x, y), Pose(*at.poses[guide.on]).rotor)
+
+
+def _jet(number: object) -> Jet:
+    return number if isinstance(number, Jet) else Jet((number, *[0.0] * ORDER))
+
+
+def _local_points(mechanism: Mechanism, name: str) -> dict[str, Vector]:
+    if name in sliders_of(mechanism):
+        return {sliders_of(mechanism)[name].point: (0.0, 0.0)}
+    return dict(mechanism.points_of(name))
+
+
+def _of_pole(seen: Seen, scale: float) -> dict[str, object]:
+    """Inflection circle, cubic of stationary curvature and Ball's point."""
+    first, second, third = seen.by_angle()
+    turning = np.abs(seen.w[0]) * scale > ROUNDED * (np.abs(seen.w[0]) * scale + np.abs(seen.c[1]))
+    pole = np.where(turning, seen.pole, np.nan)
+    to_inflection = np.where(turning, second - 1j * first, np.nan)
+    rest = third + first
+    diameter = np.abs(to_inflection)
+    # a hinge that stays has a circle without size, and no tangent
+    normal = np.where(diameter > ROUNDED * scale, to_inflection / diameter, np.nan)
+    ahead = rest * np.conj(-1j * normal)  # in the pole's axes: x along the tangent, y along the normal
+    cubic = np.stack([ahead.real + 3.0 * diameter, ahead.imag], axis=-1) / (3.0 * diameter**2)[:, None]
+    square = 1j * rest / np.abs(rest)
+    told = (np.abs(rest) > ROUNDED * np.maximum(diameter, scale)) & np.isfinite(normal)
+    ball = np.where(told, pole + square * (square * np.conj(to_inflection)).real, np.nan)
+    tangent = np.angle(-1j * normal * seen.rotor)
+    return {
+        "pole": named("pole", ("sample", "axis"), vectors(seen.outside(pole))),
+        "inflection_pole": named(
+            "inflection_pole", ("sample", "axis"), vectors(seen.outside(pole + to_inflection))
+        ),
+        "inflection_diameter": named("inflection_diameter", ("sample",), diameter),
+        "pole_tangent": named("pole_tangent", ("sample",), tangent),
+        "stationary_cubic": named("stationary_cubic", ("sample", "coefficient"), cubic),
+        "ball_point": named("ball_point", ("sample", "axis"), vectors(seen.outside(ball))),
+    }
+
+
+def _of_points(seen: Seen, points: Local, scale: float) -> dict[str, object]:
+    """Curvature of the paths of points, its slope and its centre."""
+    local = np.array([complex(*at) for at in points.values()], dtype=np.complex128)
+    arm = seen.turned[:, None] * local
+    w, w1, w2 = (x[:, None] for x in seen.w)
+    place = seen.c[0][:, None] + arm
+    first = seen.c[1][:, None] + 1j * w * arm
+    second = seen.c[2][:, None] + (1j * w1 - w * w) * arm
+    third = seen.c[3][:, None] + (1j * w2 - 3.0 * w * w1 - 1j * w**3) * arm
+    speed = np.abs(first)
+    speed[speed <= ROUNDED * (np.abs(w) * scale + np.abs(seen.c[1][:, None]))] = np.nan  # a cusp
+    bend = (np.conj(first) * second).imag
+    curved = bend / speed**3
+    along = (np.conj(first) * second).real
+    slope = ((np.conj(first) * third).imag / speed**3 - 3.0 * bend * along / speed**5) / speed
+    centre = place + 1j * first / speed / np.where(np.abs(curved) * scale > ROUNDED, curved, np.nan)
+    outside = seen.origin[:, None] + seen.rotor[:, None] * centre
+    return {
+        "path_curvature": named("path_curvature", ("sample", "point"), curved),
+        "path_curvature_slope": named("path_curvature_slope", ("sample", "point"), slope),
+        "curvature_centre": named("curvature_centre", ("sample", "point", "axis"), vectors(outside)),
+    }

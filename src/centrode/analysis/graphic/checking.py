@@ -1,0 +1,93 @@
+"""The graph-analytic check: what the drawing gives beside what is integrated and what the closed forms give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from centrode.analysis.graphic.diagrams import Diagram, Diagrams, diagrams
+from centrode.analysis.graphic.integrated import integrated_rates
+from centrode.model.mechanism import Mechanism
+
+RATES = (("angular_velocity", "velocity"), ("angular_acceleration", "acceleration"))
+
+
+@dataclass(frozen=True)
+class CheckRow:
+    """One number by every route, SI.
+
+    Attributes
+    ----------
+    quantity : name of the variable in a motion
+    name : link or point; of points the length of the vector
+    graphic, integrated, closed : by the drawing, by integrating the equations (None where they do not apply), by
+        the closed forms of the motion
+    """
+
+    quantity: str
+    name: str
+    unit: str
+    graphic: float
+    integrated: float | None
+    closed: float
+
+    @property
+    def difference(self) -> float:
+        """What the drawing gives, less the closed form."""
+        return self.graphic - self.closed
+
+
+@dataclass(frozen=True)
+class GraphicCheck:
+    """Both diagrams of an instant and the table that compares them with other routes."""
+
+    diagrams: Diagrams
+    rows: tuple[CheckRow, ...]
+
+    def row(self, quantity: str, name: str) -> CheckRow:
+        """The row of a link or a point; KeyError where there is none."""
+        for row in self.rows:
+            if (row.quantity, row.name) == (quantity, name):
+                return row
+        raise KeyError((quantity, name))
+
+
+def graphic_check(
+    mechanism: Mechanism,
+    at: float,
+    angle_step: float | str | None = None,
+    length_step: float | str | None = None,
+    scales: Mapping[str, float] | None = None,
+) -> GraphicCheck:
+    """Velocities and accelerations of an instant by the drawing, beside those of the motion.
+
+    Parameters and failures are those of `diagrams`: a value of the drive or a time, a reading step of directions
+    [rad] and of lengths on paper [m], scales of the drawings.
+    """
+    found = diagrams(mechanism, at, angle_step, length_step, scales)
+    integrated = integrated_rates(mechanism, found.exact)
+    pairs = zip(RATES, (found.velocity, found.acceleration), strict=True)
+    rows = [row for names, diagram in pairs for row in _rows(found, diagram, names, integrated)]
+    return GraphicCheck(found, tuple(rows))
+
+
+def _rows(
+    found: Diagrams,
+    diagram: Diagram,
+    names: tuple[str, str],
+    integrated: Mapping[tuple[str, str], float],
+) -> Iterator[CheckRow]:
+    turning, moving = names
+    for link in found.mechanism.link_names:
+        exact = float(found.exact[turning].sel(link=link)[0])
+        unit = "rad/s" if diagram.order == 1 else "rad/s^2"
+        turn = diagram.turns[link] + 0.0
+        yield CheckRow(turning, link, unit, turn, integrated.get((turning, link)), exact)
+    grain = 1e3 * (found.board.paper_step or 0.0) * diagram.scale
+    for point in found.mechanism.moving_points:
+        exact = float(np.hypot(*found.exact[moving].sel(point=point).to_numpy()[0]))
+        length = abs(diagram.images[point])
+        read = grain * round(length / grain) if grain else length
+        yield CheckRow(moving, point, diagram.unit, read, integrated.get((moving, point)), exact)

@@ -1,0 +1,229 @@
+"""Velocities and accelerations group by group, as they are drawn: where two directions meet, by similar triangles.
+
+Positions are measured in the drawing; nothing is taken from the derivatives of the motion.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+from centrode.analysis.graphic.board import cross, dot, meet
+from centrode.analysis.graphic.false_position import solve_by_trials
+from centrode.analysis.graphic.rays import Leg, Ray, carrying, letter, ray_of, turning
+from centrode.analysis.graphic.stage import ORIGIN, Edge, Stage, Step, Triangle
+from centrode.analysis.graphic.wheel_rates import meshed_rate, rolled_rate, train_rates
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.structure.groups import (
+    Aim,
+    Group,
+    Meet,
+    Newton,
+    RigidPoint,
+    Rod,
+    Stop,
+    TurnedLink,
+    Turning,
+    TwoPointLink,
+)
+from centrode.structure.plan import Structure
+from centrode.structure.steps import step_of
+from centrode.structure.wheel_groups import Meshed, Rolled, Train
+
+SMALL = 1e-12
+"""Sides of a triangle shorter than this part of the longest are none."""
+
+
+def construct(structure: Structure, stage: Stage) -> None:
+    """Add the velocities or accelerations of every group of a plan, in its order."""
+    for group in structure.groups:
+        if isinstance(group, Newton):
+            solve_by_trials(structure, group, stage, lambda parts, on: construct_groups(parts, on))
+        else:
+            construct_groups((group,), stage)
+
+
+def construct_groups(groups: Sequence[Group], stage: Stage) -> None:
+    """Add the rates of groups that can be drawn one after the other."""
+    for group in groups:
+        equations, triangle = _construct(group, stage)
+        if equations:
+            stage.steps.append(Step(step_of(group), tuple(equations), triangle))
+
+
+def _construct(group: Group, stage: Stage) -> tuple[list[str], Triangle | None]:
+    if isinstance(group, RigidPoint):
+        return _image(stage, group.link, group.point), None
+    if isinstance(group, TwoPointLink):
+        return _through_two(stage, group), None
+    if isinstance(group, TurnedLink):
+        stage.bases[group.link] = group.pivot
+        stage.turns[group.link] = _turn_of(stage, group.turning, group.link)
+        return [], None
+    if isinstance(group, Aim):
+        return _aim(stage, group)
+    if isinstance(group, Meet):
+        return _meet(stage, group)
+    if isinstance(group, Train):
+        return _train(stage, group), None
+    raise InputError(step_of(group), _("the construction does not apply to it"), _("take it from the motion"))
+
+
+def _turn_of(stage: Stage, turning_of: Turning | Meshed | Rolled, link: str) -> float:
+    """How a link turns that a drive, a guide, a gear or a rolling contact turns."""
+    if isinstance(turning_of, Meshed):
+        return meshed_rate(stage, turning_of.gear, link)
+    if isinstance(turning_of, Rolled):
+        return rolled_rate(stage, turning_of.rolling) + stage.turns[turning_of.rolling.on]
+    rate = 0.0 if turning_of.drive is None else stage.driven[turning_of.drive]
+    if link == turning_of.link:
+        return stage.turns[turning_of.relative_to] + rate
+    return stage.turns[turning_of.link] - rate
+
+
+def _image(stage: Stage, link: str, point: str) -> list[str]:
+    """A point of a link that is known: at the end of an arm, or by the similar triangle on two images."""
+    base = stage.bases[link]
+    if base == point:
+        return []
+    arm = stage.drawing.arm(stage.drawing.point(base), stage.drawing.point(point), known=True)
+    if arm == 0:
+        stage.points[point] = stage.rate(base)
+        return [f"{letter(stage)}_{point} = {letter(stage)}_{base}"]
+    others = [name for name in stage.drawing.numbers.local[link] if name in stage.points and name != point]
+    ray = turning(stage, arm, point, base, link)
+    rate = stage.points[point] = stage.rate(base) + stage.about(link, arm)
+    if len(others) >= 2:
+        first, second = others[:2]
+        stage.edges += [
+            Edge(stage.points[other], rate, "image", f"{point}{other}", link) for other in (first, second)
+        ]
+        images = ", ".join(name.lower() for name in (first, second))
+        return [f"△{point.lower()}{images.replace(', ', '')} ∼ △{point}{first}{second}"]
+    stage.edges += ray.edges(rate)
+    return [ray.equation(letter(stage), point)]
+
+
+def _through_two(stage: Stage, group: TwoPointLink) -> list[str]:
+    """How a link turns two of whose points have their images."""
+    place = stage.drawing.point
+    arm = stage.drawing.arm(place(group.first), place(group.second), known=True)
+    apart = stage.points[group.second] - stage.points[group.first]
+    stage.turns[group.link] = cross(arm, apart) / abs(arm) ** 2
+    stage.bases[group.link] = group.first
+    ends = stage.points[group.first], stage.points[group.second]
+    stage.edges.append(Edge(*ends, "image", f"{group.second}{group.first}", group.link))
+    return []
+
+
+def _aim(stage: Stage, group: Aim) -> tuple[list[str], Triangle | None]:
+    """RPR: the place of the link under the target turns about the pivot, and the target slides over it."""
+    numbers, drawing = stage.drawing.numbers, stage.drawing
+    if group.contact is not None:
+        track = numbers.gearing.track[group.contact.rolling]
+        direction, guide = track.direction, group.contact.rolling  # type: ignore[union-attr]
+    else:
+        direction, guide = numbers.direction[group.guide], group.guide
+    arm = drawing.arm(drawing.point(group.pivot), drawing.point(group.target))
+    under = f"{group.target}′"
+    first = turning(stage, arm, under, group.pivot, group.link)
+    heading = drawing.heading(group.link, direction)
+    second = carrying(stage, group.link, group.target, heading, guide)
+    rate, triangle = crossing(stage, under, first, second)
+    stage.hidden[under] = rate
+    stage.bases[group.link] = group.pivot
+    stage.turns[group.link] = stage.read(first.length(rate)) / abs(arm)
+    if group.block is not None and group.sliding is not None:
+        stage.bases[group.block] = group.target
+        stage.turns[group.block] = stage.turns[group.link]
+        stage.points[group.sliding] = stage.carried(group.block, drawing.point(group.sliding))
+    return [first.equation(letter(stage), under), second.equation(letter(stage), under)], triangle
+
+
+def _meet(stage: Stage, group: Meet) -> tuple[list[str], Triangle | None]:
+    """A dyad with one unknown image: its two equations meet there."""
+    reference = group.points[0] if group.points else f"{ORIGIN}{group.carriage}"
+    if group.carriage is not None and group.turning is not None:
+        stage.turns[group.carriage] = _turn_of(stage, group.turning, group.carriage)
+        stage.bases[group.carriage] = reference
+    rays = [_moved(stage, ray_of(stage, locus, group.carriage), group, reference) for locus in group.loci]
+    rate, triangle = crossing(stage, reference, *rays)
+    (stage.points if group.points else stage.hidden)[reference] = rate
+    for point in group.points[1:]:
+        if group.carriage is not None:
+            _image(stage, group.carriage, point)
+    for locus, ray in zip(group.loci, rays, strict=True):
+        if isinstance(locus, Rod):
+            stage.bases[locus.link] = locus.centre
+            stage.turns[locus.link] = stage.read(ray.length(rate)) / ray.arm
+    if any(isinstance(locus, Stop) for locus in group.loci):
+        return [f"{letter(stage)}_{reference} = {_given(rays)}"], None
+    return [ray.equation(letter(stage), reference) for ray in rays], triangle
+
+
+def _given(rays: Sequence[Ray]) -> str:
+    """What a drive gives along its guide, in words."""
+    parts = [leg.text for ray in rays for leg in ray.legs if leg.kind == "driven"]
+    return _("{part}, given by the drive").format(part=" + ".join(parts))
+
+
+def _moved(stage: Stage, ray: Ray, group: Meet, reference: str) -> Ray:
+    """The equation of another place of the carriage, as one of the point that is looked for."""
+    place = stage.drawing.point(reference)
+    if group.carriage is None or ray.at == place:
+        return ray
+    arm = stage.drawing.arm(ray.at, place, known=True)
+    name = f"{reference}{ray.of}"
+    shift = Leg("carried", stage.about(group.carriage, arm), name, f"{letter(stage)}_{name}")
+    return replace(ray, legs=(*ray.legs, shift))
+
+
+def crossing(stage: Stage, name: str, first: Ray, second: Ray) -> tuple[complex, Triangle | None]:
+    """Where two equations meet, drawn; with the triangle of their directions, where it is one."""
+    rate = meet(first.start, first.direction, second.start, second.direction)
+    stage.edges += [*first.edges(rate), *second.edges(rate)]
+    return rate, triangle_of(stage, name, first, second, rate)
+
+
+def triangle_of(stage: Stage, name: str, first: Ray, second: Ray, rate: complex) -> Triangle | None:
+    """The triangle of two equations of velocity; None of accelerations, and where a side is missing."""
+    if stage.order != 1:
+        return None
+    corners = (first.start, second.start, rate)
+    sides = (abs(corners[1] - corners[0]), abs(rate - corners[0]), abs(rate - corners[1]))
+    if min(sides) <= SMALL * max(sides):
+        return None
+    names = (_side(first, second), first.text.split(" ")[0], second.text.split(" ")[0])
+    found = tuple(
+        _angle(corners[a] - corners[k], corners[b] - corners[k])
+        for k, a, b in ((2, 0, 1), (1, 0, 2), (0, 1, 2))
+    )
+    return Triangle(names, sides, (found[0], found[1], found[2]))
+
+
+def _side(first: Ray, second: Ray) -> str:
+    """The known side: the difference of what both equations begin with."""
+    texts = [
+        " + ".join(part for part in (ray.origin_text, *(leg.text.split(" ")[0] for leg in ray.legs)) if part)
+        for ray in (second, first)
+    ]
+    known = [text for text in texts if text]
+    return " − ".join(known) if len(known) == 2 else known[0] if known else "0"
+
+
+def _angle(a: complex, b: complex) -> float:
+    return math.atan2(abs(cross(a, b)), dot(a, b))
+
+
+def _train(stage: Stage, group: Train) -> list[str]:
+    """Links that gears turn together: angular velocities by their equations, then images one after the other."""
+    stage.turns.update(train_rates(stage, group))
+    equations = []
+    for link, pivot in group.places:
+        stage.bases[link] = pivot
+        for point, bringing in group.brought:
+            if bringing == link:
+                equations += _image(stage, link, point)
+    return equations

@@ -1,0 +1,238 @@
+"""Velocity and acceleration diagrams of a mechanism at an instant, constructed as on a drawing board."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from centrode.analysis.graphic.board import Board, extent_of
+from centrode.analysis.graphic.centres import instant_centres
+from centrode.analysis.graphic.instant import drawing_of, driven_rates, stages
+from centrode.analysis.graphic.scales import chosen_scale
+from centrode.analysis.graphic.stage import Drawing, Edge, Stage, Step
+from centrode.errors import InputError, MotionError, Status
+from centrode.kinematics.dataset import dataset_of
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.spans import Span, span_at
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.model.units import to_si
+from centrode.quantities import status_word
+from centrode.structure.gearing import Round
+from centrode.structure.positions import FRAME
+
+MECHANISM, DIAGRAM = 90.0, 105.0
+"""Room of the mechanism and of a diagram on a page A5 [mm]."""
+AT_REST = 1e-12
+COURSE = 121
+"""Samples of the motion in which slots are measured."""
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """A velocity or acceleration diagram.
+
+    Attributes
+    ----------
+    order : 1 of velocities, 2 of accelerations
+    images : point -> end of its vector from the pole, a complex number [m/s or m/s^2]; the frame's points at the pole
+    hidden : places of links under points that slide on them (a dash behind the point's name)
+    edges : relative vectors and the parts of vector equations, as they are drawn
+    turns : link -> angular velocity [rad/s] or acceleration [rad/s^2]
+    steps : what was done, group by group, with triangles and trials
+    scale : what a millimetre stands for [m/s or m/s^2]
+    """
+
+    order: int
+    images: Mapping[str, complex]
+    hidden: Mapping[str, complex]
+    edges: tuple[Edge, ...]
+    turns: Mapping[str, float]
+    steps: tuple[Step, ...]
+    scale: float
+
+    @property
+    def unit(self) -> str:
+        """SI unit of its vectors."""
+        return "m/s" if self.order == 1 else "m/s^2"
+
+
+@dataclass(frozen=True)
+class Diagrams:
+    """Everything that is drawn of one instant.
+
+    Attributes
+    ----------
+    exact, course : the motion at the instant, and all of it, for what is drawn as long as something travels
+    scale : metres that a millimetre of the mechanism's drawing stands for
+    centres : link -> its instant centre [m]; None at infinity; links at rest are left out
+    places : point -> its place [m]
+    """
+
+    mechanism: Mechanism
+    exact: xr.Dataset
+    course: xr.Dataset
+    board: Board
+    velocity: Diagram
+    acceleration: Diagram
+    centres: Mapping[str, complex | None]
+    places: Mapping[str, complex]
+    scale: float
+
+    def reach(self, link: str, point: str) -> float:
+        """Distance [m] of a point of a link from its instant centre, as speeds tell it."""
+        return abs(self.velocity.images[point] / self.velocity.turns[link])
+
+
+def velocity_diagram(mechanism: Mechanism, at: float, angle_step: float | str | None = None) -> Diagram:
+    """The velocity diagram at a value of the drive [rad or m], or a time [s] where that is what a motion is asked at.
+
+    `angle_step` [rad] rounds the directions that are read off the drawing. Raises as `diagrams` does. Without it the
+    images agree with the motion's velocities to rounding over the sine between the lines that meet.
+    """
+    return diagrams(mechanism, at, angle_step).velocity
+
+
+def acceleration_diagram(mechanism: Mechanism, at: float, angle_step: float | str | None = None) -> Diagram:
+    """The acceleration diagram, with normal, tangential and Coriolis parts; as `velocity_diagram`."""
+    return diagrams(mechanism, at, angle_step).acceleration
+
+
+def diagrams(
+    mechanism: Mechanism,
+    at: float,
+    angle_step: float | str | None = None,
+    length_step: float | str | None = None,
+    scales: Mapping[str, float] | None = None,
+) -> Diagrams:
+    """Both diagrams of an instant, with the instant centres.
+
+    Parameters
+    ----------
+    at : float [rad or m, or s]
+        A value of the drive, or a time, as in `motion(at=...)`.
+    angle_step : float [rad] or text ("1 deg"), optional
+        Directions are read to this; exactly if left out.
+    length_step : float [m] or text ("0.5 mm"), optional
+        Lengths on paper are read to this.
+    scales : mapping, optional
+        What a millimetre stands for: "length" [m], "velocity" [m/s], "acceleration" [m/s^2]; round ones that make good
+        use of the page where left out.
+
+    Raises
+    ------
+    InputError
+        The sphere, where diagrams do not apply; a group that needs more than two trials; steps out of range; scales
+        with which a drawing does not go on the page.
+    MotionError
+        The mechanism does not close there, or stands at a limit, a change point or a dead point.
+    """
+    if mechanism.space != "plane":
+        raise InputError(
+            "space",
+            _("velocity and acceleration diagrams do not apply on the sphere"),
+            _("take velocities from the motion"),
+        )
+    board = Board(_step(angle_step, "angle"), _step(length_step, "length"))
+    prepared = ready(mechanism)
+    span = span_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
+    exact = dataset_of(solve(prepared, span))
+    _refuse_where_it_is_not(exact, at)
+    found = _constructed(prepared, exact, span, board, scales or {})
+    if board.paper_step is None:
+        return found
+    # scales are chosen by the exact drawing, then lengths on paper are read
+    coarse = replace(board, length_step=1e3 * board.paper_step * found.scale)
+    grains = tuple(1e3 * board.paper_step * one.scale for one in (found.velocity, found.acceleration))
+    again = _constructed(prepared, exact, span, coarse, {}, (grains[0], grains[1]))
+    return replace(
+        again,
+        scale=found.scale,
+        velocity=replace(again.velocity, scale=found.velocity.scale),
+        acceleration=replace(again.acceleration, scale=found.acceleration.scale),
+    )
+
+
+def _step(step: float | str | None, kind: str) -> float | None:
+    """A reading step in SI."""
+    if step is None:
+        return None
+    try:
+        return to_si(step, kind)
+    except InputError as error:
+        raise InputError(f"{kind}_step", error.what, error.repair) from None
+
+
+def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
+    status = int(exact["status"][0])
+    if status not in (Status.OK, Status.CUT_OFF):
+        raise MotionError(
+            "at",
+            _("at {at:.9g} the mechanism is {status}: there is nothing to construct").format(
+                at=at, status=status_word(status)
+            ),
+            _("choose another instant"),
+        )
+
+
+def _constructed(
+    prepared: Ready,
+    exact: xr.Dataset,
+    span: Span,
+    board: Board,
+    scales: Mapping[str, float],
+    grains: tuple[float, float] = (0.0, 0.0),
+) -> Diagrams:
+    drawing = drawing_of(prepared, exact, board)
+    velocity, acceleration = stages(prepared.structure, drawing, driven_rates(prepared, span), grains)
+    places = {name: complex(*at) for name, at in drawing.at.points.items()}
+    extent = extent_of([*places.values(), *_rims(prepared.mechanism, drawing)])
+    moving, speeding = _size(velocity), _size(acceleration)
+    # velocities that are rounding beside what accelerations make in a moment are none
+    rests = moving <= AT_REST * math.sqrt(speeding * extent)
+    return Diagrams(
+        prepared.mechanism,
+        exact,
+        _course(prepared, exact),
+        board,
+        _diagram(velocity, chosen_scale("velocity", 0.0 if rests else moving, DIAGRAM, scales)),
+        _diagram(acceleration, chosen_scale("acceleration", speeding, DIAGRAM, scales)),
+        {} if rests else instant_centres(velocity),
+        places,
+        chosen_scale("length", extent, MECHANISM, scales),
+    )
+
+
+def _course(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
+    """The motion as far as it is asked for by default; the instant alone where nothing says how far."""
+    try:
+        return dataset_of(solve(prepared, asked_span(prepared, COURSE, None, None)))
+    except InputError:
+        return exact
+
+
+def _size(stage: Stage) -> float:
+    """The longer side of a diagram."""
+    ends = [end for edge in stage.edges for end in (edge.start, edge.end)]
+    return extent_of([0j, *stage.points.values(), *stage.hidden.values(), *ends])
+
+
+def _diagram(stage: Stage, scale: float) -> Diagram:
+    turns = {name: turn for name, turn in stage.turns.items() if name != FRAME}
+    edges, steps = tuple(stage.edges), tuple(stage.steps)
+    return Diagram(stage.order, stage.points, stage.hidden, edges, turns, steps, scale)
+
+
+def _rims(mechanism: Mechanism, drawing: Drawing) -> list[complex]:
+    """Corners around wheels, and around the circles that they roll on."""
+    rims = [(drawing.point(wheel.centre), wheel.radius) for wheel in mechanism.rolling]
+    for wheel in mechanism.rolling:
+        track = drawing.numbers.gearing.track[wheel.id]
+        if isinstance(track, Round):
+            rims.append((drawing.inside(wheel.on, track.centre), track.radius))
+    return [centre + radius * corner for centre, radius in rims for corner in (1 + 1j, -1 - 1j)]

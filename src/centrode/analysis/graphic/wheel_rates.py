@@ -1,0 +1,56 @@
+"""Angular velocities and accelerations that gears and rolling wheels give."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from centrode.analysis.graphic.board import dot
+from centrode.analysis.graphic.stage import Stage
+from centrode.kinematics.wheels import solved_angles
+from centrode.structure.gearing import Straight
+from centrode.structure.positions import Positions
+from centrode.structure.wheel_groups import AngleEquation, AngleGiven, Arm, Train
+from centrode.structure.wheels import GearRatio, NoSlip
+
+
+def meshed_rate(stage: Stage, gear: GearRatio, link: str) -> float:
+    """Turning of one link of a gear from that of the other two (Willis)."""
+    weights = gear.weights(stage.drawing.numbers)
+    known = sum(weight * stage.turns[other] for other, weight in weights.items() if other != link)
+    return float(-known / weights[link])
+
+
+def rolled_rate(stage: Stage, rolling: NoSlip) -> float:
+    """Turning of a wheel against the body it rolls on, from the way of its centre along the track."""
+    drawing = stage.drawing
+    numbers, centre = drawing.numbers, drawing.point(rolling.centre)
+    track = numbers.gearing.track[rolling.rolling]
+    velocity = 0j if stage.before is None else stage.before.points[rolling.centre]
+    relative = stage.points[rolling.centre] - stage.carried(rolling.on, centre)
+    relative -= stage.coriolis(rolling.on, centre, velocity)
+    if isinstance(track, Straight):
+        heading = drawing.heading(rolling.on, track.direction)
+        return float(-dot(heading, relative) / numbers.gearing.radius[rolling.rolling])
+    arm = drawing.arm(drawing.inside(rolling.on, track.centre), centre)
+    return float(numbers.gearing.spin(rolling.rolling) * dot(1j * arm, relative) / abs(arm) ** 2)
+
+
+def train_rates(stage: Stage, group: Train) -> dict[str, float]:
+    """Turning of all links of a train."""
+    rows = [_row(stage, equation) for equation in group.equations]
+    return solved_angles(group, rows, Positions({}, {}, {}, dict(stage.turns)))
+
+
+def _row(stage: Stage, equation: AngleEquation) -> tuple[Mapping[str, float], float]:
+    """Factors of the turnings in an equation, and what they sum up to."""
+    numbers = stage.drawing.numbers
+    if isinstance(equation, GearRatio):
+        return dict(equation.weights(numbers)), 0.0
+    if isinstance(equation, NoSlip):
+        return {equation.link: 1.0, equation.on: -1.0}, rolled_rate(stage, equation)
+    if isinstance(equation, Arm):
+        spin = numbers.gearing.spin(equation.rolling.rolling)
+        return {equation.rolling.link: 1.0, equation.rolling.on: spin - 1.0, equation.link: -spin}, 0.0
+    assert isinstance(equation, AngleGiven)
+    rate = 0.0 if equation.drive is None else stage.driven[equation.drive]
+    return {equation.link: 1.0, equation.relative_to: -1.0}, rate

@@ -1,0 +1,180 @@
+"""`centrode centres`: instant centres of a mechanism at given places, constructed and from velocities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
+from centrode.cli.progress import Progress
+from centrode.cli.reached import is_moving, tell_absent
+from centrode.errors import InputError
+from centrode.locale import _, mark, ngettext
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.analysis.construction import Construction
+
+MOST_ROWS = 300
+"""Centres of one place that are printed without being asked for by name."""
+
+
+@click.command(help=mark("Find the instant centres of velocity of every pair of links."))
+@mechanism_argument
+@click.option(
+    "--at",
+    "places",
+    multiple=True,
+    metavar=mark("VALUE"),
+    help=mark(
+        'Value of the drive ("pi/2 rad"), or time; the instants of the study if left out, else the start.'
+    ),
+)
+@click.option(
+    "--pair",
+    "pairs",
+    multiple=True,
+    metavar=mark("LINK,LINK"),
+    help=mark('Two links ("AC,frame"); all pairs if left out. As often as needed.'),
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Also write tables and pictures into this folder."),
+)
+@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
+def centres(
+    mechanism: str,
+    places: tuple[str, ...],
+    pairs: tuple[str, ...],
+    out: Path | None,
+    no_figures: bool,
+    dark: bool,
+) -> None:
+    """Print the centres of each place, and write them where asked."""
+    description = ct.load(mechanism)
+    asked = named_pairs(pairs) or None
+    with Progress() as progress:
+        progress.say(_("solving"))
+        with about(mechanism):
+            at = [ct.range_value(description, text, "--at") for text in places] or _usual(description)
+            motion = ct.motion(description, at=at)
+            names = ct.body_names(description)
+            _check_rows(names, asked)
+            found = ct.instant_centres(motion, asked)
+            made = [_constructed(motion, sample, names) for sample in range(len(at))]
+        texts = [
+            _text(description, motion, found, sample, names, made[sample], asked) for sample in range(len(at))
+        ]
+        files: list[str] = []
+        if out is not None:
+            with output.output_folder(out) as draft:
+                progress.say(_("writing tables"))
+                ct.write_centres_csv(description, found, draft / "centres.csv", made)
+                ct.write_motion_netcdf(found, draft / "centres.nc")
+                if not no_figures:
+                    progress.say(_("drawing"))
+                    _draw(description, motion, made, asked, draft, dark)
+                files = sorted(path.name for path in draft.iterdir())
+    click.echo(_(description.title) or mechanism)
+    click.echo(f"\n{_numbered(names)}")
+    for text in texts:
+        click.echo(f"\n{text}")
+    if out is not None:
+        count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(files)).format(
+            n=len(files), folder=out
+        )
+        click.echo(f"\n{output.paragraph(f'{count}:', files)}")
+    tell_absent(mechanism, motion)
+
+
+def _numbered(names: Iterable[str]) -> str:
+    """The bodies by number; a number and its name stay in one line."""
+    items = [_unbroken(f"{number} {name}") for number, name in enumerate(names)]
+    return output.paragraph(_("bodies") + ":", items).replace("\N{NO-BREAK SPACE}", " ")
+
+
+def _unbroken(text: str) -> str:
+    return text.replace(" ", "\N{NO-BREAK SPACE}")
+
+
+def named_pairs(texts: Iterable[str]) -> list[tuple[str, str]]:
+    """Pairs of names from texts "AC,frame"; raises InputError for another form."""
+    found = []
+    for text in texts:
+        first, comma, second = (part.strip() for part in text.partition(","))
+        if not comma or not first or not second or "," in second:
+            raise InputError(
+                "--pair",
+                _("expected LINK,LINK, got {text}").format(text=f'"{text}"'),
+                _('write "AC,frame"'),
+            )
+        found.append((first, second))
+    return found
+
+
+def _usual(description: ct.Mechanism) -> list[float]:
+    """The instants of the study, else the initial position."""
+    return list(description.study.instants) or [ct.initial_place(description)]
+
+
+def _check_rows(names: tuple[str, ...], asked: list[tuple[str, str]] | None) -> None:
+    count = len(names) * (len(names) - 1) // 2
+    if asked is None and count > MOST_ROWS:
+        raise InputError(
+            "--pair",
+            _("{bodies} bodies have {count} centres").format(bodies=len(names), count=count),
+            _('name those that matter, as in --pair "{first},frame"').format(first=names[1]),
+        )
+
+
+def _constructed(motion: xarray.Dataset, sample: int, names: tuple[str, ...]) -> Construction | None:
+    """The construction of a place; none where there is no position, or more bodies than can be drawn."""
+    if not is_moving(motion, sample) or len(names) > ct.MOST_BODIES:
+        return None
+    return ct.construct_centres(motion, sample)
+
+
+def _text(
+    description: ct.Mechanism,
+    motion: xarray.Dataset,
+    found: xarray.Dataset,
+    sample: int,
+    names: tuple[str, ...],
+    made: Construction | None,
+    asked: list[tuple[str, str]] | None,
+) -> str:
+    """A heading with the place and a table of its centres; of pairs asked for also what they were found from."""
+    rows = ct.centres_rows(description, found, sample, names, made)
+    text = f"{ct.place_words(description, motion, sample)}\n{output.table(rows, ct.centres_header())}"
+    if asked is None or made is None:
+        return text
+    steps = [_unbroken(step) for step in ct.steps_leading_to(made, asked)]
+    way = "\n" + output.paragraph(_("by way of") + ":", steps) if steps else ""
+    return f"{text}{way}".replace("\N{NO-BREAK SPACE}", " ")
+
+
+def _draw(
+    description: ct.Mechanism,
+    motion: xarray.Dataset,
+    made: list[Construction | None],
+    asked: list[tuple[str, str]] | None,
+    folder: Path,
+    dark: bool,
+) -> None:
+    """One picture for each place; numbered where there are several."""
+    for number, construction in enumerate(made, start=1):
+        if construction is None:
+            continue
+        figure = ct.centres_figure(description, motion, construction, number - 1, asked)
+        name = "centres" if len(made) == 1 else f"centres-{number}"
+        ct.save_figures({name: ct.darkened(figure) if dark else figure}, folder)

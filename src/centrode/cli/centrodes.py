@@ -1,0 +1,127 @@
+"""`centrode centrodes`: the centrodes of a link as tables, a picture and an animation; curvature at places."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
+from centrode.cli.progress import Progress
+from centrode.cli.reached import is_moving, tell_absent
+from centrode.locale import _, mark, ngettext
+
+if TYPE_CHECKING:
+    import xarray
+
+DEFAULT_FOLDER = "{name}-centrodes"
+
+
+@click.command(help=mark("Compute the centrodes of a link and draw them."))
+@mechanism_argument
+@click.option(
+    "--link", required=True, metavar=mark("LINK"), help=mark("The link that carries the moving centrode.")
+)
+@click.option(
+    "--against",
+    default="frame",
+    metavar=mark("LINK"),
+    help=mark("The link that it rolls on; the frame if left out."),
+)
+@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
+@click.option("--from", "start", metavar=mark("A"), help=mark("First value of the drive, or first time."))
+@click.option("--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time."))
+@click.option(
+    "--at",
+    "places",
+    multiple=True,
+    metavar=mark("VALUE"),
+    help=mark("Also the curvature of the paths of the link's points there; as often as needed."),
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Folder for the results; named after the mechanism if left out."),
+)
+@click.option(
+    "--animate", is_flag=True, help=mark("Also write an animation: one centrode rolls on the other.")
+)
+@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
+def centrodes(
+    mechanism: str,
+    link: str,
+    against: str,
+    samples: int | None,
+    start: str | None,
+    stop: str | None,
+    places: tuple[str, ...],
+    out: Path | None,
+    animate: bool,
+    no_figures: bool,
+    dark: bool,
+) -> None:
+    """Compute and write both curves, and the curvature where asked."""
+    description = ct.load(mechanism)
+    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    with output.output_folder(folder) as draft, Progress() as progress:
+        progress.say(_("solving"))
+        with about(mechanism):
+            first = None if start is None else ct.range_value(description, start, "--from")
+            last = None if stop is None else ct.range_value(description, stop, "--to")
+            at = [ct.range_value(description, text, "--at") for text in places]
+            motion = ct.motion(description, samples, first, last)
+            found = ct.centrodes(motion, link, against)
+            bent = ct.curvature(description, link, at, against) if at else None
+            looked = ct.motion(description, at=at) if at else None
+        progress.say(_("writing tables"))
+        ct.write_centrodes_csv(description, found, draft / "centrodes.csv")
+        ct.write_motion_netcdf(found, draft / "centrodes.nc")
+        if bent is not None:
+            ct.write_motion_netcdf(bent, draft / "curvature.nc")
+        if not no_figures:
+            progress.say(_("drawing"))
+            _draw(description, motion, found, draft, dark)
+            if bent is not None and looked is not None:
+                _draw_curvature(description, looked, bent, draft, dark)
+        if animate:
+            progress.say(_("drawing {name}").format(name="centrodes.gif"))
+            with about(mechanism):
+                ct.animate_centrodes(description, motion, found, draft / "centrodes.gif", dark)
+        names = sorted(path.name for path in draft.iterdir())
+    click.echo(_(description.title) or mechanism)
+    click.echo(f"\n{output.table(ct.centrode_rows(description, found))}")
+    for sample in range(len(at)):
+        assert bent is not None
+        click.echo(f"\n{output.table(ct.curvature_rows(description, bent, sample))}")
+    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
+        n=len(names), folder=folder
+    )
+    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    if looked is not None:
+        tell_absent(mechanism, looked)
+
+
+def _draw(
+    description: ct.Mechanism, motion: xarray.Dataset, found: xarray.Dataset, folder: Path, dark: bool
+) -> None:
+    figure = ct.centrodes_figure(description, motion, found)
+    ct.save_figures({"centrodes": ct.darkened(figure) if dark else figure}, folder)
+
+
+def _draw_curvature(
+    description: ct.Mechanism, motion: xarray.Dataset, bent: xarray.Dataset, folder: Path, dark: bool
+) -> None:
+    """One picture for each place; numbered where there are several."""
+    count = motion.sizes["sample"]
+    for sample in range(count):
+        if not is_moving(motion, sample):
+            continue
+        figure = ct.curvature_figure(description, motion, bent, sample)
+        name = "curvature" if count == 1 else f"curvature-{sample + 1}"
+        ct.save_figures({name: ct.darkened(figure) if dark else figure}, folder)

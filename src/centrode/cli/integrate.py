@@ -1,0 +1,84 @@
+"""`centrode integrate`: the motion by integration of its equations, beside the closed forms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
+from centrode.cli.progress import Progress
+from centrode.errors import MotionError
+from centrode.locale import _, mark, ngettext
+
+DEFAULT_FOLDER = "{name}-integration"
+
+
+@click.command(help=mark("Integrate the differential equations of a mechanism."))
+@mechanism_argument
+@click.option(
+    "--method",
+    default="rk4",
+    metavar="rk4|adaptive",
+    help=mark("Fixed steps of Runge-Kutta's method of fourth order, or adaptive ones of eighth order."),
+)
+@click.option(
+    "--steps", type=int, default=100, metavar=mark("N"), help=mark("Number of steps, and of rows less one.")
+)
+@click.option("--tolerance", type=float, metavar=mark("X"), help=mark("Tolerance of each adaptive step."))
+@click.option("--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time."))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Folder for the results; named after the mechanism if left out."),
+)
+@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+def integrate(
+    mechanism: str,
+    method: str,
+    steps: int,
+    tolerance: float | None,
+    stop: str | None,
+    out: Path | None,
+    no_figures: bool,
+) -> None:
+    """Integrate and write; exit code 3 if the equations stop within the range (the rows before are written)."""
+    description = ct.load(mechanism)
+    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    with output.output_folder(folder) as draft, Progress() as progress:
+        progress.say(_("integrating"))
+        last = None if stop is None else ct.range_value(description, stop, "--to")
+        with about(mechanism):
+            found = ct.integrate(
+                description,
+                method,
+                steps,
+                **({} if tolerance is None else {"tolerance": tolerance}),
+                stop=last,
+            )
+        progress.say(_("writing tables"))
+        ct.write_integration_csv(
+            found, draft / "integration.csv", description.display, description.moving_points
+        )
+        ct.write_motion_netcdf(found, draft / "integration.nc")
+        if not no_figures:
+            progress.say(_("drawing"))
+            drawn = ct.integration_figures(description, found, ct.closed_motion(description, found))
+            ct.save_figures(drawn, draft)
+        names = sorted(path.name for path in draft.iterdir())
+    click.echo(_(description.title) or mechanism)
+    click.echo()
+    click.echo(output.table(ct.integration_rows(description, found)))
+    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
+        n=len(names), folder=folder
+    )
+    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    stopped = ct.integration_failure(description, found)
+    if stopped is not None:
+        raise MotionError(
+            mechanism, stopped, _("ask for a range that ends before it, or change the dimensions")
+        )

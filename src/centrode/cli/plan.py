@@ -1,0 +1,59 @@
+"""`centrode plan`: the mechanism in numbered positions of a cycle."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
+from centrode.cli.progress import Progress
+from centrode.locale import _, mark, ngettext
+
+DEFAULT_FOLDER = "{name}-plan"
+
+
+@click.command(help=mark("Draw the mechanism in numbered positions of its cycle."))
+@mechanism_argument
+@click.option("--positions", type=int, metavar=mark("N"), help=mark("Number of positions, else 12."))
+@click.option(
+    "--link",
+    metavar=mark("NAME"),
+    help=mark("Link or guide whose velocity vanishes in position 0; a slider or rocker if left out."),
+)
+@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Folder for the results; named after the mechanism if left out."),
+)
+@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+def plan(
+    mechanism: str, positions: int | None, link: str | None, dark: bool, out: Path | None, no_figures: bool
+) -> None:
+    """Find the extreme position, compute and draw; with the transmission angles where there are any."""
+    description = ct.load(mechanism)
+    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    with output.output_folder(folder) as draft, Progress() as progress:
+        progress.say(_("solving"))
+        with about(mechanism):
+            found = ct.plan_of_positions(description, 12 if positions is None else positions, link)
+        ct.write_motion_csv(
+            found.positions, draft / "positions.csv", description.display, description.moving_points
+        )
+        if not no_figures:
+            progress.say(_("drawing"))
+            figure = ct.plan_figure(description, found)
+            ct.save_figures({"plan": ct.darkened(figure) if dark else figure}, draft)
+        names = sorted(path.name for path in draft.iterdir())
+    click.echo(_(description.title) or mechanism)
+    click.echo()
+    click.echo(output.table(ct.plan_rows(description, found)))
+    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
+        n=len(names), folder=folder
+    )
+    click.echo(f"\n{output.paragraph(f'{count}:', names)}")

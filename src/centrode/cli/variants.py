@@ -1,0 +1,56 @@
+"""`centrode variants`: every row of a table on one topology, a folder each."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.progress import Progress
+from centrode.errors import MotionError
+from centrode.locale import _, mark
+
+DEFAULT_FOLDER = "{name}-variants"
+
+
+@click.command(help=mark("Compute every variant of a table."))
+@click.argument("table", metavar=mark("TABLE"), help=mark("A CSV file with one row a variant."))
+@click.option(
+    "--topology",
+    required=True,
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("The mechanism whose numbers the table varies."),
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark(
+        "Folder for the results (a run that was cut short goes on); named after the table if left out."
+    ),
+)
+@click.option("--jobs", type=int, default=1, metavar=mark("N"), help=mark("Processes at once."))
+@click.option("--figures", is_flag=True, help=mark("Draw pictures of every variant."))
+def variants(table: str, topology: str, out: Path | None, jobs: int, figures: bool) -> None:
+    """Compute and write; exit code 3 if a variant was refused (the others are written)."""
+    description = ct.load(topology)
+    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(table).stem))
+    try:
+        with Progress() as progress:
+
+            def tell(done: int, of: int) -> None:
+                progress.say(_("computing variants"), done, of)
+
+            rows = ct.write_variants(description, table, folder, jobs=jobs, figures=figures, progress=tell)
+    except KeyboardInterrupt:
+        note = _("what is finished stays in {folder}; the same command goes on from there")
+        click.echo(note.format(folder=folder), err=True)
+        raise
+    header = (_("variant"), _("turns fully"), _("limit"), _("group"), _("status"))
+    click.echo(output.table(ct.variant_rows(rows), header))
+    summary, failure = ct.variants_summary(rows)
+    click.echo(f"\n{summary}\n" + _("wrote {file}").format(file=folder / "summary.csv"))
+    if failure is not None:
+        raise MotionError(table, failure)

@@ -1,0 +1,133 @@
+"""The search for events on a mesh that machine code has filled: what is found, and its bits, are those of `events`.
+
+All radicands are computed at once with constant signs. Where a group has change points, those of the groups
+behind it are computed again with its signs, and at the nodes next to its change points, which the arrays
+interpolate, by the arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jets import Jet
+from centrode.kinematics.angles import NodeTurns, node_turns
+from centrode.kinematics.compiled.signs import MOST, counts_of, values_of
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.variables import boxed
+from centrode.kinematics.compiled.writing import Writer
+from centrode.kinematics.continuation import Continuation
+from centrode.kinematics.events import Scan
+from centrode.kinematics.layout import rotor_of_angle
+from centrode.kinematics.mending import inside
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Nodes: TypeAlias = npt.NDArray[Any]
+Writers: TypeAlias = Callable[[Mapping[int, int]], tuple[Traced, Writer]]
+"""From how many change points the signs of groups know: the plan, and what writes the mesh."""
+
+
+def of_mesh(plan: Traced) -> dict[str, Nodes]:
+    """What is written on the mesh: radicands with slopes, divisors, cosines and sines of angles."""
+    found = {f"radicand {group}": _pair(x) for group, x in plan.radicands.items()}
+    found |= {f"divisor {group}": _pair(x) for group, x in plan.divisors.items() if isinstance(x, Jet)}
+    return found | {f"rotor {link}": boxed(rotor) for link, rotor in plan.turning.items()}
+
+
+def _pair(number: Any) -> Nodes:
+    return boxed(number.coefficients[:2] if isinstance(number, Jet) else (number, 0.0))
+
+
+@dataclass
+class Search:
+    """The search for the events of some mechanisms of a batch.
+
+    Attributes
+    ----------
+    values : what the variables of the plan stand for: name -> (lanes,)
+    """
+
+    continuation: Continuation
+    mesh: Array
+    values: Mapping[str, Array]
+    writers: Writers
+    _counts: dict[int, int] = field(default_factory=dict)
+    _found: dict[str, Array] = field(default_factory=dict)
+
+    def run(self) -> bool:
+        """Record all events in the branches; whether that was possible."""
+        scan = Scan(self.continuation, self.mesh)
+        self._write()
+        plan, _writer = self.writers(self._counts)
+        for group in sorted({*plan.radicands, *plan.divisors}):
+            for kind, find in (("radicand", scan.find), ("divisor", scan.find_poles)):
+                if f"{kind} {group}" in self._found:
+                    if not self._up_to_date():
+                        return False
+                    find(group, self._with_patches(scan, group, self._found[f"{kind} {group}"]))
+        return self._up_to_date()
+
+    def turns(self, link: str, initial: float) -> NodeTurns:
+        """Turns of a link's angle along the mesh; `initial` [rad] is its value in the initial position."""
+        cosine, sine = self._found[f"rotor {link}"]
+        if len(self._mended[0]):
+            cosine[self._mended], sine[self._mended] = self._rotors_mended[link]
+        start = int(np.argmin(np.abs(self.mesh - self.continuation.branches.initial)))
+        return node_turns((cosine, sine), initial, start, len(self.mesh))
+
+    def _write(self) -> None:
+        _plan, writer = self.writers(self._counts)
+        branches = self.continuation.branches
+        room = writer.same_room(branches.lanes)
+        writer.write({**self.values, **values_of(branches, self._counts)}, room)
+        self._found = writer.streams(room)
+
+    def _up_to_date(self) -> bool:
+        """Compute the mesh again if change points were found since; whether signs can know so many."""
+        counts = counts_of(self.continuation.branches)
+        if max(counts.values(), default=0) > MOST:
+            return False
+        if counts != self._counts:
+            self._counts = counts
+            self._write()
+        return True
+
+    def _with_patches(self, scan: Scan, group: int, pair: Array) -> Jet:
+        """Value and slope of a radicand or divisor, those of the arrays where a group before it is interpolated."""
+        lanes, nodes = self._near_change_points(range(group))
+        if len(lanes):
+            guard = scan.guard(group, lanes, self.mesh[nodes], 1)
+            pair[:, lanes, nodes] = guard.value, guard.derivative(1)
+        return Jet((pair[0], pair[1]))
+
+    def _near_change_points(self, groups: range) -> tuple[Lanes, Lanes]:
+        """Mechanisms and nodes that lie next to change points of some groups, each once."""
+        near = np.zeros((self.continuation.branches.lanes, len(self.mesh)), dtype=bool)
+        for group in groups:
+            windows = self.continuation.windows_of(group)
+            if windows is not None:
+                near[inside(windows, self.mesh, None)[0]] = True
+        lanes, nodes = np.nonzero(near)
+        return lanes, nodes
+
+    @cached_property
+    def _mended(self) -> tuple[Lanes, Lanes]:
+        return self._near_change_points(range(len(self.continuation.kinematics.structure.groups)))
+
+    @cached_property
+    def _rotors_mended(self) -> dict[str, tuple[Any, Any]]:
+        """Rotors where any group is interpolated, as the arrays have them."""
+        lanes, nodes = self._mended
+        parameter = self.mesh[nodes]
+        kinematics = self.continuation.kinematics.taken(lanes)
+        with np.errstate(all="ignore"):
+            at = kinematics.positions(ARRAYS, parameter, self.continuation.hooks(ARRAYS, parameter, lanes))
+            plan, _writer = self.writers(self._counts)
+            return {link: rotor_of_angle(ARRAYS, kinematics.numbers, at, link) for link in plan.turning}

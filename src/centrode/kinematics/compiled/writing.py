@@ -1,0 +1,144 @@
+"""Motions written by machine code: every number of a `Solved` is one stream of the samples of each mechanism."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.executors import runner
+from centrode.algebra.expressions import Node, as_node
+from centrode.algebra.graphs import Graph, ordered
+from centrode.algebra.machine_code.tables import FUNCTIONS
+from centrode.algebra.operations import VARIABLE
+from centrode.algebra.scans import Scan
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.variables import PARAMETER, boxed
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Nodes: TypeAlias = npt.NDArray[Any]
+
+ORDERED = frozenset({"all_points", "angles", "slides", "spins"})
+"""Arrays with the derivatives in front."""
+ROOMS = ("all_points", "angles", "slides", "spins", "contacts", "residual")
+SINES, RESIDUAL, JUDGED = "sines", "residual", "judged"
+LAST_BITS = (RESIDUAL, JUDGED)
+"""Of what is written: what may hang on the last bit of a residual, though no decision does."""
+
+
+def nodes_of(plan: Traced) -> dict[str, Nodes]:
+    """Arrays of a Solved of one lane and one sample; cosines stand where angles will, their sines beside them."""
+    solved = plan.solved
+    angles: Nodes = solved.angles.copy()
+    for k, link in enumerate(solved.layout.angles):
+        if link in plan.turning:
+            angles[0, 0, 0, k] = plan.turning[link][0]
+    found: dict[str, Nodes | None] = {name: getattr(solved, name) for name in ROOMS}
+    found["angles"] = angles
+    found[SINES] = boxed([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
+    return {name: nodes for name, nodes in found.items() if nodes is not None}
+
+
+@dataclass(frozen=True)
+class Writer:
+    """What writes arrays of nodes, each of one lane and one sample, for many mechanisms.
+
+    Attributes
+    ----------
+    outputs : name -> nodes
+    places : what the variables of a place on the path stand for: name -> (n,)
+    kernels : what runs scans, see `algebra.executors`
+    memory : what `same_room` hands out, in its first place; writers that do not write at once may share it
+    """
+
+    outputs: Mapping[str, Nodes]
+    places: Mapping[str, Array]
+    kernels: str
+    threads: int = 1
+    memory: list[Array] = field(default_factory=list)
+
+    @cached_property
+    def flat(self) -> list[Node]:
+        """All nodes, in the order in which they are written."""
+        return [as_node(x) for nodes in self.outputs.values() for x in nodes.ravel()]
+
+    @cached_property
+    def scan(self) -> Scan:
+        """Lanes are places, steps are mechanisms."""
+        graph = Graph({str(k): node for k, node in enumerate(self.flat)})
+        along = tuple(name for name in self.places if name in graph.variables or name == PARAMETER)
+        return Scan(along, tuple(name for name in graph.variables if name not in along), graph.outputs)
+
+    @cached_property
+    def alike(self) -> bool:
+        """Whether every number is rounded as the arrays round it: no function is left to the kernel.
+
+        Residuals are not asked: an arc tangent in them moves their last bit, and decides nothing.
+        """
+        asked = [
+            as_node(x) for name, nodes in self.outputs.items() if name not in LAST_BITS for x in nodes.ravel()
+        ]
+        kinds: dict[Node, frozenset[bool]] = {}
+        for node in ordered(asked):
+            own = {str(node.detail) in self.places} if node.operation == VARIABLE else set()
+            kinds[node] = frozenset(own).union(*(kinds[x] for x in node.arguments))
+            # what depends on places alone, or on mechanisms alone, is computed on NumPy
+            if node.operation in FUNCTIONS and len(kinds[node]) > 1:
+                return False
+        return True
+
+    @cached_property
+    def _along(self) -> Array:
+        return np.stack([self.places[name] for name in self.scan.parameters])
+
+    def room(self, lanes: int) -> Array:
+        """Fresh memory for what is written for so many mechanisms: (numbers, lanes, n)."""
+        return np.empty((len(self.flat), lanes, len(self.places[PARAMETER])))
+
+    def same_room(self, lanes: int) -> Array:
+        """The same memory at every call, which is faster: what stood there is gone."""
+        shape = (len(self.flat), lanes, len(self.places[PARAMETER]))
+        size = math.prod(shape)
+        if not self.memory or self.memory[0].size < size:
+            self.memory[:] = [np.empty(size)]
+        return self.memory[0][:size].reshape(shape)
+
+    def write(self, values: Mapping[str, Array], room: Array) -> None:
+        """Fill a room from what variables stand for in its mechanisms."""
+        scan = self.scan
+        of_lanes = np.stack([values[name] for name in scan.inputs]) if scan.inputs else None
+        run = runner(scan, self.kernels, lanes_inside=True, threads=self.threads)
+        run(self._along, of_lanes, out=room, steps=room.shape[1])
+
+    def streams(self, room: Array) -> dict[str, Array]:
+        """What is written by name, views of the room: (numbers, lanes, n)."""
+        found, first = {}, 0
+        for name, nodes in self.outputs.items():
+            found[name] = room[first : first + nodes.size]
+            first += nodes.size
+        return found
+
+    def placed(self, room: Array) -> dict[str, Array]:
+        """The same as arrays with the shapes of the nodes."""
+        return {
+            name: _placed(name, stream, self.outputs[name].shape)
+            for name, stream in self.streams(room).items()
+        }
+
+
+def _placed(name: str, room: Array, shape: tuple[int, ...]) -> Array:
+    """Numbers (numbers, lanes, samples) as an array of a shape that has one lane and one sample."""
+    lane = 1 if name in ORDERED else 0
+    whole = room.reshape(*shape[:lane], *shape[lane + 2 :], *room.shape[1:])
+    return np.moveaxis(whole, (-2, -1), (lane, lane + 1))
+
+
+def streams_of(name: str, array: Array) -> Array:
+    """An array of a Solved with its mechanisms and samples behind everything else."""
+    lane = 1 if name in ORDERED else 0
+    return np.moveaxis(array, (lane, lane + 1), (-2, -1))

@@ -1,0 +1,126 @@
+"""The plan of positions as a page: numbered positions over each other, with the paths of the points."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray
+from matplotlib.figure import Figure
+
+from centrode.analysis.graphic.board import round_scale
+from centrode.locale import _
+from centrode.present.diagram_drawing import typeset
+from centrode.present.drawing import draw_frame, draw_hinges, draw_links
+from centrode.present.obstacles import lines
+from centrode.present.page import Page, View, new_page
+from centrode.present.pictures import caption
+from centrode.present.reading import scene_of
+from centrode.present.scene import Scene
+from centrode.present.sheet import SIGN_INCHES
+from centrode.present.shown import plain, shown_as
+from centrode.present.style import INK, MUTED, house_style, pens
+
+if TYPE_CHECKING:
+    from centrode.analysis.position_plan import PositionPlan
+    from centrode.model.mechanism import Mechanism
+
+CORNER, SIZE = np.array([6.0, 6.0]), np.array([150.0, 128.0])
+COLUMN, TOP, LINE = 160.0, 140.0, 3.4
+SIGN = 0.9
+"""Radius of a hinge's circle [mm]."""
+
+
+def plan_figure(mechanism: Mechanism, plan: PositionPlan) -> Figure:
+    """A page A5 across: position 0 in full, the others faint, all of them numbered along two paths.
+
+    Numbers stand at the end of the driven link and at the point that the extreme position belongs to. The scale is
+    true on paper.
+    """
+    with house_style():
+        page = new_page()
+        together = [data.drop_dims("event", errors="ignore") for data in (plan.positions, plan.path)]
+        joined = xarray.concat(together, dim="sample", data_vars="minimal")
+        scene = scene_of(mechanism, joined)
+        _factor, unit = shown_as("m", mechanism.display)
+        scale = round_scale(float(np.max((scene.high - scene.low) / SIZE)), 0.86)
+        view = View.about(CORNER, SIZE, np.array([scene.low, scene.high]), scale)
+        scene = replace(scene, inches=SIGN_INCHES * scene.extent / (SIGN * scale))
+        count = plan.positions.sizes["sample"]
+        draw_positions(page, view, scene, count)
+        draw_paths(page, view, scene, count)
+        for name in numbered(mechanism, plan):
+            number_path(page, view, scene, name, count)
+        for name, place in scene.at(0).items():
+            page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
+        page.write(6.0, TOP, _("Plan of positions"), size=11.0, va="bottom")
+        page.write(6.0, TOP - 5.0, plain(_(mechanism.title))[:90], size=7.5, va="bottom")
+        write_column(page, mechanism, plan, f"μ_l = {scale:g} {unit} " + _("per mm"))
+        page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 7.0]]))
+        return page.figure
+
+
+def draw_positions(page: Page, view: View, scene: Scene, count: int) -> None:
+    """All positions, the first over the others."""
+    axes = view.axes(page)
+    colours = pens(scene.mechanism.link_names)
+    for sample in range(count - 1, 0, -1):
+        draw_links(axes, scene, sample, colours, alpha=0.22)
+    draw_frame(axes, scene, 0)
+    draw_links(axes, scene, 0, colours)
+    draw_hinges(axes, scene, 0, colours)
+    page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))
+
+
+def draw_paths(page: Page, view: View, scene: Scene, count: int) -> None:
+    """Paths of the moving points, thin."""
+    for name in scene.mechanism.moving_points:
+        path = np.array([view.mm(place) for place in scene.tracks[name][count:]])
+        page.overlay.plot(path[:, 0], path[:, 1], color=MUTED, linewidth=0.7, zorder=2.5)
+
+
+def numbered(mechanism: Mechanism, plan: PositionPlan) -> list[str]:
+    """The points whose paths carry numbers: of the driven link, and of the link that stops."""
+    guides = {guide.id: guide.point for guide in mechanism.guides}
+    drive = mechanism.drives[0]
+    sources = [drive.link or "", drive.guide or "", *(drive.distance or ())[1:], plan.link]
+    moving = set(mechanism.moving_points)
+    found = []
+    for name in sources:
+        points = [guides[name]] if name in guides else []
+        if name in mechanism.links:
+            points = list(mechanism.links[name].coordinates)
+        if name in moving:
+            points = [name]
+        found += [point for point in points if point in moving][-1:]
+    return list(dict.fromkeys(found))
+
+
+def number_path(page: Page, view: View, scene: Scene, name: str, count: int) -> None:
+    """Numbers of the positions beside a point's places, with a dot at each."""
+    for sample in range(count):
+        place = scene.tracks[name][sample]
+        if not np.isfinite(place).all():
+            continue
+        at = view.mm(place)
+        page.overlay.plot([at[0]], [at[1]], marker="o", markersize=2.2, color=INK, zorder=6.5)
+        page.name(at, str(sample), clear=0.9, size=6.5)
+
+
+def write_column(page: Page, mechanism: Mechanism, plan: PositionPlan, scale: str) -> None:
+    """Scale and table of the positions at the right."""
+    y = TOP - 6.0
+    page.write(COLUMN, y, typeset(scale), size=8.0, va="top")
+    y -= 2 * LINE
+    if plan.link:
+        text = _("0: {link} at rest").format(link=plain(plan.link))
+        page.write(COLUMN, y, text, size=7.0, va="top")
+        y -= LINE
+    count = plan.positions.sizes["sample"]
+    step = min(LINE, (y - 6.0) / count)
+    for sample in range(count):
+        value = re.sub(r"\s*\(.*\)$", "", caption(mechanism, plan.positions, sample))
+        page.write(COLUMN, y, f"{sample}:  {value}", size=min(7.0, 2.0 * step), va="top")
+        y -= step

@@ -1,0 +1,247 @@
+"""A folder for each variant of a table, several computed at once; a run that was cut short goes on where it was.
+
+A variant's files are written first, then its marker, by a rename that happens or does not. The marker holds a digest
+of all that the files depend on: what has no marker, or one of another digest, is computed again.
+"""
+
+from __future__ import annotations
+
+import csv
+import functools
+import hashlib
+import io
+import json
+import multiprocessing
+import os
+import shutil
+import signal
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import lazy_loader
+
+from centrode import __version__
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.files import mechanism_text, parse_mechanism
+from centrode.model.mechanism import Mechanism
+from centrode.present.integration_tables import write_integration_csv
+from centrode.present.tables import write_motion_csv
+from centrode.study.variant_tables import Table, Variant, read_variants
+from centrode.study.variants import FAULT, STEPS, VariantResults, VariantRow, computed
+from centrode.sweeps.locking import locked
+from centrode.sweeps.store import write_whole
+
+Progress: TypeAlias = Callable[[int, int], None]
+
+# Matplotlib is an extra, and slow to import: only where figures are asked for.
+_figures, _integrations, _saving = (
+    functools.partial(lazy_loader.load, f"centrode.present.{name}", suppress_warning=True)
+    for name in ("figures", "integrations", "saving")
+)
+
+MARKER, LOCK, SUMMARY = "variant.json", ".lock", "summary.csv"
+MOST_JOBS = 256
+
+
+@dataclass(frozen=True)
+class Task:
+    """One variant to be computed into a folder; plain data, which goes to another process."""
+
+    topology: str
+    variant: Variant
+    folder: Path
+    figures: bool
+
+    @property
+    def digest(self) -> str:
+        """Digest of all that the files depend on."""
+        told = [__version__, self.topology, dict(self.variant.values), STEPS, self.figures]
+        return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+
+
+def write_variants(
+    topology: Mechanism,
+    table: Table,
+    folder: str | Path,
+    jobs: int = 1,
+    figures: bool = False,
+    progress: Progress | None = None,
+) -> tuple[VariantRow, ...]:
+    """Compute every variant of a table into a folder of its own, and sum them up in `summary.csv`.
+
+    Parameters
+    ----------
+    topology, table : as of `variants`
+    folder : path
+        Gets a folder `variant-NAME` for each; those finished before with the same numbers are not computed again.
+    jobs : int
+        Processes at once. More than one asks a script for the usual `if __name__ == "__main__"`.
+    figures : bool
+        Draw the figures of each.
+    progress : called with (variants done, variants in all)
+
+    Returns
+    -------
+    tuple of VariantRow
+        In the order of the table.
+
+    Raises
+    ------
+    InputError
+        The table is wrong, the folder cannot be written, another run writes into it, or a process was ended.
+    """
+    _check_jobs(jobs)
+    folder = Path(folder)
+    text = mechanism_text(topology)
+    tasks = [
+        Task(text, variant, folder / f"variant-{variant.name}", figures)
+        for variant in read_variants(topology, table)
+    ]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with locked(folder / LOCK, str(folder)):
+            rows = _all(tasks, jobs, progress)
+            _replace(folder / SUMMARY, summary_text(rows))
+    except OSError as refusal:
+        reason = refusal.strerror or str(refusal)
+        what = _("cannot be written: {reason}").format(reason=reason)
+        raise InputError(str(folder), what, _("name another place")) from refusal
+    return tuple(rows)
+
+
+def _check_jobs(jobs: object) -> None:
+    if isinstance(jobs, bool) or not isinstance(jobs, int) or not 1 <= jobs <= MOST_JOBS:
+        what = _("{jobs} processes were asked for").format(jobs=jobs)
+        raise InputError("jobs", what, _("ask for 1 to {most}").format(most=MOST_JOBS))
+
+
+def _all(tasks: Sequence[Task], jobs: int, progress: Progress | None) -> list[VariantRow]:
+    """Rows of all tasks, those of finished ones from their markers."""
+    rows = {task.variant.name: row for task in tasks if (row := finished(task)) is not None}
+    open_tasks = [task for task in tasks if task.variant.name not in rows]
+    if progress is not None:
+        progress(len(rows), len(tasks))
+    for row in _several(open_tasks, jobs) if min(jobs, len(open_tasks)) > 1 else map(run, open_tasks):
+        rows[row.variant] = row
+        if progress is not None:
+            progress(len(rows), len(tasks))
+    return [rows[task.variant.name] for task in tasks]
+
+
+def _several(tasks: Sequence[Task], jobs: int) -> Iterator[VariantRow]:
+    """Rows as processes finish them; interrupted, those that run are finished and the others left."""
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(min(jobs, len(tasks)), mp_context=context, initializer=_deaf)
+    with pool:
+        futures: list[Future[VariantRow]] = [pool.submit(run, task) for task in tasks]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        except BrokenProcessPool as broken:
+            what = _("a process was ended from outside")
+            raise InputError(
+                "", what, _("what is finished stays; the same command goes on from there")
+            ) from broken
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _deaf() -> None:
+    """Let the parent decide what an interruption means."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def finished(task: Task) -> VariantRow | None:
+    """The row of a variant whose files are there; None where they are not, or are those of other numbers."""
+    told = _marked(task)
+    try:
+        return VariantRow(**told["row"]) if told["digest"] == task.digest else None
+    except (KeyError, TypeError):
+        return None
+
+
+def _marked(task: Task) -> dict[str, Any]:
+    """What a variant's marker holds; nothing where there is none that can be read."""
+    try:
+        told = json.loads((task.folder / MARKER).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return told if isinstance(told, dict) else {}
+
+
+def run(task: Task) -> VariantRow:
+    """Compute one variant and write its folder; a fault of the program is told in its row, and tried again later."""
+    task.folder.mkdir(parents=True, exist_ok=True)
+    draft = task.folder / ".draft"
+    shutil.rmtree(draft, ignore_errors=True)
+    draft.mkdir()
+    try:
+        results = computed(parse_mechanism(task.topology), task.variant)
+        _write(results, draft, figures=task.figures)
+    except OSError:
+        raise
+    except Exception as fault:
+        cause = "".join(traceback.format_exception_only(fault)).strip()
+        return VariantRow(task.variant.name, None, None, "", "", cause, FAULT)
+    else:
+        _exchange(task, draft, results.row)
+        return results.row
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+def _exchange(task: Task, draft: Path, row: VariantRow) -> None:
+    """Put new files into the place of those of an earlier run; a marker without a digest stands while that goes on."""
+    names = sorted(file.name for file in draft.iterdir())
+    before = [str(name) for name in _marked(task).get("files", []) if Path(str(name)).name == str(name)]
+    write_whole(task.folder / MARKER, {"digest": "", "files": sorted({*before, *names})})
+    for name in before:
+        (task.folder / name).unlink(missing_ok=True)
+    for name in names:
+        os.replace(draft / name, task.folder / name)
+    write_whole(task.folder / MARKER, {"digest": task.digest, "row": row.as_dict(), "files": names})
+
+
+def _write(results: VariantResults, folder: Path, *, figures: bool) -> None:
+    """The files of one variant; none of one that was refused."""
+    study, mechanism, integration = results.study, results.mechanism, results.integration
+    if study is None or mechanism is None:
+        return
+    points = mechanism.moving_points
+    (folder / "mechanism.toml").write_text(mechanism_text(mechanism), encoding="utf-8", newline="\n")
+    write_motion_csv(study.motion, folder / "motion.csv", mechanism.display, points)
+    scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
+    _replace(folder / "summary.json", json.dumps(scalars, indent=2, allow_nan=False) + "\n")
+    if integration is not None:
+        write_integration_csv(integration, folder / "integration.csv", mechanism.display, points)
+    if figures:
+        drawn = _figures().motion_figures(mechanism, study.motion, mechanism.study.instants, study.instants)
+        if integration is not None:
+            drawn |= _integrations().integration_figures(mechanism, integration, study.motion)
+        _saving().save_figures(drawn, folder)
+
+
+def summary_text(rows: Sequence[VariantRow]) -> str:
+    """The summary of all variants as CSV."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    unit = next((row.unit for row in rows if row.unit), "rad")
+    writer.writerow(["variant", "turns_fully", f"limit [{unit}]", "group", "cause", "status"])
+    words = {True: "yes", False: "no", None: ""}
+    for row in rows:
+        limit = "" if row.limit is None else repr(row.limit)
+        writer.writerow([row.variant, words[row.turns_fully], limit, row.group, row.cause, row.status])
+    return text.getvalue()
+
+
+def _replace(file: Path, text: str) -> None:
+    """Write a file whole or not at all."""
+    draft = file.with_name(f".{file.name}.draft")
+    draft.write_text(text, encoding="utf-8", newline="\n")
+    os.replace(draft, file)

@@ -1,0 +1,171 @@
+"""Tables of variants: a CSV file with one row a variant, read strictly and told in sentences."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
+
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model import limits
+from centrode.model.mechanism import Mechanism
+from centrode.model.names import read_name
+from centrode.model.paths import with_values
+from centrode.model.placing import replace_placed
+from centrode.model.problems import Problem, shown
+from centrode.model.reading import read_file
+from centrode.model.units import to_si
+from centrode.study.variant_columns import NAME, Column, columns_of
+
+Table: TypeAlias = str | Path | Sequence[Mapping[str, object]]
+SEPARATORS = ",;\t"
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One row of a table: its name and the numbers [SI] it puts into a mechanism, by their paths."""
+
+    name: str
+    values: Mapping[str, float]
+
+    def of(self, topology: Mechanism) -> Mechanism:
+        """The mechanism of this variant; what the topology places is placed anew. Raises InputError if it is none."""
+        return replace_placed(with_values(topology, self.values))
+
+
+def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
+    """The variants of a table: the path of a CSV file, or rows from header to value.
+
+    Commas, semicolons or tabulators separate the columns; decimals have a point, or between semicolons and
+    tabulators a comma. Raises InputError that names the row and the column.
+    """
+    if isinstance(table, str | Path):
+        where = Path(table).name
+        headers, rows = _file(Path(table), where)
+    else:
+        where = _("table")
+        headers, rows = _mappings(table, where)
+    try:
+        columns = columns_of(topology, headers)
+    except InputError as error:
+        raise InputError(
+            f"{where}, {error.where}" if error.where else where, error.what, error.repair
+        ) from None
+    if not rows:
+        raise InputError(where, _("it has no variants"), _("write one row below the headers for each"))
+    if len(rows) > limits.TABLE_ROWS:
+        what = _("a table has at most {most} rows, got {count}").format(
+            most=limits.TABLE_ROWS, count=len(rows)
+        )
+        raise InputError(where, what, _("cut it into several"))
+    found = [
+        _variant(columns, row, _("{table}, row {number}").format(table=where, number=n)) for n, row in rows
+    ]
+    seen: set[str] = set()
+    for variant in found:
+        # folders are named after variants, and some file systems know no capital letters
+        if variant.name.casefold() in seen:
+            what = _("variant {name} is there twice").format(name=shown(variant.name))
+            raise InputError(where, what, _("give each a name of its own"))
+        seen.add(variant.name.casefold())
+    return tuple(found)
+
+
+Row: TypeAlias = tuple[int, list[object]]
+"""Number of a row in its file, and its cells."""
+
+
+def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
+    """Headers and rows of a CSV file; blank lines count but hold nothing."""
+    text = read_file(path)
+    separator = max(SEPARATORS, key=text.partition("\n")[0].count)
+    reader = csv.reader(text.splitlines(), delimiter=separator, strict=True)
+    try:
+        lines = [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
+    except csv.Error as error:
+        what = _("{name} is not a CSV file: {reason}").format(name=shown(where), reason=error)
+        raise InputError(f"{where}, {reader.line_num}", what) from None
+    if not lines:
+        raise InputError(
+            where, _("the file is empty"), _("give it a row of headers, and one for each variant")
+        )
+    headers = lines[0][1]
+    rows: list[Row] = []
+    for number, cells in lines[1:]:
+        if len(cells) != len(headers):
+            place = _("{table}, row {number}").format(table=where, number=number)
+            what = _("it has {count} cells, the headers are {wanted}").format(
+                count=len(cells), wanted=len(headers)
+            )
+            raise InputError(place, what, _separators(separator))
+        points = [cell if separator == "," else cell.replace(",", ".") for cell in cells]
+        rows.append(
+            (
+                number,
+                [
+                    cells[k] if header.strip().casefold() == NAME else points[k]
+                    for k, header in enumerate(headers)
+                ],
+            )
+        )
+    return headers, rows
+
+
+def _separators(separator: str) -> str:
+    if separator == ",":
+        return _("where decimals have commas, separate the columns by semicolons")
+    return _("give every column a value")
+
+
+def _mappings(table: Sequence[Mapping[str, object]], where: str) -> tuple[list[str], list[Row]]:
+    headers = [str(header) for header in table[0]] if table else []
+    rows: list[Row] = []
+    for number, row in enumerate(table, start=1):
+        if list(map(str, row)) != headers:
+            place = _("{table}, row {number}").format(table=where, number=number)
+            raise InputError(place, _("its keys are not those of the first row"), ", ".join(headers))
+        rows.append((number, list(row.values())))
+    if not rows:
+        raise InputError(where, _("it has no variants"), _("write one row below the headers for each"))
+    return headers, rows
+
+
+def _variant(columns: Sequence[Column | None], row: list[object], where: str) -> Variant:
+    name = ""
+    values: dict[str, float] = {}
+    for column, cell in zip(columns, row, strict=True):
+        if column is None:
+            name = _name(cell, where)
+            continue
+        place = _("{row}, column {header}").format(row=where, header=shown(column.header))
+        number = _number(column, cell, place)
+        values |= dict.fromkeys(column.paths, number)
+    return Variant(name, values)
+
+
+def _name(cell: object, where: str) -> str:
+    text = str(cell).strip()
+    if not text:
+        raise InputError(
+            where, _("the variant has no name"), _("give every variant a name, such as its number")
+        )
+    try:
+        return read_name(text)
+    except Problem as problem:
+        raise InputError(where, problem.what, problem.repair) from None
+
+
+def _number(column: Column, cell: object, where: str) -> float:
+    """Value in SI of a cell: a number in the header's unit, or where it has none a text with a unit."""
+    given = cell.strip() if isinstance(cell, str) else cell
+    if given == "" or given is None:
+        raise InputError(where, _("the cell is empty"), _("give every variant a value"))
+    try:
+        if column.factor is None:
+            return to_si(given, column.kind)
+        return to_si(given, "ratio") * column.factor
+    except InputError as error:
+        raise InputError(where, error.what, error.repair) from None

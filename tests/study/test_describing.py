@@ -1,0 +1,129 @@
+"""Words about mechanisms: what they say is so, of every example, in every language."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+import centrode as ct
+from centrode.study.words_on_joints import moving_parts
+from growing import descriptions, mechanism_of
+from mechanisms import four_bar
+
+WORKED = """\
+Besides the frame the mechanism has 5 moving links: OA, AC, CB, BD, slider C. Hinged to the frame: OA in O, BD in D. \
+Hinged to each other: OA and AC in A, CB and BD in B. A slider, hinged to AC and CB in C, moves along a fixed \
+horizontal guide.
+
+Crank OA is driven: it turns about O at a constant 1 rad/s. Coupler AC moves the slider in C to and fro along its \
+guide; its stroke is 1.279 m. Coupler CB passes the motion on to rocker BD, which swings about D through 29.7°.
+
+The mobility is 1: one drive determines the place of every link. The drive can turn fully."""
+
+
+@pytest.fixture(autouse=True)
+def english() -> Iterator[None]:
+    ct.choose_language("en")
+    yield
+    ct.choose_language("en")
+
+
+def test_the_worked_example() -> None:
+    assert ct.describe(ct.example("slider-between-cranks")) == WORKED
+    motion = ct.motion(ct.example("slider-between-cranks"), 2001)
+    assert f"{np.ptp(motion.slide.to_numpy()):.4g}" == "1.279"
+    assert f"{math.degrees(np.ptp(motion.angle.sel(link='BD').to_numpy())):.3g}" == "29.7"
+
+
+@pytest.mark.parametrize("name", ct.example_names())
+def test_every_example_is_told_in_whole_sentences(name: str) -> None:
+    mechanism = ct.example(name)
+    text = ct.describe(mechanism)
+    assert len(text.split("\n\n")) == 3
+    assert not re.search(r"[{}]|\bnan\b|None|  | ,|\.\.|e-\d\d", text)
+    assert all(paragraph.endswith(".") for paragraph in text.split("\n\n"))
+    for part in moving_parts(mechanism):
+        assert part in text
+    for point in mechanism.moving_points:
+        joined = sum(point in link.coordinates for link in mechanism.links.values())
+        assert joined < 2 or re.search(rf"\bin {re.escape(point)}\b", text), point
+    for drive in mechanism.drives:
+        assert text.count("is driven") == len(mechanism.drives), drive.id
+
+
+@settings(max_examples=25)
+@given(descriptions())
+def test_random_mechanisms_are_told_in_whole_sentences(parts: dict[str, Any]) -> None:
+    mechanism = mechanism_of(parts)
+    text = ct.describe(mechanism)
+    assert not re.search(r"[{}]|\bnan\b|None|  | ,|\.\.|e-\d\d", text)
+    assert all(name in text for name in mechanism.link_names)
+
+
+@pytest.mark.parametrize("language", ["ru", "uk"])
+@pytest.mark.parametrize(
+    "name", ["six-bar-press", "excavator-arm", "planetary-gear-train", "third-class-triad"]
+)
+def test_every_language_has_the_same_names(name: str, language: str) -> None:
+    mechanism = ct.example(name)
+    ct.choose_language(language)
+    text = ct.describe(mechanism)
+    assert not re.search(r"[{}]", text)
+    assert all(link in text for link in mechanism.link_names)
+
+
+def test_cranks_and_rockers_are_told_by_their_motion() -> None:
+    rocker = four_bar(1.0, 3.5, 3.0, 4.0)
+    assert "rocker DB, which swings about D through 40°" in ct.describe(rocker)
+    # extreme positions of a rocker: crank and coupler in line
+    ends = [math.acos((3**2 + 4**2 - (3.5 + sign) ** 2) / (2 * 3 * 4)) for sign in (1, -1)]
+    assert f"{math.degrees(ends[0] - ends[1]):.3g}" == "40"
+    assert "crank DB, which turns fully about D" in ct.describe(four_bar(3.0, 3.5, 4.0, 1.0))
+    locking = ct.describe(four_bar(3.0, 1.5, 3.0, 4.0, drives=[{"link": "OA", "start": 0.5, "speed": 1.0}]))
+    assert "link DB, which turns about D" in locking
+    assert "The drive cannot turn fully; it stops at " in locking
+    assert "AB and DB fall in line" in locking
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        ("elliptic-trammel", "The slider in A is driven along its guide at a constant 0.1 m/s."),
+        ("excavator-arm", 'Cylinder K-A swings link "boom" about O through 34°.'),
+        ("five-bar-two-drives", "AB is hinged to OA in A, CB to EC in C."),
+        (
+            "geared-five-bar",
+            "Links OA and EC are geared: EC turns in the ratio 2 to OA, in the opposite sense.",
+        ),
+        (
+            "oscillating-cylinder",
+            'Link "rod" slides along link "cylinder" and swings it about D through 29°.',
+        ),
+        ("planetary-hypocycloid", 'Wheel "planet" rolls without slip inside a fixed circle.'),
+        ("rack-and-pinion", 'Wheel "pinion" rolls without slip on a straight track of link "rack".'),
+        ("scissor-lift", 'The slider in E moves along link "platform", which does not turn about F.'),
+        ("scotch-yoke", 'Link "yoke" moves to and fro along its guide; its stroke is 1 m.'),
+        ("shaper", 'The slider in A moves along link "lever" and swings it about D through 60°.'),
+        ("spherical-crank-guide", "A slider, hinged to BC in C, moves along a fixed circle."),
+        ("third-class-triad", 'Links AB, "platform", DC and EF form a group of class III: none of them can'),
+        ("three-crank-parallelogram", "Redundant constraints, which only have to fit: "),
+        ("two-link-arm", "Link AB is driven against link OA at a constant 2 rad/s."),
+        ("whitworth-quick-return", 'The slider in A moves along link "lever" and turns it fully about D.'),
+        ("wiper", "Link OA is driven: it turns about O by a given law."),
+    ],
+)
+def test_sentences_of_all_kinds(name: str, sentence: str) -> None:
+    assert sentence in ct.describe(ct.example(name))
+
+
+def test_lengths_and_angles_are_in_the_units_asked_for() -> None:
+    millimetres = ct.example("slider-between-cranks").model_copy(
+        update={"display": ct.example("scissor-lift").display}
+    )
+    assert "its stroke is 1279 mm" in ct.describe(millimetres)
