@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from centrode.present.equation_latex import equations_latex, equations_markdown
     from centrode.present.equation_text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
-    from centrode.present.machine_figures import machine_figures
     from centrode.present.instant_drawing import diagram_figures
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
+    from centrode.present.machine_figures import machine_figures
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
     from centrode.present.reduction_figures import reduction_figures
