@@ -11,7 +11,7 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import cold, kernels, machine, motions, peer, sweeps  # noqa: E402
+from benchmarks import cold, forces, kernels, machine, motions, peer, sweeps  # noqa: E402
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
 from benchmarks.table import Row, print_promises, print_section  # noqa: E402
 from centrode.algebra import machine_code  # noqa: E402
@@ -24,6 +24,7 @@ SECTIONS: Mapping[str, Section] = {
     "batch": (
         f"Batches, {motions.SAMPLES} samples, with derivatives: centrode's time over pylinkage's", motions.batches,
     ),
+    "forces": (f"Reduction to the drive, {forces.SAMPLES} samples", forces.reductions),
     "cold": (f"Whole processes, multiples of {cold.BASE}", cold.cold_starts),
     "machine": ("Bounds of the machine", machine.bounds),
     "kernels": (

@@ -63,6 +63,20 @@ from .study.repairing import repair_text as repair_text
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 
+# Forces
+from .dynamics.reduction import reduce as reduce
+from .study.reducing import reduction_rows as reduction_rows
+from .study.reducing import reduction_parts as reduction_parts
+
+# Steady motion of a machine
+from .dynamics.steady import steady_motion as steady_motion
+from .dynamics.flywheel import flywheel as flywheel
+from .dynamics.flywheel import Flywheel as Flywheel
+from .study.machines import machine_results as machine_results
+from .study.machines import flywheel_rows as flywheel_rows
+from .study.machines import flywheel_scalars as flywheel_scalars
+from .present import machine_figures as machine_figures
+
 # Equations in symbols
 from .equations.derivation import equations as equations
 from .present import equations_text as equations_text
@@ -109,6 +123,7 @@ from .present import sweep_csv as sweep_csv
 from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
 from .present import write_coefficients_csv as write_coefficients_csv
+from .present import write_reduction_csv as write_reduction_csv
 from .present import write_region_csv as write_region_csv
 from .present import write_centres_csv as write_centres_csv
 from .present import write_centrodes_csv as write_centrodes_csv
@@ -120,6 +135,7 @@ from .present import darkened as darkened
 from .present import write_integration_csv as write_integration_csv
 from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
+from .present import reduction_figures as reduction_figures
 from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures

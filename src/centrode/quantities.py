@@ -73,6 +73,8 @@ class Quantity:
         powers = _powers(self.unit)
         powers["rad"] = powers.get("rad", 0) + self.by_drive
         powers[drive_unit] = powers.get(drive_unit, 0) - self.by_drive
+        if drive_unit != "rad" and powers.keys() & {"kg", "N"}:
+            powers.pop("rad", None)  # moments and inertias of an angle are written without their radians
         return replace(self, unit=_unit_text(powers))
 
     def by_drives(self, drive_units: Sequence[str]) -> Quantity:
@@ -160,6 +162,50 @@ _ALL = (
         "m/rad^2",
         mark("acceleration coefficient along the guide"),
         by_drive=2,
+    ),
+    Quantity("drive_rate", "q̇", "rad/s", mark("speed of the drive that loads are taken at"), by_drive=-1),
+    Quantity("reduced_inertia", "J", "kg m^2", mark("reduced moment of inertia"), by_drive=2),
+    Quantity("reduced_inertia_part", "J", "kg m^2", mark("reduced moment of inertia of a link"), by_drive=2),
+    Quantity(
+        "reduced_inertia_slope",
+        "J′",
+        "kg m^2/rad",
+        mark("derivative of the reduced moment of inertia"),
+        by_drive=3,
+    ),
+    Quantity(
+        "reduced_inertia_slope_part",
+        "J′",
+        "kg m^2/rad",
+        mark("derivative of the reduced moment of inertia of a link"),
+        by_drive=3,
+    ),
+    Quantity("reduced_moment", "M", "N m", mark("reduced moment"), by_drive=1),
+    Quantity("reduced_moment_part", "M", "N m", mark("reduced moment of a load"), by_drive=1),
+    Quantity("jumps", "q", "rad", mark("value of the drive where a load jumps"), by_drive=-1),
+    Quantity("inertia_matrix", "M", "kg m^2", mark("inertia matrix"), by_drive=2),
+    Quantity("inertia_matrix_part", "M", "kg m^2", mark("inertia matrix of a link"), by_drive=2),
+    Quantity("christoffel", "Γ", "kg m^2", mark("Christoffel term"), by_drive=3),
+    Quantity("generalised_force", "Q", "N m", mark("generalised force"), by_drive=1),
+    Quantity("generalised_force_part", "Q", "N m", mark("generalised force of a load"), by_drive=1),
+    Quantity("turned", "φ", "rad", mark("angle turned in the cycle")),
+    Quantity("moment_of_loads", "M_c", "N m", mark("moment of loads and weights, reduced to the drive")),
+    Quantity("driving_moment", "M_d", "N m", mark("driving moment")),
+    Quantity("work_of_loads", "A_c", "J", mark("work of loads and weights")),
+    Quantity("work_of_drive", "A_d", "J", mark("work of the drive")),
+    Quantity("work", "A", "J", mark("work of drive and loads")),
+    Quantity("inertia_of_links", "J_II", "kg m^2", mark("inertia of the links, reduced to the drive")),
+    Quantity("inertia_slope_of_links", "J_II′", "kg m^2/rad", mark("derivative of the inertia of the links")),
+    Quantity("energy_of_links", "T_II", "J", mark("energy of the links at the mean speed")),
+    Quantity("energy_change", "ΔT_I", "J", mark("change of energy of what turns with the drive")),
+    Quantity("drive_speed", "ω", "rad/s", mark("speed of the drive")),
+    Quantity("drive_acceleration", "ε", "rad/s^2", mark("angular acceleration of the drive")),
+    Quantity("drive_speed_first_order", "ω_1", "rad/s", mark("speed of the drive to first order")),
+    Quantity(
+        "drive_acceleration_first_order",
+        "ε_1",
+        "rad/s^2",
+        mark("angular acceleration of the drive to first order"),
     ),
     Quantity("transmission_angle", "μ", "rad", mark("transmission angle")),
     Quantity("pressure_angle", "α", "rad", mark("pressure angle")),

@@ -29,6 +29,12 @@ def test_every_variable_of_a_motion_is_named() -> None:
     ]
     others = ("time", "drive_value", "position", "velocity", "acceleration", "contact", "status", "residual")
     events = ("event_value", "event_kind", "event_group")
+    reduced = [f"reduced_{name}" for name in ("inertia", "inertia_slope", "moment")]
+    reduced += ["inertia_matrix", "generalised_force"]
+    reduced = [*reduced, *(f"{name}_part" for name in reduced), "christoffel", "jumps", "drive_rate"]
+    steady = ["turned", "moment_of_loads", "driving_moment", "work_of_loads", "work_of_drive", "work"]
+    steady += ["inertia_of_links", "inertia_slope_of_links", "energy_of_links", "energy_change"]
+    steady += [f"drive_{name}{order}" for name in ("speed", "acceleration") for order in ("", "_first_order")]
     centres = (
         "centre",
         "centre_direction",
@@ -51,6 +57,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
     transmission = ("transmission_angle", "pressure_angle")
     integrated = ("drift", "angle_difference", "position_difference")
     known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
+    known |= set(reduced) | set(steady)
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 
@@ -67,6 +74,10 @@ def test_every_variable_of_a_motion_is_named() -> None:
         ("slide_velocity_coefficient", "1"),
         ("slide_acceleration_coefficient", "1/m"),
         ("angular_velocity", "rad/s"),
+        ("reduced_inertia", "kg"),
+        ("reduced_inertia_slope", "kg/m"),
+        ("reduced_moment", "N"),
+        ("drive_rate", "m/s"),
     ],
 )
 def test_units_follow_the_kind_of_drive(name: str, displacement: str) -> None:

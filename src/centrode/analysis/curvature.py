@@ -18,8 +18,9 @@ from centrode.kinematics.dataset import coordinates_of, judgements_of, labels_of
 from centrode.kinematics.events import Scan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.paths import JETS
+from centrode.kinematics.places import start_of
 from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.solve import fit_for, solve, start_of
+from centrode.kinematics.solve import fit_for, solve
 from centrode.kinematics.spans import Span, is_uniform, span_at
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism

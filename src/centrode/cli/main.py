@@ -23,9 +23,11 @@ from centrode.cli.describe import describe
 from centrode.cli.diagrams import diagrams
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
+from centrode.cli.flywheel import flywheel
 from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
 from centrode.cli.plan import plan
+from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
@@ -43,9 +45,11 @@ COMMANDS: tuple[click.Command, ...] = (
     equations,
     integrate,
     rotatability,
+    reduce,
     variants,
     limits,
     region,
+    flywheel,
     centres,
     centrodes,
     diagrams,

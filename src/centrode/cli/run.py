@@ -12,6 +12,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
+from centrode.cli.flywheel import write as write_machine
 from centrode.cli.progress import Progress
 from centrode.errors import MotionError
 from centrode.locale import _, mark, ngettext
@@ -84,6 +85,8 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
             study.coefficients, folder / "coefficients.csv", mechanism.display, mechanism.moving_points
         )
         ct.write_motion_netcdf(study.coefficients, folder / "coefficients.nc")
+    if study.machine is not None:
+        write_machine(mechanism, study.machine, folder, progress, figures=figures)
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
     (folder / "summary.json").write_text(text, encoding="utf-8")
@@ -99,5 +102,7 @@ def summary_text(study: StudyResults, name: str) -> str:
     """What a run prints: structure, range, limits, change points, statuses, worst residual, notes."""
     rows = [*ct.check_rows(study.check), *ct.motion_rows(study)]
     lines = [_(study.mechanism.title) or name, "", output.table(rows)]
+    if study.machine is not None:
+        lines += ["", output.table(ct.flywheel_rows(study.mechanism, study.machine.flywheel))]
     lines += [_("note: {note}").format(note=note) for note in study.notes]
     return "\n".join(lines)

@@ -10,20 +10,19 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
-from centrode.kinematics.branches import Branches, Event, branches_at_start
+from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.contacts import contacts_at
-from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan
-from centrode.kinematics.layout import Layout, layout_of, positions_from
+from centrode.kinematics.layout import Layout, layout_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.phases import with_phases
+from centrode.kinematics.places import Places, start_of
 from centrode.kinematics.ready import Ready
-from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
+from centrode.kinematics.residuals import Kept
 from centrode.kinematics.rooms import Room
-from centrode.kinematics.sampling import Samples, sample, settle
+from centrode.kinematics.sampling import Samples
 from centrode.kinematics.spans import Span, span_of
-from centrode.kinematics.unwound import Course, fill_angles, fill_slides
 from centrode.locale import _
 from centrode.structure.dimensions import Dimensions
 
@@ -149,14 +148,6 @@ def fit_for(ready: Ready, span: Span) -> Ready:
     return replace(ready, kinematics=replace(kinematics, path=path))
 
 
-def start_of(ready: Ready, kinematics: Kinematics, lanes: int = 1) -> Continuation:
-    """A plan with the signs of the initial position, before any event is known."""
-    smooth = ready.mechanism.assembly.continuation == "smooth"
-    start = ready.assembled
-    branches = branches_at_start(kinematics.path, start.signs, start.angles, smooth, lanes)
-    return Continuation(kinematics, branches, start.positions, ready.kinematics.numbers)
-
-
 def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> tuple[float, float]:
     path = ready.kinematics.path
     if path.by_time or path.driven[0].drive.kind == "angle" or (start is not None and stop is not None):
@@ -201,18 +192,10 @@ class _Part:
 
 def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples) -> _Part:
     """Fill in the samples and angles of some mechanisms of a batch."""
-    continuation = start_of(ready, kinematics, samples.status.shape[0])
-    mesh = mesh_of(kinematics.path, span.parameter)
-    on_mesh = Scan(continuation, mesh).run()
-    sample(continuation, span.parameter, samples)
-    settle(samples)
-    course = Course(ready, kinematics.numbers, on_mesh, mesh)
-    fill_angles(course, samples, span.parameter)
-    at = positions_from(kinematics, samples.layout, samples.columns[0], samples.angles[0], span.parameter)
-    residual, worst = residuals(kinematics, samples, at)
-    open_what_does_not_close(samples, residual)
-    fill_slides(course, samples, span.parameter)
-    return _Part(continuation.branches, residual, worst, contacts_at(kinematics, at, samples))
+    places = Places.along(ready, kinematics, span.parameter, samples.status.shape[0])
+    found = places.fill(span.parameter, samples)
+    contacts = contacts_at(kinematics, found.at, samples)
+    return _Part(places.continuation.branches, found.residual, found.worst_constraint, contacts)
 
 
 def _joined(parts: Sequence[Branches]) -> Branches:

@@ -1,4 +1,4 @@
-"""What a description asks for besides the mechanism: display, assembly, machine, study."""
+"""What a description asks for besides the mechanism: display, assembly, study."""
 
 from __future__ import annotations
 
@@ -18,8 +18,6 @@ from centrode.model.values import (
     PlaceOfMotion,
     choice,
     listed,
-    positive,
-    quantity,
     table,
 )
 from centrode.quantities import ANGLES, LENGTHS
@@ -63,13 +61,6 @@ class Assembly(Part):
         AfterValidator(FrozenMap[str, Side]),
     ] = FrozenMap({})
     continuation: Annotated[Literal["smooth", "keep"], choice("smooth", "keep")] = "smooth"
-
-
-class Machine(Part):
-    """The machine the mechanism works in: mean speed [rad/s] of the drive and its fluctuation (non-uniformity)."""
-
-    mean_speed: Annotated[float, quantity("angular speed")]
-    fluctuation: Annotated[float, quantity("ratio", positive)] | None = None
 
 
 class Study(Part):

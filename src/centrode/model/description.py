@@ -13,11 +13,12 @@ from centrode.algebra.text import SCALARS
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
-from centrode.model.asked import Assembly, Display, Machine, Study
+from centrode.model.asked import Assembly, Display, Study
 from centrode.model.bodies import Frame, Link
 from centrode.model.driving import Drive
 from centrode.model.frozen import FrozenMap
 from centrode.model.loads import Load
+from centrode.model.machines import Machine
 from centrode.model.names import FRAME, two_points
 from centrode.model.pairs import Gear, Guide, Rolling
 from centrode.model.part import Part

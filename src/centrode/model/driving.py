@@ -14,7 +14,7 @@ from centrode.model.names import FRAME
 from centrode.model.part import Part, one_of
 from centrode.model.problems import Problem
 from centrode.model.segments import Segment, read_repeat, read_segments, segmented
-from centrode.model.tables import read_rows
+from centrode.model.tables import Columns, read_rows
 from centrode.model.values import READING, Name, listed, read_text, si
 
 _LAWS = ("speed", "law", "table", "segments")
@@ -80,12 +80,13 @@ class Drive(Part):
     def _rows(cls, value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...] | None:
         if value is None:
             return None
-        rows = read_rows(value, _kind(info), READING.get().folder)
+        columns = Columns(("time", _kind(info)), "[time, value]", 2)
+        rows = read_rows(value, columns, READING.get().folder)
         try:
             TableLaw(*zip(*rows, strict=True))
         except InputError as error:
             raise Problem(error.what, error.repair) from None
-        return rows
+        return tuple((time, number) for time, number in rows)
 
     @field_validator("segments", mode="plain")
     @classmethod

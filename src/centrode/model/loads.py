@@ -1,8 +1,9 @@
-"""Loads: forces, torques, springs, dampers, weights, friction; read and checked, computed by the dynamics."""
+"""Loads: forces, torques, springs, dampers, weights, friction; read and checked here, computed in `dynamics`."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import PlainValidator, ValidationInfo, field_validator
@@ -11,9 +12,21 @@ from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.names import FRAME
-from centrode.model.part import Part, missing_key
+from centrode.model.part import Part, missing_key, one_of
 from centrode.model.problems import Problem, shown
-from centrode.model.values import Angle, Heading, Name, choice, listed, not_negative, quantity, read_text, si
+from centrode.model.tables import Columns, read_rows
+from centrode.model.values import (
+    READING,
+    Angle,
+    Heading,
+    Name,
+    choice,
+    listed,
+    not_negative,
+    quantity,
+    read_text,
+    si,
+)
 
 LOAD_VARIABLES = ("t", "q", "x", "v")
 """Time, the drive's value, and the coordinate and the speed the load works along, in formulas of loads."""
@@ -22,9 +35,13 @@ Amount = float | str
 Kinds = Literal["force", "torque", "spring", "damper", "weight", "friction"]
 KINDS = ("force", "torque", "spring", "damper", "weight", "friction")
 
+# a force in a point has a vector, one along a guide a value or a table
+_IN_POINT, _ALONG_GUIDE = ("vector", "axes", "while_moving"), ("value", "table")
+LEAST_ROWS = 2
+
 # kind -> keys that it needs, and keys that it may have; a tuple of alternatives needs exactly one of them.
 _ALTERNATIVES: dict[str, tuple[str, ...]] = {
-    "force": ("point",),
+    "force": ("point", "guide"),
     "torque": ("link",),
     "spring": ("points", "link"),
     "damper": ("points", "link"),
@@ -32,7 +49,7 @@ _ALTERNATIVES: dict[str, tuple[str, ...]] = {
     "friction": ("link", "guide"),
 }
 _NEEDED: dict[str, tuple[str, ...]] = {
-    "force": ("vector",),
+    "force": (),
     "torque": ("value",),
     "spring": ("stiffness",),
     "damper": ("damping",),
@@ -40,7 +57,7 @@ _NEEDED: dict[str, tuple[str, ...]] = {
     "friction": ("value",),
 }
 _ALLOWED: dict[str, tuple[str, ...]] = {
-    "force": ("axes", "while_moving"),
+    "force": ("vector", "value", "table", "axes", "while_moving"),
     "torque": ("relative_to",),
     "spring": ("free_length", "free_angle", "relative_to"),
     "damper": ("relative_to",),
@@ -77,13 +94,17 @@ class Load(Part):
     Attributes
     ----------
     kind : "force", "torque", "spring", "damper", "weight" or "friction"
+    name : str or None
+        What results call it; left out, its kind and what it acts on.
     point, link, guide, points : str, str, str, two names
-        What it acts on: a force on a point, a torque on a link, a spring or damper between two points or
-        in a link's hinge, friction in a link's hinge or a guide, a weight in a link's centre or a point.
+        What it acts on: a force on a point or along a guide, a torque on a link, a spring or damper between two
+        points or in a link's hinge, friction in a link's hinge or a guide, a weight in a link's centre or a point.
     vector : (x, y) [N], each a number or a formula
     axes : "frame" or the link whose axes `vector` is given in
-    value : float or formula [N m]; of a weight [N], where it is not mass times gravity
+    value : float or formula [N m]; along a guide [N]; of a weight [N], where it is not mass times gravity
         Friction: the moment in a hinge [N m] or the force in a guide [N], against the motion.
+    table : rows of (displacement [m], force [N]) or (displacement, force forwards, force backwards)
+        Indicator diagram of a force along a guide. In a file it may be the path of a CSV file beside it.
     stiffness [N/m or N m/rad], damping [N s/m or N m s/rad], free_length [m], free_angle [rad]
     relative_to : "frame" or the link against which a torque, spring, damper or friction works
     while_moving : (x, y)
@@ -91,6 +112,7 @@ class Load(Part):
     """
 
     kind: Annotated[Kinds, choice(*KINDS)]
+    name: Name | None = None
     point: Name | None = None
     link: Name | None = None
     guide: Name | None = None
@@ -98,6 +120,7 @@ class Load(Part):
     vector: Annotated[tuple[Amount, Amount], PlainValidator(_read_force)] | None = None
     axes: Name = FRAME
     value: Amount | None = None
+    table: tuple[tuple[float, ...], ...] | None = None
     stiffness: float | None = None
     damping: float | None = None
     free_length: Annotated[float, quantity("length", not_negative)] | None = None
@@ -115,6 +138,25 @@ class Load(Part):
             return _amount(value, "force" if straight else "torque")
         return not_negative(value, f"{'' if straight else 'angular '}{info.field_name}")
 
+    @field_validator("table", mode="plain")
+    @classmethod
+    def _rows(cls, value: object) -> tuple[tuple[float, ...], ...] | None:
+        if value is None:
+            return None
+        columns = Columns(("length", "force", "force"), "[displacement, force, force]", 2)
+        rows = read_rows(value, columns, READING.get().folder)
+        if len(rows) < LEAST_ROWS or any(not low[0] < high[0] for low, high in pairwise(rows)):
+            what = _("a diagram needs two rows or more, with displacements that increase")
+            raise Problem(what, _("sort the rows, and keep one of equal displacements"))
+        return rows
+
+    @property
+    def label(self) -> str:
+        """What it is called where its `name` does not say so: "force H", "spring A-D"."""
+        return (
+            self.name or f"{self.kind} {self.point or self.link or self.guide or '-'.join(self.points or ())}"
+        )
+
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
         """What is wrong with the keys that are given, by the rules of this part."""
@@ -124,7 +166,7 @@ class Load(Part):
             return problems
         present = {key for key, value in given.items() if value is not None}
         alternatives, needed = _ALTERNATIVES[kind], _NEEDED[kind]
-        foreign = present - {"kind", *alternatives, *needed, *_ALLOWED[kind]}
+        foreign = present - {"kind", "name", *alternatives, *needed, *_ALLOWED[kind]}
         problems += [missing_key(key) for key in needed if key not in present]
         problems += [
             _foreign(key, kind)
@@ -134,7 +176,24 @@ class Load(Part):
         if len(present & set(alternatives)) != 1:
             words = ", ".join(alternatives)
             problems.append(Problem(_("a {kind} acts on one of: {keys}").format(kind=kind, keys=words)))
+        elif kind == "force":
+            problems += _of_force(cls, given, present)
         return problems
+
+
+def _of_force(cls: type[Part], given: Mapping[str, Any], present: set[str]) -> list[Problem]:
+    """A force in a point has a vector; one along a guide a value or a table."""
+    if "point" in present:
+        missing = [] if "vector" in present else [missing_key("vector")]
+        wrong = [key for key in _ALONG_GUIDE if key in present]
+        what = _("{key} belongs to a force along a guide")
+        repair = _("give vector, or a guide in place of the point")
+    else:
+        missing = one_of(given, _ALONG_GUIDE)
+        wrong = [key for key in _IN_POINT if key in present and not _default(cls, key, given)]
+        what = _("{key} belongs to a force in a point")
+        repair = _("give value or table, or a point in place of the guide")
+    return missing + [Problem(what.format(key=shown(key)), repair) for key in wrong]
 
 
 def _default(cls: type[Part], key: str, given: Mapping[str, Any]) -> bool:

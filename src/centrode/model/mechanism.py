@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import model_validator
 
-from centrode.model.asked import Assembly, Display, Machine, Study
+from centrode.model.asked import Assembly, Display, Study
 from centrode.model.bodies import Frame, Link
 from centrode.model.checks import problems_of_parts
 from centrode.model.description import Description
 from centrode.model.driving import Drive
 from centrode.model.loads import Load
+from centrode.model.machines import Machine
 from centrode.model.names import FRAME
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.placing import resolved

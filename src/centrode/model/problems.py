@@ -82,6 +82,8 @@ def location(place: Place) -> tuple[str, str]:
     place = tuple(part if isinstance(part, int) else shown(str(part))[1:-1] for part in place)
     if len(place) >= 2 and isinstance(place[1], int):
         return f"[[{place[0]}]] {place[1] + 1}", ".".join(str(p) for p in place[2:])
+    if len(place) >= 3 and place[:2] == ("machine", "shafts") and isinstance(place[2], int):
+        return f"[[machine.shafts]] {place[2] + 1}", ".".join(str(p) for p in place[3:])
     if (len(place) == 2 and place[0] == "links") or place == ("frame", "points"):
         return "[" + ".".join(str(p) for p in place) + "]", ""
     if len(place) >= 2 and isinstance(place[-1], int):

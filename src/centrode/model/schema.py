@@ -6,11 +6,12 @@ from typing import Any
 
 from centrode.laws import SEGMENT_CURVES
 from centrode.model import limits, segments
-from centrode.model.asked import Assembly, Display, Machine, Study
+from centrode.model.asked import Assembly, Display, Study
 from centrode.model.bodies import Frame, Link
 from centrode.model.description import Description
 from centrode.model.driving import Drive
 from centrode.model.loads import KINDS, Load
+from centrode.model.machines import SHAFTS, FlywheelShape, Machine, Shaft
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.part import Part
 from centrode.model.segments import Segment
@@ -129,6 +130,7 @@ PROPERTIES: dict[type[Part], Schema] = {
     Assembly: {"sides": _table(_SIDES, limits.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
     Load: {
         "kind": {"enum": list(KINDS)},
+        "name": _NAME,
         "point": _NAME,
         "link": _NAME,
         "guide": _NAME,
@@ -136,6 +138,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "vector": _list(_AMOUNT, 2, 2),
         "axes": _NAME,
         "value": _AMOUNT,
+        "table": {"anyOf": [_TEXT, _list(_list(_AMOUNT, 2, 3), 2, limits.TABLE_ROWS)]},
         "stiffness": _quantity("stiffness"),
         "damping": _quantity("damping"),
         "free_length": _quantity("length"),
@@ -143,7 +146,21 @@ PROPERTIES: dict[type[Part], Schema] = {
         "relative_to": _NAME,
         "while_moving": _PAIR,
     },
-    Machine: {"mean_speed": _quantity("angular speed"), "fluctuation": _above_zero("ratio")},
+    Machine: {
+        "mean_speed": _above_zero("angular speed"),
+        "fluctuation": _above_zero("ratio"),
+        "shafts": _list(_ref(Shaft), 0, SHAFTS),
+        "flywheel": _ref(FlywheelShape),
+        "driving": {**_TEXT, "description": "a formula in q [rad] and v [rad/s]"},
+    },
+    Shaft: {"inertia": _quantity("inertia"), "ratio": _quantity("ratio"), "name": _TEXT},
+    FlywheelShape: {
+        "ratio": _quantity("ratio"),
+        "density": _above_zero("density"),
+        "width": _above_zero("ratio"),
+        "inner": _quantity("ratio"),
+        "rim_speed": _above_zero("speed"),
+    },
     Study: {
         "samples": {"type": "integer", "minimum": 1, "maximum": limits.SAMPLES},
         "instants": _list(_AMOUNT, 0, limits.INSTANTS),

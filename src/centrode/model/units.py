@@ -40,6 +40,7 @@ KINDS = {
     "acceleration": Kind(mark("an acceleration"), "m/s^2", "9.81 m/s^2"),
     "mass": Kind(mark("a mass"), "kg", "90 g"),
     "inertia": Kind(mark("a moment of inertia"), "kg*m^2", "450 kg*mm^2"),
+    "density": Kind(mark("a density"), "kg/m^3", "7.8 g/cm^3"),
     "force": Kind(mark("a force"), "N", "9 kN"),
     "torque": Kind(mark("a torque"), "N*m", "3 N*mm"),
     "stiffness": Kind(mark("a stiffness"), "N/m", "2 N/mm"),

@@ -26,8 +26,11 @@ if TYPE_CHECKING:
     from centrode.present.instant_drawing import diagram_figures
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
+    from centrode.present.machine_figures import machine_figures
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
+    from centrode.present.reduction_figures import reduction_figures
+    from centrode.present.reduction_tables import write_reduction_csv
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
@@ -47,10 +50,12 @@ __all__ = [
     "equations_markdown",
     "equations_rows",
     "equations_text",
+    "machine_figures",
     "diagram_figures",
     "integration_figures",
     "motion_figures",
     "motion_table",
+    "reduction_figures",
     "plan_figure",
     "region_figure",
     "save_figures",
@@ -63,6 +68,7 @@ __all__ = [
     "write_integration_csv",
     "write_motion_csv",
     "write_motion_netcdf",
+    "write_reduction_csv",
     "write_region_csv",
     "write_variants",
 ]
@@ -80,11 +86,14 @@ _attached, __dir__, _names = lazy_loader.attach(
         "equation_latex": ["equations_latex", "equations_markdown"],
         "equation_text": ["equations_rows", "equations_text"],
         "figures": ["motion_figures"],
+        "machine_figures": ["machine_figures"],
         "instant_drawing": ["diagram_figures"],
         "plan_drawing": ["plan_figure"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
         "reading": ["scene_of"],
+        "reduction_figures": ["reduction_figures"],
+        "reduction_tables": ["write_reduction_csv"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],

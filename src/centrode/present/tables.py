@@ -17,6 +17,20 @@ if TYPE_CHECKING:
     from centrode.model.mechanism import Display
 
 VARIABLES = (
+    "turned",
+    "moment_of_loads",
+    "driving_moment",
+    "work_of_loads",
+    "work_of_drive",
+    "work",
+    "inertia_of_links",
+    "inertia_slope_of_links",
+    "energy_of_links",
+    "energy_change",
+    "drive_speed",
+    "drive_acceleration",
+    "drive_speed_first_order",
+    "drive_acceleration_first_order",
     "angle",
     "angular_velocity",
     "angular_acceleration",

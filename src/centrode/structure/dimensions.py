@@ -147,6 +147,7 @@ def dimensions_of(
         angle = mechanism.guide_turn(guide)
         turn[guide.id] = (math.cos(angle), math.sin(angle)) if angle else (1.0, 0.0)
     gearing = gearing_of(mechanism, lambda body: frame if body == FRAME else local[body], values)
+    values.used |= _paths_of_masses(mechanism)
     values.refuse_the_rest()
     bodies = {guide.id: guide.on for guide in mechanism.guides}
     ends: dict[str, tuple[str, ...]] = {name: () for name in mechanism.links}
@@ -155,6 +156,12 @@ def dimensions_of(
         ends = ends_of(mechanism)
         references = references_of(mechanism, frame, local, ends)
     return Dimensions(frame, local, through, direction, turn, bodies, space, ends, references, gearing)
+
+
+def _paths_of_masses(mechanism: Mechanism) -> set[str]:
+    """Paths of numbers that a motion does not depend on."""
+    keys = ("mass", "inertia", "radius", "centre.x", "centre.y")
+    return {f"links.{name}.{key}" for name in mechanism.links for key in keys}
 
 
 def _local(name: str, link: Link, values: _Values) -> dict[str, Vector]:

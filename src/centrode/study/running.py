@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from centrode.errors import InputError, Status
+from centrode.errors import InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.several_drives.coefficients import coefficients_of, most_samples
@@ -18,21 +18,11 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.structure.dimensions import SPACES
 from centrode.study.checking import Check, check_of
+from centrode.study.machines import MachineResults, flywheel_scalars, machine_results
+from centrode.study.scalars import Scalar
 from centrode.study.wording import Words, extremes, unit_of_drive
 
 NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
-
-
-@dataclass(frozen=True)
-class Scalar:
-    """One number of a summary, in SI."""
-
-    value: float | int
-    unit: str
-
-    def as_dict(self) -> dict[str, float | int | str]:
-        """As `summary.json` holds it."""
-        return {"value": self.value, "unit": self.unit}
 
 
 @dataclass(frozen=True)
@@ -45,6 +35,7 @@ class StudyResults:
     motion : the labelled motion
     instants : the motion exactly at the instants the description asks for
     coefficients : kinematic coefficients by each drive, where there are several
+    machine : energies, flywheel and real motion, where the description has a machine that can be computed
     scalars : name -> number and SI unit, as `summary.json` holds them
     failure : why the mechanism cannot do what was asked, in a sentence; None if it can
     notes : what a reader should know besides
@@ -56,6 +47,7 @@ class StudyResults:
     motion: xr.Dataset
     instants: xr.Dataset | None
     coefficients: xr.Dataset | None
+    machine: MachineResults | None
     scalars: dict[str, Scalar]
     failure: str | None
     notes: tuple[str, ...]
@@ -71,18 +63,31 @@ def study(
     checked = check_of(prepared)
     data = dataset_of(solved)
     words = Words(solved)
-    notes = tuple(_notes(mechanism, solved, words))
+    machine, notes = _machine(mechanism, samples)
+    notes = [*_notes(mechanism, solved, words), *notes]
     return StudyResults(
         mechanism,
         checked,
         data,
         _at_instants(prepared),
         coefficients_of(solved) if _by_each_drive(solved) else None,
-        _scalars(checked, solved),
+        machine,
+        _scalars(checked, solved) | (flywheel_scalars(machine.flywheel) if machine else {}),
         _failure(solved, words),
-        notes,
+        tuple(notes),
         words,
     )
+
+
+def _machine(mechanism: Mechanism, samples: int | None) -> tuple[MachineResults | None, list[str]]:
+    """The machine in steady motion; a note where it does not turn fully, or has what is not computed yet."""
+    if mechanism.machine is None:
+        return None, []
+    try:
+        return machine_results(mechanism, samples), []
+    except (MotionError, NotComputedYet) as missing:
+        what = f"{missing.what}; {missing.repair}" if missing.repair else missing.what
+        return None, [_("the machine is left out: {reason}").format(reason=what)]
 
 
 def _by_each_drive(solved: Solved) -> bool:
@@ -195,6 +200,8 @@ def _notes(mechanism: Mechanism, solved: Solved, words: Words) -> list[str]:
             )
         )
     notes += words.period()
-    if mechanism.loads or mechanism.machine is not None:
-        notes.append(_("loads and machine are read; forces are not computed yet"))
+    if mechanism.loads and mechanism.machine is None:
+        notes.append(
+            _("the motion is given, loads do not change it: centrode reduce reduces them to the drive")
+        )
     return notes

@@ -78,8 +78,10 @@ class Asked:
         if self.formulas:
             return {formula.name: formula.of(solved, values, ok) for formula in self.formulas}
         if self.reduction is not None:
-            return {output.name: folded(self.reduction, output.of(solved), ok) for output in self.outputs}
-        return {"status": solved.status} | {output.name: output.of(solved) for output in self.outputs}
+            return {
+                output.name: folded(self.reduction, output.of(solved, values), ok) for output in self.outputs
+            }
+        return {"status": solved.status} | {output.name: output.of(solved, values) for output in self.outputs}
 
 
 def slope_of(name: str) -> str:

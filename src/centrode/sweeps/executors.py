@@ -85,7 +85,9 @@ def executor_of(name: str, task: Task, design: Design, threads: int = 1) -> tupl
 def _traced(task: Task, design: Design, threads: int, kernels: str) -> MachineCodeExecutor:
     values = design.rows(0, 1)
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
-    return MachineCodeExecutor.of(task, numbers, values, threads, kernels)
+    found = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
+    _ = found.asked.columns  # what expressions cannot say is told before anything is computed
+    return found
 
 
 def _with_slopes(name: str, task: Task, design: Design, threads: int) -> tuple[Executor, str]:

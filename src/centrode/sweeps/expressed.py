@@ -52,13 +52,13 @@ class Expressed:
     def columns(self) -> dict[str, list[Node]]:
         """Column -> its numbers: of a sample, or reduced."""
         asked, solved = self.task.asked, self.traced.solved
+        given = {path: boxed([variable(path)]) for path in self.task.paths}
         if asked.formulas:
-            given = {path: boxed([variable(path)]) for path in self.task.paths}
             return {
                 formula.name: [as_node(formula.traced(self.folds, solved, given))]
                 for formula in asked.formulas
             }
-        found = {output.name: output.of(solved).ravel().tolist() for output in asked.outputs}
+        found = {output.name: output.of(solved, given).ravel().tolist() for output in asked.outputs}
         if asked.reduction is None:
             return {name: [as_node(x) for x in nodes] for name, nodes in found.items()}
         return {

@@ -45,7 +45,7 @@ class Variable:
     def of(self, solved: Solved, values: Rows) -> Array:
         """Its values, (lanes, n) or what broadcasts to it."""
         if self.output is not None:
-            return self.output.of(solved)
+            return self.output.of(solved, values)
         if self.kind == "varied":
             return np.asarray(values[self.source])[:, None]
         if self.kind == "time":

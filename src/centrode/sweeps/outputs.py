@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.batches import REDUCED, Values, reduced_number
 from centrode.errors import InputError
 from centrode.kinematics.dataset import by_time, kinds_of
 from centrode.kinematics.solve import Solved
@@ -47,10 +48,15 @@ class Output:
     shape: tuple[int, ...]
     attributes: Mapping[str, Any]
 
-    def of(self, solved: Solved) -> Array:
-        """Its values (lanes, samples, ...): the same bits as in the motion's dataset."""
+    def of(self, solved: Solved, values: Values) -> Array:
+        """Its values (lanes, samples, ...): the same bits as in the motion's dataset.
+
+        `values` are those that vary, by their paths.
+        """
         if self.quantity == RESIDUAL:
             return solved.residual
+        if self.quantity in REDUCED:
+            return reduced_number(self.quantity, solved, values)
         if self.quantity == CONTACT:
             return solved.contacts[:, :, *self.where]
         for kind in kinds_of(solved):
@@ -59,9 +65,9 @@ class Output:
             assert first is not None
             assert second is not None
             if self.quantity in kind.names:
-                values = by_time((_values, first, second), kind.names.index(self.quantity), solved.span)
-                if values is not None:
-                    return values
+                found = by_time((_values, first, second), kind.names.index(self.quantity), solved.span)
+                if found is not None:
+                    return found
             by_drive = [kind.prefix + word for word in COEFFICIENTS]
             if self.quantity in by_drive:
                 return (first, second)[by_drive.index(self.quantity)]

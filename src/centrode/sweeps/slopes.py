@@ -159,9 +159,15 @@ def by(name: str, path: str) -> str:
     return f"{name} by {path}"
 
 
+def _of_a_mass(path: str) -> bool:
+    """Whether a path is that of a mass, which no dimension of the plan is."""
+    room, *_name, last = path.split(".")
+    return room == "links" and (last in ("mass", "inertia", "radius") or ".centre." in path)
+
+
 def _through(path: str, varied: Varied) -> Through:
     """The variables that the value at a path moves: itself, or cosine and sine of a direction."""
-    if path in varied.names:
+    if path in varied.names or _of_a_mass(path):
         return [(variable(path), 1.0)]
     directions = {f"guides.{guide}.direction": x for guide, x in varied.numbers.direction.items()}
     for wheel, track in varied.numbers.gearing.track.items():

@@ -10,10 +10,12 @@ from typing import Any, TypeAlias
 import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
+from centrode.dynamics.batches import REDUCED, check_reducible
+from centrode.dynamics.reduction import reduction_of
 from centrode.errors import InputError
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.dimensions import dimensions_of
@@ -86,7 +88,7 @@ def sweep(
     design = design_of(mechanism, vary)
     prepared = ready(mechanism)
     span = asked_span(prepared, samples, start, stop)
-    motion = dataset_of(solve(prepared, span))
+    motion = _first(solve(prepared, span), outputs, reduce)
     paths = tuple(design.coordinates)
     asked = asked_of(motion, design, outputs, reduce)
     task = Task(prepared, span, with_slopes(asked, len(paths)) if gradient else asked, paths)
@@ -102,6 +104,16 @@ def sweep(
         _compute(frame, kept, task, chosen, progress)
     data = told(read(Path(store), frame), frame, kept.tally)
     return data.assign_attrs(mechanisms_found=found)
+
+
+def _first(solved: Solved, outputs: Sequence[str] | str | None, reduce: Reduce) -> xr.Dataset:
+    """The description's own motion, with its reduction where that is asked for."""
+    motion = dataset_of(solved)
+    if "reduced_" not in f"{outputs} {reduce}":
+        return motion
+    check_reducible(solved)
+    reduction = reduction_of(solved)
+    return motion.assign({name: reduction[name] for name in REDUCED})
 
 
 def _check_size(frame: Frame, most: int, repair: str) -> None:

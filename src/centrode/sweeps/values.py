@@ -19,6 +19,7 @@ from centrode.sweeps import limits
 Array: TypeAlias = npt.NDArray[np.float64]
 
 _ALONG = frozenset({"x", "y", "length", "radius"})
+_MASSES = frozenset({"mass", "inertia"})
 _ANGLES = frozenset({"direction", "angle", "longitude", "latitude"})
 
 
@@ -31,12 +32,16 @@ def kind_of(mechanism: Mechanism, path: str) -> str:
     word = path.rpartition(".")[2]
     if word in _ALONG:
         return "length" if mechanism.space == "plane" else "arc"
+    if word in _MASSES:
+        return word
     return "angle" if word in _ANGLES else "ratio"
 
 
 def unit_of(mechanism: Mechanism, path: str) -> str:
     """SI unit of the number at a path; "1" where it has none."""
-    return {"length": "m", "ratio": "1"}.get(kind_of(mechanism, path), "rad")
+    return {"length": "m", "ratio": "1", "mass": "kg", "inertia": "kg m^2"}.get(
+        kind_of(mechanism, path), "rad"
+    )
 
 
 def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
@@ -67,6 +72,7 @@ def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
         raise InputError(path, what, _("give at most {most}, or a ct.grid").format(most=limits.LISTED))
     if not np.isfinite(array).all():
         raise InputError(path, _("values must be finite"))
+    _refuse_negative(kind, path, float(array.min()))
     return array
 
 
@@ -79,7 +85,13 @@ def ends(mechanism: Mechanism, path: str, first: Any, last: Any) -> tuple[float,
             first=shown(first), last=shown(last)
         )
         raise InputError(path, what, _("give the lesser end first, and a greater one after it"))
+    _refuse_negative(kind, path, low)
     return low, high
+
+
+def _refuse_negative(kind: str, path: str, least: float) -> None:
+    if kind in _MASSES and least < 0.0:
+        raise InputError(path, _("{value:g} is negative").format(value=least), _("give 0 or more"))
 
 
 def _number(kind: str, path: str, given: Any) -> float:

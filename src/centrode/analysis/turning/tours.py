@@ -18,10 +18,11 @@ from centrode.kinematics.events import Scan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.pace import OFF_GRID
 from centrode.kinematics.paths import JETS
+from centrode.kinematics.places import start_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.several_drives.holding import check_closed, held_path, starting_at, unit_of_value
 from centrode.kinematics.several_drives.reach import TURNS
-from centrode.kinematics.solve import SEARCH, start_of
+from centrode.kinematics.solve import SEARCH
 from centrode.model.mechanism import Drive
 from centrode.structure.positions import Positions
 

@@ -32,10 +32,11 @@ from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.mending import inside
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.pace import nearest_node
+from centrode.kinematics.places import start_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED
 from centrode.kinematics.sampling import ORDERS, SUSPECT, beyond_limits
-from centrode.kinematics.solve import Solved, fit_for, lanes_at_once, of_batch, of_lanes, solve, start_of
+from centrode.kinematics.solve import Solved, fit_for, lanes_at_once, of_batch, of_lanes, solve
 from centrode.kinematics.spans import Span
 from centrode.structure.dimensions import Dimensions
 

@@ -23,8 +23,9 @@ from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.events import Scan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.paths import JETS, unit_of
+from centrode.kinematics.places import start_of
 from centrode.kinematics.sampling import ORDERS, Judging, fill_columns, fill_number
-from centrode.kinematics.solve import Solved, fit_for, start_of
+from centrode.kinematics.solve import Solved, fit_for
 from centrode.kinematics.spins import spins_of
 from centrode.structure.positions import Positions
 

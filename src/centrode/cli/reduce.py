@@ -1,0 +1,103 @@
+"""`centrode reduce`: masses and loads reduced to the drive."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument
+from centrode.cli.progress import Progress
+from centrode.errors import MotionError, Status
+from centrode.locale import _, mark, ngettext
+
+if TYPE_CHECKING:
+    import xarray
+
+MISSING = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
+
+
+@click.command(help=mark("Reduce masses and loads to the drive, part by part."))
+@mechanism_argument
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Also write tables and pictures into this folder."),
+)
+@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
+@click.option(
+    "--from",
+    "start",
+    metavar=mark("A"),
+    help=mark('First value of the drive ("0 deg"); a time ("0 s") where the drive is a law.'),
+)
+@click.option("--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time."))
+@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+def reduce(
+    mechanism: str,
+    out: Path | None,
+    samples: int | None,
+    start: str | None,
+    stop: str | None,
+    no_figures: bool,
+) -> None:
+    """Print the parts of the reduction and write them where asked; exit code 3 if the mechanism locks in the range."""
+    description = ct.load(mechanism)
+    first = None if start is None else ct.range_value(description, start, "--from")
+    last = None if stop is None else ct.range_value(description, stop, "--to")
+    names: list[str] = []
+    if out is None:
+        found = _reduced(mechanism, description, samples, first, last)
+    else:
+        with output.output_folder(out) as draft, Progress() as progress:
+            progress.say(_("solving"))
+            found = _reduced(mechanism, description, samples, first, last)
+            _write(description, found, draft, progress, figures=not no_figures)
+            names = sorted(path.name for path in draft.iterdir())
+    click.echo(_(description.title) or mechanism)
+    click.echo()
+    click.echo(output.table(ct.reduction_rows(description, found)))
+    header, rows = ct.reduction_parts(found)
+    click.echo("\n" + output.table(rows, header, right=(2, 3, 4)))
+    if out is not None:
+        count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
+            n=len(names), folder=out
+        )
+        click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    _tell_failure(mechanism, found)
+
+
+def _reduced(
+    name: str, description: ct.Mechanism, samples: int | None, start: float | None, stop: float | None
+) -> xarray.Dataset:
+    with about(name):
+        return ct.reduce(description, samples, start, stop)
+
+
+def _write(
+    description: ct.Mechanism, found: xarray.Dataset, folder: Path, progress: Progress, *, figures: bool
+) -> None:
+    progress.say(_("writing tables"))
+    ct.write_reduction_csv(found, folder / "reduction.csv", description.display)
+    ct.write_motion_netcdf(found, folder / "reduction.nc")
+    if figures:
+        progress.say(_("drawing"))
+        ct.save_figures(ct.reduction_figures(description, found), folder)
+
+
+def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
+    """Raise MotionError where samples are not reached."""
+    status = found["status"].to_numpy().tolist()
+    missing = sum(code in MISSING for code in status)
+    if missing:
+        what = ngettext(
+            "the mechanism locks: {missing} of {all} samples is not reached",
+            "the mechanism locks: {missing} of {all} samples are not reached",
+            missing,
+        ).format(missing=missing, all=len(status))
+        raise MotionError(mechanism, what, _("ask for a range between the limits, or change the dimensions"))

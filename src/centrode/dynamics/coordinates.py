@@ -1,0 +1,116 @@
+"""What loads work along: a coordinate's derivative by the drive's value, times the load, is its reduced moment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+from typing import Any, Protocol, TypeAlias
+
+from centrode.algebra.jets import Jet
+from centrode.dynamics.masses import Centre
+from centrode.dynamics.states import Place, State
+from centrode.model.mechanism import FRAME, Vector
+
+Number: TypeAlias = Any
+
+
+class Coordinate(Protocol):
+    """A number that a load works along."""
+
+    def value(self, state: State) -> Number:
+        """The number itself [m or rad]."""
+
+    def slope(self, state: State) -> Jet:
+        """Its derivative by the parameter, at held directions, and the derivative of that."""
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Angle of a link from another."""
+
+    link: str
+    base: str = FRAME
+
+    def value(self, state: State) -> Number:
+        return state.angle(self.link).value - state.angle(self.base).value
+
+    def slope(self, state: State) -> Jet:
+        return (state.angle(self.link) - state.angle(self.base)).slope()
+
+
+@dataclass(frozen=True)
+class Slide:
+    """Displacement along a guide."""
+
+    guide: str
+
+    def value(self, state: State) -> Number:
+        return state.slide(self.guide).value
+
+    def slope(self, state: State) -> Jet:
+        return state.slide(self.guide).slope()
+
+
+@dataclass(frozen=True)
+class Distance:
+    """Distance of two points."""
+
+    first: str
+    second: str
+
+    def value(self, state: State) -> Number:
+        return self._length(state).value
+
+    def slope(self, state: State) -> Jet:
+        return self._length(state).slope()
+
+    def _length(self, state: State) -> Jet:
+        (x, y), (u, v) = state.point(self.first), state.point(self.second)
+        length: Jet = state.m.sqrt((u - x) * (u - x) + (v - y) * (v - y))
+        return length
+
+
+@dataclass(frozen=True)
+class HalfSquare:
+    """Half the squared distance of two points: unlike the distance it has a derivative where they meet."""
+
+    first: str
+    second: str
+
+    def value(self, state: State) -> Number:
+        return self._half(state).value
+
+    def slope(self, state: State) -> Jet:
+        return self._half(state).slope()
+
+    def _half(self, state: State) -> Jet:
+        (x, y), (u, v) = state.point(self.first), state.point(self.second)
+        return ((u - x) * (u - x) + (v - y) * (v - y)) * 0.5
+
+
+@dataclass(frozen=True)
+class Component:
+    """Component of a point's place, or of a link's centre of mass, along a direction fixed in a link or the frame."""
+
+    at: str | Centre
+    direction: Vector
+    axes: str = FRAME
+
+    def value(self, state: State) -> Number:
+        (x, y), (u, v) = self._place(state), self._direction(state)
+        return (u * x + v * y).value
+
+    def slope(self, state: State) -> Jet:
+        (x, y), (u, v) = self._place(state), self._direction(state)
+        return u.lowered() * x.slope() + v.lowered() * y.slope()
+
+    def _place(self, state: State) -> Place:
+        return state.point(self.at) if isinstance(self.at, str) else state.centre(self.at)
+
+    def _direction(self, state: State) -> Place:
+        size = hypot(*self.direction)
+        x, y = self.direction[0] / size, self.direction[1] / size
+        if self.axes == FRAME:
+            return Jet((x, 0.0, 0.0)), Jet((y, 0.0, 0.0))
+        cosine, sine = state.rotor(self.axes)
+        return cosine * x - sine * y, sine * x + cosine * y

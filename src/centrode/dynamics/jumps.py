@@ -1,0 +1,109 @@
+"""Where loads jump or have a kink: places at which a coordinate turns or passes a row of a diagram, to rounding."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.dynamics.coordinates import Coordinate
+from centrode.dynamics.loads import Acting
+from centrode.dynamics.states import State
+from centrode.kinematics.roots import bracketed_roots
+
+Array: TypeAlias = npt.NDArray[np.float64]
+StateAt: TypeAlias = Callable[[Array], State]
+WithSlope: TypeAlias = Callable[[State], tuple[Array, Array]]
+
+TOGETHER = 64.0 * 2.0**-52
+"""Places nearer than this share of the parameter (of 1 where that is less) are one."""
+
+
+def jumps_of(loads: Sequence[Acting], at: StateAt, nodes: Array) -> Array:
+    """Values of the parameter, sorted, between the first and the last of the nodes.
+
+    They are found where they belong to a change of sign between two nodes, or to two changes that the tangents at
+    the nodes foretell.
+    """
+    functions = list(_functions(loads))
+    if not functions or len(nodes) < 2:
+        return np.empty(0)
+    state = at(nodes)
+    places = [np.empty(0)]
+    for function in functions:
+        value, slope = (np.broadcast_to(x, (1, len(nodes)))[0] for x in function(state))
+        for low, high in _brackets(function, at, nodes, value, slope):
+            places.append(bracketed_roots(functools.partial(_at_values, function, at), low, high))
+        places.append(nodes[value == 0.0])
+    return _distinct(np.sort(np.concatenate(places)))
+
+
+def _functions(loads: Sequence[Acting]) -> Iterator[WithSlope]:
+    """Functions of a state that are zero at jumps and kinks, each with its slope."""
+    seen: set[object] = set()
+    for effort in (effort for load in loads for effort in load.efforts):
+        for coordinate in effort.switches:
+            if coordinate not in seen:
+                seen.add(coordinate)
+                yield _turning(coordinate)
+        for level in effort.amount.levels:
+            yield _passing(effort.coordinate, level)
+
+
+def _turning(coordinate: Coordinate) -> WithSlope:
+    def function(state: State) -> tuple[Array, Array]:
+        slope = coordinate.slope(state)
+        return slope.value, slope.derivative(1)
+
+    return function
+
+
+def _passing(coordinate: Coordinate, level: float) -> WithSlope:
+    def function(state: State) -> tuple[Array, Array]:
+        return coordinate.value(state) - level, coordinate.slope(state).value
+
+    return function
+
+
+def _at_values(function: WithSlope, at: StateAt, x: Array) -> tuple[Array, Array]:
+    value, slope = (np.broadcast_to(part, (1, len(x)))[0] for part in function(at(x)))
+    return value, slope
+
+
+def _brackets(
+    function: WithSlope, at: StateAt, nodes: Array, value: Array, slope: Array
+) -> Iterator[tuple[Array, Array]]:
+    """Ends of stretches with one change of sign each."""
+    with np.errstate(invalid="ignore"):
+        cells = np.flatnonzero(value[:-1] * value[1:] < 0.0)
+    if len(cells):
+        yield nodes[cells], nodes[cells + 1]
+    cells, inner = _dips(nodes, value, slope)
+    if len(cells):
+        there = _at_values(function, at, inner)[0]
+        deep = there * value[cells] < 0.0
+        if deep.any():
+            yield nodes[cells[deep]], inner[deep]
+            yield inner[deep], nodes[cells[deep] + 1]
+
+
+def _dips(nodes: Array, value: Array, slope: Array) -> tuple[npt.NDArray[np.intp], Array]:
+    """Cells whose tangents meet beyond zero although both ends have one sign, and where they meet."""
+    step = np.diff(nodes)
+    with np.errstate(all="ignore"):
+        meet = (value[1:] - value[:-1] - slope[1:] * step) / (slope[:-1] - slope[1:])
+        there = value[:-1] + slope[:-1] * meet
+        dips = (value[:-1] * value[1:] > 0.0) & (there * value[:-1] <= 0.0) & (meet > 0.0) & (meet < step)
+    cells = np.flatnonzero(dips)
+    return cells, nodes[cells] + meet[cells]
+
+
+def _distinct(places: Array) -> Array:
+    if not len(places):
+        return places
+    apart = np.diff(places) > TOGETHER * np.maximum(1.0, np.abs(places[1:]))
+    kept: Array = places[np.concatenate([[True], apart])]
+    return kept

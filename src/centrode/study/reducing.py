@@ -1,0 +1,120 @@
+"""What is said of a reduction: what was reduced, at which speed, and the extremes of each part."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.dynamics.masses import massless_links
+from centrode.errors import Status
+from centrode.kinematics.several_drives.holding import unit_of_value
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.quantities import status_word
+from centrode.study.wording import value_text
+
+if TYPE_CHECKING:
+    import xarray
+
+Rows: TypeAlias = list[tuple[str, str]]
+Array: TypeAlias = npt.NDArray[np.float64]
+JUMPS_SHOWN = 12
+ROUNDING = 1e-12
+"""Means and extremes below this share of the greatest value are shown as zero."""
+
+
+def reduction_rows(mechanism: Mechanism, reduction: xarray.Dataset) -> Rows:
+    """Masses, loads, speed of the drive, jumps and statuses, in the language and the units of the reader."""
+    links, loads = (", ".join(reduction[name].to_numpy()) for name in ("link", "load"))
+    massless = ", ".join(massless_links(mechanism))
+    status = reduction["status"].to_numpy()
+    counts = [(Status(code), int(np.sum(status == code))) for code in np.unique(status)]
+    said = ", ".join(f"{status_word(which)} {number}" for which, number in counts)
+    return [
+        (_("drives"), ", ".join(reduction["drive"].to_numpy())),
+        (_("links with mass"), links or _("none")),
+        (_("massless links"), massless or _("none")),
+        (_("loads"), loads or _("none")),
+        *(_of_one_drive(mechanism, reduction) if "drive_rate" in reduction else []),
+        (_("samples"), f"{len(status)}: {said}"),
+    ]
+
+
+def _of_one_drive(mechanism: Mechanism, reduction: xarray.Dataset) -> Rows:
+    unit = unit_of_value(mechanism, mechanism.drives[0])
+    rates = reduction["drive_rate"].to_numpy()
+    low, high = (f"{rate:.6g} {unit}/s" for rate in (np.min(rates), np.max(rates)))
+    speed = low if low == high else _("{first} to {last}").format(first=low, last=high)
+    if reduction.attrs["rate_from"] == "machine":
+        speed = _("{speed}, the mean speed of the machine").format(speed=speed)
+    jumps = reduction["jumps"].to_numpy()
+    texts = [value_text(float(at), unit, mechanism.display) for at in jumps[:JUMPS_SHOWN]]
+    if len(jumps) > JUMPS_SHOWN:
+        texts.append(_("and {n} more").format(n=len(jumps) - JUMPS_SHOWN))
+    return [
+        (_("speed of the drive"), speed),
+        (_("loads jump or bend at"), "; ".join(texts) or _("none")),
+    ]
+
+
+def reduction_parts(reduction: xarray.Dataset) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a table: least, greatest and mean value of each part and of the whole, over the samples.
+
+    The mean is over the drive's value, with several drives over time, by the trapezoidal rule.
+    """
+    along = _along(reduction)
+    header = ["", _("unit"), _("least"), _("greatest"), _("mean")]
+    found = []
+    for name, part, dimension, text in (
+        ("reduced_inertia", "reduced_inertia_part", "link", _("reduced inertia")),
+        ("reduced_moment", "reduced_moment_part", "load", _("reduced moment")),
+    ):
+        if name in reduction:
+            unit = str(reduction[name].attrs["units"])
+            found.append([text, unit, *_extremes(reduction[name].to_numpy(), along)])
+            for label in reduction[dimension].to_numpy():
+                values = reduction[part].sel({dimension: label}).to_numpy()
+                found.append([f"  {label}", unit, *_extremes(values, along)])
+    for name, text in (
+        ("inertia_matrix", _("inertia {drives}")),
+        ("generalised_force", _("force by {drives}")),
+    ):
+        if name in reduction:
+            found += _by_drives(reduction, name, text, along)
+    return header, found
+
+
+def _by_drives(reduction: xarray.Dataset, name: str, text: str, along: Array) -> list[list[str]]:
+    """Rows of the elements of a matrix, each pair once, or of a vector."""
+    drives = reduction["drive"].to_numpy().tolist()
+    values = reduction[name].to_numpy().reshape(reduction.sizes["sample"], -1)
+    twice = "drive_2" in reduction[name].dims
+    pairs = [(i, j) for i in range(len(drives)) for j in range(len(drives) if twice else 1)]
+    units = str(reduction[name].attrs["units"]).split(", ")
+    rows = []
+    for number, (i, j) in enumerate(pairs):
+        if not twice or i <= j:
+            names = f"{drives[i]}, {drives[j]}" if twice else drives[i]
+            unit = units[number % len(units)]
+            rows.append([text.format(drives=names), unit, *_extremes(values[:, number], along)])
+    return rows
+
+
+def _along(reduction: xarray.Dataset) -> Array:
+    """What means are taken over."""
+    one = reduction["drive_value"].isel(drive=0) if "reduced_inertia" in reduction else reduction["time"]
+    return np.asarray(one.to_numpy())
+
+
+def _extremes(values: Array, along: Array) -> list[str]:
+    known = np.isfinite(values)
+    if not known.any():
+        return ["", "", ""]
+    some, where = values[known], along[known]
+    width = float(where[-1] - where[0])
+    mean = float(np.trapezoid(some, where)) / width if width else float(np.mean(some))
+    low, high = float(np.min(some)), float(np.max(some))
+    noise = ROUNDING * max(abs(low), abs(high))
+    return [f"{0.0 if abs(value) <= noise else value:.6g}" for value in (low, high, mean)]
