@@ -90,6 +90,17 @@ def test_several_drives(centrode: Centrode, folder: Path) -> None:
     assert float(row["inertia_matrix_AB_AB [kg m^2]"]) == pytest.approx(2 * 0.64 / 3)
 
 
+def test_the_mean_of_a_drive_that_turns_back_is_over_time(centrode: Centrode, folder: Path) -> None:
+    one, _rest, after = ARM.partition('[[drives]]\nlink = "AB"')
+    text = one.replace('[links.AB]\nlength = 0.8\nmass = 2\nshape = "rod"\n', "")
+    text += '[[loads]]\nkind = "torque"\nlink = "OA"\nvalue = 4\n' + after[after.index("[study]") :]
+    (folder / "swing.toml").write_text(text)
+    done = centrode("reduce", "swing.toml", "--samples", 50)
+    assert done.code == 0, done
+    row = next(line for line in done.out.splitlines() if "torque OA" in line and "N m" in line)
+    assert row.split()[-3:] == ["4", "4", "4"]
+
+
 def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
     text = ct.example_text("slider-between-cranks-locked")
     (folder / "locked.toml").write_text(text.replace("[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"))

@@ -144,6 +144,17 @@ def test_a_diagram_with_a_column_for_each_way() -> None:
     close(Reducer.of(one_way).at(q).moment, there * slope, 100)
 
 
+def test_a_diagram_of_many_rows() -> None:
+    """Every row is passed twice a turn; all of them are found, in a moment."""
+    x = np.linspace(-0.5, 0.5, 2001)
+    yoke = slider({"kind": "force", "guide": "H", "table": [[float(at), float(10 * at**2)] for at in x]})
+    found = Reducer.of(yoke).jumps(0.1, math.pi - 0.1)
+    inner = x[(abs(x) < 0.5 * math.cos(0.1)) & (abs(x) < 0.5)]
+    # the arc cosine loses digits towards the ends of the stroke as 1 / sin
+    exact = np.sort(np.arccos(2 * inner))
+    assert np.allclose(found, exact, rtol=0, atol=16 * EPS * math.pi / math.sin(0.1))
+
+
 def test_a_diagram_from_a_file(tmp_path: Path) -> None:
     (tmp_path / "indicator.csv").write_text(
         "position [mm],there [kN],back [N]\n-500,0.01,0\n100,0.04,-5\n500,0.1,-20\n"

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.coordinates import Coordinate
-from centrode.dynamics.loads import Acting
+from centrode.dynamics.loads import Acting, Effort
 from centrode.dynamics.states import State
 from centrode.kinematics.roots import bracketed_roots
 
@@ -28,42 +28,58 @@ def jumps_of(loads: Sequence[Acting], at: StateAt, nodes: Array) -> Array:
     They are found where they belong to a change of sign between two nodes, or to two changes that the tangents at
     the nodes foretell.
     """
-    functions = list(_functions(loads))
-    if not functions or len(nodes) < 2:
+    turning = list(dict.fromkeys(c for effort in _efforts(loads) for c in effort.switches))
+    kinked: dict[Coordinate, set[float]] = {}
+    for effort in _efforts(loads):
+        if effort.amount.levels:
+            kinked.setdefault(effort.coordinate, set()).update(effort.amount.levels)
+    if not (turning or kinked) or len(nodes) < 2:
         return np.empty(0)
     state = at(nodes)
     places = [np.empty(0)]
-    for function in functions:
-        value, slope = (np.broadcast_to(x, (1, len(nodes)))[0] for x in function(state))
-        for low, high in _brackets(function, at, nodes, value, slope):
-            places.append(bracketed_roots(functools.partial(_at_values, function, at), low, high))
-        places.append(nodes[value == 0.0])
+    for coordinate in turning:
+        places += _turning_points(coordinate, at, nodes, state)
+    for coordinate, levels in kinked.items():
+        places.append(_passings(coordinate, np.array(sorted(levels)), at, nodes, state))
     return _distinct(np.sort(np.concatenate(places)))
 
 
-def _functions(loads: Sequence[Acting]) -> Iterator[WithSlope]:
-    """Functions of a state that are zero at jumps and kinks, each with its slope."""
-    seen: set[object] = set()
-    for effort in (effort for load in loads for effort in load.efforts):
-        for coordinate in effort.switches:
-            if coordinate not in seen:
-                seen.add(coordinate)
-                yield _turning(coordinate)
-        for level in effort.amount.levels:
-            yield _passing(effort.coordinate, level)
+def _efforts(loads: Sequence[Acting]) -> Iterator[Effort]:
+    return (effort for load in loads for effort in load.efforts)
+
+
+def _turning_points(coordinate: Coordinate, at: StateAt, nodes: Array, state: State) -> Iterator[Array]:
+    """Places at which a coordinate turns round."""
+    function = _turning(coordinate)
+    value, slope = (np.broadcast_to(x, (1, len(nodes)))[0] for x in function(state))
+    for low, high in _brackets(function, at, nodes, value, slope):
+        yield bracketed_roots(functools.partial(_at_values, function, at), low, high)
+    yield nodes[value == 0.0]
+
+
+def _passings(coordinate: Coordinate, levels: Array, at: StateAt, nodes: Array, state: State) -> Array:
+    """Places at which a coordinate passes one of several levels, all found together."""
+    value = np.broadcast_to(coordinate.value(state), (1, len(nodes)))[0]
+    low, high = np.minimum(value[:-1], value[1:]), np.maximum(value[:-1], value[1:])
+    first, last = np.searchsorted(levels, low, "right"), np.searchsorted(levels, high, "left")
+    counts = np.where(np.isfinite(low + high), np.maximum(last - first, 0), 0)
+    cells = np.repeat(np.arange(len(counts)), counts)
+    if not len(cells):
+        return nodes[np.isin(value, levels)]
+    passed = levels[np.concatenate([np.arange(i, i + n) for i, n in zip(first, counts, strict=True)])]
+
+    def function(x: Array) -> tuple[Array, Array]:
+        there = at(x)
+        found = np.broadcast_to(coordinate.value(there), (1, len(x)))[0] - passed
+        return found, np.broadcast_to(coordinate.slope(there).value, (1, len(x)))[0]
+
+    return np.append(bracketed_roots(function, nodes[cells], nodes[cells + 1]), nodes[np.isin(value, levels)])
 
 
 def _turning(coordinate: Coordinate) -> WithSlope:
     def function(state: State) -> tuple[Array, Array]:
         slope = coordinate.slope(state)
         return slope.value, slope.derivative(1)
-
-    return function
-
-
-def _passing(coordinate: Coordinate, level: float) -> WithSlope:
-    def function(state: State) -> tuple[Array, Array]:
-        return coordinate.value(state) - level, coordinate.slope(state).value
 
     return function
 

@@ -62,7 +62,7 @@ def _of_one_drive(mechanism: Mechanism, reduction: xarray.Dataset) -> Rows:
 def reduction_parts(reduction: xarray.Dataset) -> tuple[list[str], list[list[str]]]:
     """Header and rows of a table: least, greatest and mean value of each part and of the whole, over the samples.
 
-    The mean is over the drive's value, with several drives over time, by the trapezoidal rule.
+    The mean is over the drive's value where one drive runs one way, else over time, by the trapezoidal rule.
     """
     along = _along(reduction)
     header = ["", _("unit"), _("least"), _("greatest"), _("mean")]
@@ -103,9 +103,11 @@ def _by_drives(reduction: xarray.Dataset, name: str, text: str, along: Array) ->
 
 
 def _along(reduction: xarray.Dataset) -> Array:
-    """What means are taken over."""
-    one = reduction["drive_value"].isel(drive=0) if "reduced_inertia" in reduction else reduction["time"]
-    return np.asarray(one.to_numpy())
+    """What means are taken over: the value of the only drive where it runs one way, else time."""
+    values, time = (np.asarray(reduction[name].to_numpy()) for name in ("drive_value", "time"))
+    steps = np.diff(values[:, 0])
+    one_way = "reduced_inertia" in reduction and bool((steps > 0.0).all() or (steps < 0.0).all())
+    return values[:, 0] if one_way else time
 
 
 def _extremes(values: Array, along: Array) -> list[str]:
