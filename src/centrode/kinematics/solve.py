@@ -95,7 +95,7 @@ def solve(
 ) -> Solved:
     """Motion at the samples of a span."""
     ready = fit_for(ready, span)
-    kinematics = ready.kinematics if numbers is None else _varied(ready.kinematics, numbers)
+    kinematics = ready.kinematics if numbers is None else plan_of_batch(ready.kinematics, numbers)
     samples = len(span.parameter)
     layout = layout_of(kinematics)
     axes, fixed = layout.axes, layout.axes * len(kinematics.numbers.frame)
@@ -170,7 +170,7 @@ def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> t
     return (max(low, 0.0), high) if path.driven[0].drive.kind == "distance" else (low, high)
 
 
-def _varied(kinematics: Kinematics, numbers: Dimensions) -> Kinematics:
+def plan_of_batch(kinematics: Kinematics, numbers: Dimensions) -> Kinematics:
     """The plan with the numbers of a batch; wheels mesh as they do in the description."""
     phases = kinematics.numbers.gearing.phase
     return with_phases(replace(kinematics, numbers=_upright(numbers)), phases)

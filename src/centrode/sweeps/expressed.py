@@ -12,8 +12,9 @@ import numpy.typing as npt
 from centrode.algebra.expressions import Node, as_node, variable
 from centrode.algebra.graphs import Graph
 from centrode.kinematics.compiled.judging import Judging
-from centrode.kinematics.compiled.traced import Traced, centre_of
+from centrode.kinematics.compiled.traced import Traced, before_of, centre_of
 from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of
+from centrode.kinematics.compiled.ways import Way, way_of
 from centrode.sweeps.arrays import Task
 from centrode.sweeps.folds import Folds
 from centrode.sweeps.slopes import Slopes
@@ -85,7 +86,8 @@ class Expressed:
         nodes = [node for column in self.columns.values() for node in column]
         nodes += [fold.value for fold in self.folds.found.values()]
         used = frozenset(Graph({str(k): node for k, node in enumerate([*nodes, residual])}).variables)
-        links = tuple(link for link in self.traced.turning if centre_of(link) in used)
+        told_by = before_of if self.traced.steps else centre_of
+        links = tuple(link for link in self.traced.turning if told_by(link) in used)
         names = tuple(dict.fromkeys([*self.varied.names, SCALE]))
         return Judging(self.traced, self.task.span.parameter, names, links, self.kernels, self.threads)
 
@@ -101,10 +103,16 @@ class Expressed:
         """What the variables of a place stand for at the samples."""
         return inputs_of(self.task.span)
 
+    @cached_property
+    def way(self) -> Way:
+        """The way past all samples, where there are groups of higher class."""
+        return way_of(self.task.ready.kinematics.path, self.inputs)
+
     @property
     def states(self) -> int:
         """Numbers of one mechanism while samples are passed."""
         folds = len(self.folds.found) if self.columns else 0
         by = 1 + (len(self.task.paths) if self.task.asked.slopes else 0)
         angles = 10 * len(self.judging.links)
-        return len(self.varied.names) + folds * by + angles + 2 * len(self.traced.radicands) + 2
+        walked = 2 * len(self.judging.walk.state) if self.traced.steps else 0
+        return len(self.varied.names) + folds * by + angles + walked + 2 * len(self.traced.radicands) + 2

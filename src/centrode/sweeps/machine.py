@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -23,9 +24,11 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
 from centrode.errors import Status
+from centrode.kinematics.compiled.beginnings import beginnings
 from centrode.kinematics.compiled.judging import scan_of
 from centrode.kinematics.compiled.traced import Untraceable, traced
 from centrode.kinematics.compiled.variables import PARAMETER, varied_of
+from centrode.kinematics.compiled.walks import SURE, Walking
 from centrode.kinematics.residuals import CLOSED
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
@@ -43,6 +46,7 @@ m = EXPRESSIONS
 
 NUMBER = 8
 """Bytes of a float64."""
+NOTHING_MORE: Mapping[str, Array] = MappingProxyType({})
 COPIES = 4
 """Of what a mechanism has while samples are passed: before, after, as kernels are given it."""
 
@@ -81,7 +85,7 @@ class MachineCodeExecutor:
         if kernels == MACHINE_CODE and not machine_code.PRESENT:
             raise Untraceable(mark("llvmlite is not installed"))
         varied = varied_of(numbers, values)
-        asked = Expressed(task, varied, traced(task.ready, task.span, varied), kernels, threads)
+        asked = Expressed(task, varied, traced(task.ready, task.span, varied, bool(task.asked.slopes)), kernels, threads)
         if task.asked.slopes:
             _ = asked.slopes  # what cannot be differentiated is told before anything is computed
         return cls(task, asked, threads, kernels)
@@ -96,6 +100,8 @@ class MachineCodeExecutor:
     def run(self, task: Task, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]) -> None:
         """Fill in all columns for the mechanisms of these dimensions."""
         rows = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
+        if self.asked.traced.steps:
+            rows |= beginnings(task.ready, numbers, len(next(iter(rows.values()))))
         judged = self.asked.judging.judge(rows)
         rows |= judged.values
         clear = judged.clear.copy()
@@ -103,7 +109,8 @@ class MachineCodeExecutor:
             everywhere = bool(clear.all())
             at: Any = slice(None) if everywhere else np.nonzero(clear)[0]
             some = rows if everywhere else {name: row[at] for name, row in rows.items()}
-            kernels = self._reduced if task.asked.reduced else self._written
+            written = self._walked if self.asked.traced.steps else self._written
+            kernels = self._reduced if task.asked.reduced else written
             clear[at] = kernels(some, at, results)
         left = np.nonzero(~clear)[0]
         most = self.arrays.lanes(task)
@@ -138,7 +145,7 @@ class MachineCodeExecutor:
             flat = results[name].reshape(len(results[name]), len(nodes))
             for k in range(len(nodes)):
                 flat[at, k] = found[f"{name} {k}"]
-        return self._judged(rows[RESIDUAL], rows.get(SLACK), at, results)
+        return self._judged(rows, at, results)
 
     def _passed(self, depth: int, rows: Values, lanes: int) -> Values:
         """The states after a pass over the samples."""
@@ -148,6 +155,9 @@ class MachineCodeExecutor:
         if depth == 0:
             parts.append(_judging_states(self.asked.judges))
         reduction = together(*parts)
+        if self.asked.traced.steps:
+            walking = Walking(self.asked.judging.walk, reduction)
+            return walking.reduced(self.asked.way, rows, self.kernels, self.threads)
         scan = scan_of(reduction, tuple(rows), tuple(self.asked.inputs))
         parameters = np.stack([rows[name] for name in scan.parameters]) if scan.parameters else None
         inputs = np.stack([self.asked.inputs[name] for name in scan.inputs]) if scan.inputs else None
@@ -157,22 +167,29 @@ class MachineCodeExecutor:
         state = runner(scan, self.kernels, threads=self.threads)(parameters, inputs, start, steps=steps).state
         return dict(zip(scan.state, state, strict=True))
 
-    def _judged(self, residual: Array, slack: Array | None, at: Any, results: Mapping[str, AnyArray]) -> Mask:
-        """Fill in what is said of every mechanism."""
+    def _judged(self, found: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
+        """Fill in what is said of every mechanism; returns which of them are clear at their samples too."""
         results["samples_ok"][at] = len(self.task.span.parameter)
-        results["worst_residual"][at] = residual
-        closed: Mask = residual <= 0.5 * CLOSED
-        return closed if slack is None else closed & (slack > 0.0)
+        results["worst_residual"][at] = found[RESIDUAL]
+        clear: Mask = found[RESIDUAL] <= 0.5 * CLOSED
+        for slack in {SLACK, SURE} & found.keys():
+            clear &= found[slack] > 0.0
+        return clear
 
     # every sample
 
     @cached_property
-    def _written_scan(self) -> Scan:
-        """Lanes are samples, steps are mechanisms: every output is written as one stream."""
+    def _outputs(self) -> dict[str, Node]:
+        """All that is written, and what samples are judged by."""
         outputs = {
             f"{name} {k}": node for name, nodes in self.asked.columns.items() for k, node in enumerate(nodes)
         }
-        outputs |= self.asked.judges
+        return outputs | self.asked.judges
+
+    @cached_property
+    def _written_scan(self) -> Scan:
+        """Lanes are samples, steps are mechanisms: every output is written as one stream."""
+        outputs = self._outputs
         used = Graph(outputs).variables
         along = tuple(name for name in self.asked.inputs if name in used or name == PARAMETER)
         return Scan(along, tuple(name for name in used if name not in along), outputs)
@@ -196,7 +213,31 @@ class MachineCodeExecutor:
         results["status"][at] = Status.OK
         return clear
 
-    def _kept(self, out: Array, places: npt.NDArray[np.intp], results: Mapping[str, AnyArray]) -> Mask:
+    def _walked(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
+        """The same where every place is found from the one before: lanes are mechanisms."""
+        outputs = self._outputs
+        walking = Walking(self.asked.judging.walk, outputs=outputs)
+        lanes, samples = len(next(iter(rows.values()))), len(self.task.span.parameter)
+        places = np.arange(len(results["samples_ok"]))[at]
+        most = limits.KERNEL_BUFFER // (NUMBER * len(outputs) * self.asked.way.steps)
+        most = max(limits.LEAST_LANES, most)
+        clear = np.empty(lanes, dtype=bool)
+        for first in range(0, lanes, most):
+            part = slice(first, min(first + most, lanes))
+            some = {name: row[part] for name, row in rows.items()}
+            out = np.empty((len(outputs), part.stop - first, samples))
+            state = walking.written(self.asked.way, some, self.kernels, self.threads, out)
+            clear[part] = self._kept(out, places[part], results, {SURE: state[SURE]})
+        results["status"][at] = Status.OK
+        return clear
+
+    def _kept(
+        self,
+        out: Array,
+        places: npt.NDArray[np.intp],
+        results: Mapping[str, AnyArray],
+        sure: Mapping[str, Array] = NOTHING_MORE,
+    ) -> Mask:
         """Take the outputs of some mechanisms from the buffer: (outputs, mechanisms, samples)."""
         whole = slice(int(places[0]), int(places[-1]) + 1)
         where: Any = whole if whole.stop - whole.start == len(places) else places
@@ -206,9 +247,10 @@ class MachineCodeExecutor:
             for k in range(len(nodes)):
                 target[where, :, k] = out[row]
                 row += 1
-        residual = out[row].max(axis=1)
-        slack = out[row + 1].min(axis=1) if SLACK in self.asked.judges else None
-        return self._judged(residual, slack, where, results)
+        found = {RESIDUAL: out[row].max(axis=1)}
+        if SLACK in self.asked.judges:
+            found[SLACK] = out[row + 1].min(axis=1)
+        return self._judged(found | dict(sure), where, results)
 
 
 def _judging_states(judges: Mapping[str, Node]) -> Reduction:

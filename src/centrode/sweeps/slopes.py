@@ -30,24 +30,23 @@ class Slopes:
     Attributes
     ----------
     through : path -> the variables of the plan that it moves
-    turns : name -> whole turns in angles, which jump and have no derivative
+    standing : name -> whole turns in angles, which jump and have no derivative; what is found by iteration
     folds : whose results have derivatives of their own, variables called by `by`
     """
 
     through: Mapping[str, Through]
-    turns: Mapping[str, Node]
+    standing: Mapping[str, Node]
     folds: Folds
 
     @classmethod
     def of(cls, paths: Sequence[str], varied: Varied, traced: Traced, folds: Folds) -> Slopes:
         """Derivatives by all paths that vary. Raises Untraceable for one that moves more than is known here."""
         through = {path: _through(path, varied) for path in paths}
-        turns = {f"turns {link}": node for link, node in traced.turns.items()}
-        return cls(through, turns, folds)
+        return cls(through, traced.standing, folds)
 
     def of_node(self, node: Node) -> dict[str, Node]:
         """Path -> derivative of an expression, that of the folds it uses included."""
-        standing = {turns: variable(name) for name, turns in self.turns.items()}
+        standing = {node: variable(name) for name, node in self.standing.items()}
         still = rebuilt({"": node}, lambda x, _arguments: standing.get(x))[""]
         used = frozenset(Graph({"": still}).variables)
         names = [fold.name for fold in self.folds.found.values() if fold.name in used]
@@ -63,7 +62,7 @@ class Slopes:
             for name, part in of_folds.items():
                 total = total + part * variable(by(name, path))
             found[path] = total
-        return dict(Graph.of(found).substituted(self.turns).outputs)
+        return dict(Graph.of(found).substituted(self.standing).outputs)
 
     def of_fold(self, fold: Fold) -> Reduction:
         """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""

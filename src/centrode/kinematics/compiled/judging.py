@@ -23,8 +23,11 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.jets import Jet
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
-from centrode.kinematics.compiled.traced import TURN, WHOLE, Traced, centre_of, winding_of
-from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.kinematics.compiled.traced import AWAY, MOST, Traced, centre_of, winding_of
+from centrode.kinematics.compiled.turns import TURN, whole_turns
+from centrode.kinematics.compiled.variables import FIRST, PARAMETER
+from centrode.kinematics.compiled.walks import SURE, Walk, Walking
+from centrode.kinematics.compiled.ways import way_of
 from centrode.kinematics.mesh import LOW, mesh_of
 from centrode.kinematics.sampling import SUSPECT
 
@@ -38,12 +41,8 @@ SAFE = 2.0
 """Margins of the search are kept this many times over: the last bits may differ from those of the arrays."""
 SPARSE = 4
 """Angles are followed at every fourth node of the mesh: 2 degrees of an angle drive."""
-MOST = 0.8
-"""Greatest change of an angle [rad] from one of these nodes to the next: faster links are left to the arrays."""
-AWAY = 0.2
-"""How far [rad] angles stay from half a turn off their centre."""
 WINDINGS = (0, 1, -1)
-SLACK, FIRST, START = "slack", "first", "start"
+SLACK, START = "slack", "start"
 
 
 @dataclass(frozen=True)
@@ -70,18 +69,26 @@ class Judging:
         """The nodes on which the arrays look for events."""
         return mesh_of(self.traced.solved.ready.kinematics.path, self.samples)
 
+    @cached_property
+    def walk(self) -> Walk:
+        """What is handed on along the path, where there are groups of higher class."""
+        return Walk(self.traced, self.links)
+
     def judge(self, values: Mapping[str, Array]) -> Judged:
-        """Judge the mechanisms of a batch."""
-        found = self._run(self._of_events, self._events_scan, values, {PARAMETER: self.mesh})
+        """Judge the mechanisms of a batch; with groups of higher class `values` have where walks begin.
+
+        What a walk along the samples finds out about these groups themselves is not looked at here.
+        """
+        found = self._events(values)
         lanes = len(next(iter(values.values())))
         clear = np.ones(lanes, dtype=bool)
-        if SLACK in found:
-            clear &= found[SLACK] > 0.0
+        for slack in {SLACK, SURE} & found.keys():
+            clear &= found[slack] > 0.0
         for group in self.traced.divisors:
             if f"least {group}" in found:
                 clear &= (found[f"least {group}"] > 0.0) | (found[f"most {group}"] < 0.0)
         further = {name: array for name, array in found.items() if name.startswith("largest")}
-        if self.links:
+        if self.links and not self.traced.steps:
             found = self._run(self._of_angles, self._angles_scan, values, self._sparse)
             for link in self.links:
                 clear &= self._centred(link, found, further)
@@ -101,6 +108,13 @@ class Judging:
         return dict(zip(scan.state, state, strict=True))
 
     # events
+
+    def _events(self, values: Mapping[str, Array]) -> Values:
+        walk = Walk(self.traced)
+        if walk.moves(list(self._of_events.state.values())):
+            way = way_of(self.traced.solved.ready.kinematics.path, {PARAMETER: self.mesh})
+            return Walking(walk, self._of_events).reduced(way, values, self.executor, self.threads)
+        return self._run(self._of_events, self._events_scan, values, {PARAMETER: self.mesh})
 
     @cached_property
     def _events_scan(self) -> Scan:
@@ -148,7 +162,7 @@ class Judging:
         for link in self.links:
             cosine, sine = self.traced.turning[link]
             raw, before = m.atan2(sine, cosine), variable(f"angle {link}")
-            angle = as_node(raw + TURN * (((before - raw) * (1.0 / TURN) + WHOLE) - WHOLE))
+            angle = as_node(raw + TURN * whole_turns(before, raw))
             jump = m.where(m.equal(variable(FIRST), 1.0), 0.0, m.abs(angle - before))
             there = m.where(m.equal(variable(START), 1.0), angle, variable(f"at start {link}"))
             parts.append(

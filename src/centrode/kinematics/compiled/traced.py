@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -18,12 +18,22 @@ import numpy.typing as npt
 
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.branches import branches_at_start
-from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, span_of_variables
+from centrode.kinematics.compiled.newton_steps import Step, newton_step
+from centrode.kinematics.compiled.turns import TURN, whole_turns
+from centrode.kinematics.compiled.variables import (
+    FIRST,
+    NODE_JETS,
+    PARAMETER,
+    Varied,
+    boxed,
+    span_of_variables,
+)
 from centrode.kinematics.evaluate import Hooks, Kinematics
+from centrode.kinematics.higher_class.chains import Chain
+from centrode.kinematics.higher_class.reduction import pattern_of
 from centrode.kinematics.layout import Layout, layout_of, positions_from
 from centrode.kinematics.phases import with_phases
 from centrode.kinematics.ready import Ready
@@ -33,6 +43,7 @@ from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import Span
 from centrode.kinematics.spins import spins_of
 from centrode.locale import mark
+from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
 from centrode.structure.positions import Positions
 from centrode.structure.wheels import Contact, contact_point
@@ -41,10 +52,12 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
 Number: TypeAlias = Any
 
-NODE_JETS = JetFunctions(EXPRESSIONS)
-TURN = 2.0 * np.pi
-WHOLE = 1.5 * 2.0**52
-"""Added and taken away again it leaves the nearest whole number: the bits behind the point do not fit."""
+MOST_FREE = 9
+"""Free coordinates of a group of higher class up to which it is compiled: code grows with their third power."""
+MOST = 0.8
+"""Greatest change of an angle [rad] from one place at which turns are counted to the next."""
+AWAY = 0.2
+"""How far [rad] angles stay from half a turn off what tells their turns."""
 
 
 class Untraceable(Exception):
@@ -65,23 +78,39 @@ class Traced:
     radicands, divisors : group -> jet of first order, or what does not move with the drive: events are their zeros
     turning : link -> cosine and sine of its angle where its turns have to be found
     turns : link -> the turns that stand in its angle: a whole number
+    steps : group of higher class -> its step; there are places before and after then, see `walks`
     """
 
     solved: Solved
     radicands: Mapping[int, Number]
     divisors: Mapping[int, Number]
     turning: Mapping[str, tuple[Operand, Operand]]
+    steps: Mapping[int, Step]
 
     @property
     def turns(self) -> dict[str, Node]:
-        return {link: as_node(turns_of(link, *rotor)) for link, rotor in self.turning.items()}
+        turns = turns_along if self.steps else turns_of
+        return {link: as_node(turns(link, *rotor)) for link, rotor in self.turning.items()}
+
+    @property
+    def standing(self) -> dict[str, Node]:
+        """Name -> what jumps, or is found by iteration: derivatives by dimensions take it as given."""
+        found = {f"turns {link}": node for link, node in self.turns.items()}
+        for step in self.steps.values():
+            found |= step.standing
+        return found
 
 
 class _Signs(Hooks):
-    """The signs of the initial position; radicands and divisors are kept."""
+    """The signs of the initial position; radicands, divisors and steps of groups of higher class are kept."""
 
-    def __init__(self, signs: Mapping[int, float]) -> None:
+    def __init__(
+        self, signs: Mapping[int, float], chains: Mapping[int, Chain], differentiable: bool
+    ) -> None:
         self.signs = signs
+        self.chains = chains
+        self.differentiable = differentiable
+        self.steps: dict[int, Step] = {}
         self.radicands: dict[int, Number] = {}
         self.divisors: dict[int, Number] = {}
 
@@ -97,7 +126,12 @@ class _Signs(Hooks):
         raise Untraceable(mark("gears or wheels whose turns are counted"))
 
     def higher(self, group: int, m: Any, at: Positions) -> None:
-        raise Untraceable(mark("groups of higher class"))
+        chain = self.chains[group]
+        self.steps[group] = step = newton_step(group, chain, at, self.differentiable)
+        for name in chain.group.points:
+            at.points[name] = step.at.points[name]
+        for name in chain.group.links:
+            at.poses[name], at.angles[name] = step.at.poses[name], step.at.angles[name]
 
 
 def refuse_untraceable(ready: Ready, span: Span) -> None:
@@ -105,8 +139,12 @@ def refuse_untraceable(ready: Ready, span: Span) -> None:
     kinematics = ready.kinematics
     if kinematics.path.by_time:
         raise Untraceable(mark("several drives"))
-    if any(isinstance(group, Newton) for group in ready.structure.groups):
-        raise Untraceable(mark("groups of higher class"))
+    for group in ready.structure.groups:
+        if isinstance(group, Newton):
+            if "gears" in kinematics.numbers.space.lacks:
+                raise Untraceable(mark("groups of higher class on the sphere"))
+            if pattern_of(group).free > MOST_FREE:
+                raise Untraceable(mark("a group of higher class with very many unknowns"))
     if np.any(kinematics.path.impossible(span.parameter)):
         raise Untraceable(mark("a cylinder shorter than zero"))
     curves = [kinematics.numbers.curve(guide.id) for guide in ready.mechanism.guides]
@@ -114,22 +152,32 @@ def refuse_untraceable(ready: Ready, span: Span) -> None:
         raise Untraceable(mark("guides that close"))
 
 
-def traced(ready: Ready, span: Span, varied: Varied) -> Traced:
+def chains_of(ready: Ready, numbers: Dimensions) -> dict[int, Chain]:
+    """The groups of higher class of a plan, with dimensions over any algebra."""
+    unit = float(ready.kinematics.numbers.scale)
+    groups = enumerate(ready.structure.groups)
+    return {i: Chain(group, numbers, unit) for i, group in groups if isinstance(group, Newton)}
+
+
+def traced(ready: Ready, span: Span, varied: Varied, differentiable: bool = False) -> Traced:
     """The motion of a mechanism of a batch at one place of the path.
 
+    `differentiable` makes what groups of higher class give depend on the dimensions as their equations say.
     Raises Untraceable.
     """
     refuse_untraceable(ready, span)
     kinematics = with_phases(
         replace(ready.kinematics, numbers=varied.numbers), ready.kinematics.numbers.gearing.phase
     )
-    hooks = _Signs(ready.assembled.signs)
+    chains = chains_of(ready, kinematics.numbers)
+    hooks = _Signs(ready.assembled.signs, chains, differentiable)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
     columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))
-    angles, turning = _angles(kinematics, layout, at, columns, ready.assembled.angles)
+    turns = turns_along if chains else turns_of
+    angles, turning = _angles(layout, at, columns, ready.assembled.angles, turns)
     solved = _solved(_Parts(ready, kinematics, layout, columns, angles), span, varied)
-    return Traced(solved, hooks.radicands, hooks.divisors, turning)
+    return Traced(solved, hooks.radicands, hooks.divisors, turning, hooks.steps)
 
 
 @dataclass(frozen=True)
@@ -152,7 +200,11 @@ def _derivative(x: Number, order: int) -> Operand:
 
 
 def _angles(
-    kinematics: Kinematics, layout: Layout, at: Positions, columns: Nodes, start: Mapping[str, float]
+    layout: Layout,
+    at: Positions,
+    columns: Nodes,
+    start: Mapping[str, float],
+    turns: Callable[[str, Operand, Operand], Operand],
 ) -> tuple[Nodes, dict[str, tuple[Operand, Operand]]]:
     """Angles with their derivatives as `turning.fill_angles` has them: (3, angles); rotors of those that may turn."""
     found = np.empty((ORDERS, len(layout.angles)), dtype=object)
@@ -167,7 +219,7 @@ def _angles(
             found[0, k] = _standing(cosine[0], sine[0], start[link])
             continue
         turning[link] = cosine[0], sine[0]
-        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns_of(link, cosine[0], sine[0])
+        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns(link, cosine[0], sine[0])
         for order in (1, 2):
             found[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
     return found, turning
@@ -182,7 +234,17 @@ def _standing(cosine: float, sine: float, start: float) -> float:
 def turns_of(link: str, cosine: Operand, sine: Operand) -> Operand:
     """The turns that bring an angle within half a turn of a centre that runs on with the drive."""
     centre = variable(centre_of(link)) + variable(winding_of(link)) * variable(PARAMETER)
-    return ((centre - EXPRESSIONS.atan2(sine, cosine)) * (1.0 / TURN) + WHOLE) - WHOLE
+    return whole_turns(centre, EXPRESSIONS.atan2(sine, cosine))
+
+
+def turns_along(link: str, cosine: Operand, sine: Operand) -> Operand:
+    """The turns that bring an angle within half a turn of what it was at the place before."""
+    return whole_turns(variable(before_of(link)), EXPRESSIONS.atan2(sine, cosine))
+
+
+def before_of(link: str) -> str:
+    """Name of a link's angle at the place before."""
+    return f"angle before {link}"
 
 
 def centre_of(link: str) -> str:

@@ -1,0 +1,140 @@
+"""Scans along the path of plans that have groups of higher class: each place is found from the one before."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.executors import runner
+from centrode.algebra.expression_functions import EXPRESSIONS
+from centrode.algebra.expressions import Node, as_node, variable
+from centrode.algebra.graphs import Graph
+from centrode.algebra.reductions import Reduction
+from centrode.algebra.scans import Scan
+from centrode.kinematics.compiled.traced import AWAY, MOST, Traced, before_of
+from centrode.kinematics.compiled.turns import TURN
+from centrode.kinematics.compiled.variables import FIRST, SAMPLE
+from centrode.kinematics.compiled.ways import Leg, Way
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Values: TypeAlias = Mapping[str, Array]
+
+m = EXPRESSIONS
+SURE = "sure"
+"""State of a walk: the least slack of all steps so far."""
+NOTHING = Reduction({}, {})
+
+
+@dataclass(frozen=True)
+class Walk:
+    """What is handed on from place to place.
+
+    Attributes
+    ----------
+    traced : the plan
+    links : whose turns are counted from place to place
+    """
+
+    traced: Traced
+    links: Sequence[str] = ()
+
+    @cached_property
+    def state(self) -> dict[str, Node]:
+        """Name -> its next value."""
+        found: dict[str, Node] = {}
+        slacks = [step.slack for step in self.traced.steps.values()]
+        for step in self.traced.steps.values():
+            found |= step.state
+        fresh = m.equal(variable(FIRST), 1.0)
+        for link in self.links:
+            cosine, sine = self.traced.turning[link]
+            angle = as_node(m.atan2(sine, cosine) + TURN * self.traced.turns[link])
+            most = m.where(fresh, np.pi - AWAY, MOST)
+            slacks.append(as_node(most - m.abs(angle - variable(before_of(link)))))
+            found[before_of(link)] = angle
+        found[SURE] = as_node(functools.reduce(m.min, slacks, variable(SURE)))
+        return found
+
+    @cached_property
+    def start(self) -> dict[str, float]:
+        """Name -> its first value, where that is the same for all mechanisms and known here."""
+        angles = self.traced.solved.ready.assembled.angles
+        return dict.fromkeys(self.state, 0.0) | {before_of(x): angles[x] for x in self.links} | {SURE: np.inf}
+
+    def moves(self, nodes: Sequence[Node]) -> bool:
+        """Whether nodes depend on what is handed on."""
+        return any(name in self.state for name in Graph({str(k): x for k, x in enumerate(nodes)}).variables)
+
+
+@dataclass(frozen=True)
+class Walking:
+    """A walk that reduces or writes something on its way.
+
+    Attributes
+    ----------
+    reduction : over the samples alone
+    outputs : name -> node; written at every place
+    """
+
+    walk: Walk
+    reduction: Reduction = NOTHING
+    outputs: Mapping[str, Node] = field(default_factory=dict)
+
+    def scan(self, leg: Leg) -> Scan:
+        """The scan of a leg."""
+        at_sample = m.equal(variable(SAMPLE), 1.0)
+        kept = {
+            name: as_node(m.where(at_sample, node, variable(name)))
+            for name, node in self.reduction.state.items()
+        }
+        states = {**self.walk.state, **kept}
+        used = Graph({**self.outputs, **{f"next {name}": node for name, node in states.items()}}).variables
+        return Scan(
+            tuple(name for name in used if name not in states and name not in leg.inputs),
+            tuple(name for name in leg.inputs if name in used),
+            self.outputs,
+            states,
+        )
+
+    def reduced(self, way: Way, values: Values, kernels: str, threads: int) -> dict[str, Array]:
+        """All states at the end, name -> (lanes,)."""
+        so_far: dict[str, Array] = {}
+        for leg in way.legs:
+            so_far = self._run(leg, values, so_far, kernels, threads, None)
+        return so_far
+
+    def written(
+        self, way: Way, values: Values, kernels: str, threads: int, out: Array
+    ) -> dict[str, Array]:
+        """Write outputs at the samples into `out` (outputs, lanes, samples); returns all states at the end."""
+        so_far: dict[str, Array] = {}
+        lanes = out.shape[1]
+        for leg in way.legs:
+            buffer = np.empty((len(self.outputs), leg.steps, lanes))
+            so_far = self._run(leg, values, so_far, kernels, threads, buffer)
+            if len(leg.asked):
+                out[:, :, leg.asked] = np.moveaxis(buffer[:, leg.places], 1, 2)
+        return so_far
+
+    def _run(
+        self, leg: Leg, values: Values, so_far: Values, kernels: str, threads: int, out: Array | None
+    ) -> dict[str, Array]:
+        scan = self.scan(leg)
+        lanes = len(next(iter(values.values())))
+        start = self.walk.start | dict(self.reduction.start)
+        kept = {*self.reduction.state, SURE} & so_far.keys()
+        rows = [
+            so_far[name] if name in kept else values[name] if name in values else np.full(lanes, start[name])
+            for name in scan.state
+        ]
+        parameters = np.stack([values[name] for name in scan.parameters]) if scan.parameters else None
+        inputs = np.stack([leg.inputs[name] for name in scan.inputs])
+        run = runner(scan, kernels, threads=threads)
+        state = run(parameters, inputs, np.stack(rows), out=out).state
+        return dict(zip(scan.state, state, strict=True))
