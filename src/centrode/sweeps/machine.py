@@ -85,7 +85,9 @@ class MachineCodeExecutor:
         if kernels == MACHINE_CODE and not machine_code.PRESENT:
             raise Untraceable(mark("llvmlite is not installed"))
         varied = varied_of(numbers, values)
-        asked = Expressed(task, varied, traced(task.ready, task.span, varied, bool(task.asked.slopes)), kernels, threads)
+        asked = Expressed(
+            task, varied, traced(task.ready, task.span, varied, bool(task.asked.slopes)), kernels, threads
+        )
         if task.asked.slopes:
             _ = asked.slopes  # what cannot be differentiated is told before anything is computed
         return cls(task, asked, threads, kernels)

@@ -1,12 +1,12 @@
 """The motions of many mechanisms: those without events as machine code where that pays, to the bits of `solve`.
 
 What is not rounded alike everywhere, the arc tangent, stays with NumPy. So a result does not tell how many
-mechanisms were computed with it.
+mechanisms were computed with it; only what groups of higher class give, and what stands on them, is rounded otherwise.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -20,17 +20,19 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.scans import Scan
 from centrode.errors import Status
 from centrode.kinematics.branches import Branches, branches_at_start
-from centrode.kinematics.compiled.judging import Judged, Judging
+from centrode.kinematics.compiled.beginnings import beginnings
+from centrode.kinematics.compiled.judging import SLACK, Judging
 from centrode.kinematics.compiled.traced import (
-    TURN,
-    WHOLE,
     Traced,
     Untraceable,
     centre_of,
     traced,
     winding_of,
 )
-from centrode.kinematics.compiled.variables import PARAMETER, SCALE, Varied, boxed, inputs_of, varied_of
+from centrode.kinematics.compiled.turns import TURN, whole_turns
+from centrode.kinematics.compiled.variables import PARAMETER, SCALE, boxed, inputs_of, varied_of
+from centrode.kinematics.compiled.walks import SURE, Walking
+from centrode.kinematics.compiled.ways import way_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED, Kept
@@ -41,6 +43,7 @@ from centrode.structure.dimensions import Dimensions
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
 Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 
 WORTH_COMPILING = 200_000
 """Samples, or nodes of the mesh if they are more, of all mechanisms from which on compiling pays."""
@@ -48,6 +51,7 @@ AT_ONCE = 256
 """Mechanisms between two reports of progress."""
 ORDERED = frozenset({"all_points", "angles", "slides", "spins"})
 """Arrays with the derivatives in front."""
+SINES = "sines"
 ROOMS = ("all_points", "angles", "slides", "spins", "contacts", "residual")
 
 
@@ -69,10 +73,14 @@ def solve_many(
     values = varied.values(numbers)
     if not values:
         return solve(ready, span, numbers, lanes, progress)
+    if plan.steps:
+        values |= beginnings(ready, numbers, lanes)
     judged = judging.judge(values)
     if np.mean(judged.clear) < 0.5:
         return solve(ready, span, numbers, lanes, progress)
-    return _Many(ready, span, numbers, lanes, varied, plan, judging, judged).solved(progress)
+    return _Many(ready, span, numbers, lanes, values | judged.values, plan, judging, judged.clear).solved(
+        progress
+    )
 
 
 @dataclass(frozen=True)
@@ -81,18 +89,19 @@ class _Many:
     span: Span
     numbers: Dimensions
     lanes: int
-    varied: Varied
+    values: Mapping[str, Array]
     plan: Traced
     judging: Judging
-    judged: Judged
+    clear: Mask
 
     def solved(self, progress: Progress | None) -> Solved:
-        rooms, sines, slack = self._written(progress)
-        self._angles(rooms["angles"], sines)
+        rooms, sure = self._walked(progress) if self.plan.steps else self._written(progress)
+        if SINES in rooms:
+            self._angles(rooms["angles"], rooms[SINES])
         residual = rooms["residual"]
-        clear = self.judged.clear & (residual.max(axis=1) <= 0.5 * CLOSED)
-        if slack is not None:
-            clear &= slack.min(axis=1) > 0.0
+        clear = self.clear & sure & (residual.max(axis=1) <= 0.5 * CLOSED)
+        if SLACK in rooms:
+            clear &= rooms[SLACK].min(axis=1) > 0.0
         status = np.full(residual.shape, Status.OK, dtype=np.int8)
         branches = self._branches()
         left = np.nonzero(~clear)[0]
@@ -119,19 +128,20 @@ class _Many:
     def _outputs(self) -> dict[str, Nodes]:
         """What is written: arrays of a Solved of one lane and one sample; cosines stand where angles will."""
         solved = self.plan.solved
-        angles: Nodes = solved.angles.copy()
-        for k, link in enumerate(solved.layout.angles):
-            if link in self.plan.turning:
-                angles[0, 0, 0, k] = self.plan.turning[link][0]
         found: dict[str, Nodes | None] = {name: getattr(solved, name) for name in ROOMS}
-        found["angles"] = angles
-        found["sines"] = boxed([sine for _cosine, sine in self.plan.turning.values()]).reshape(1, 1, -1)
+        if not self.plan.steps:
+            angles: Nodes = solved.angles.copy()
+            for k, link in enumerate(solved.layout.angles):
+                if link in self.plan.turning:
+                    angles[0, 0, 0, k] = self.plan.turning[link][0]
+            found["angles"] = angles
+            found[SINES] = boxed([sine for _cosine, sine in self.plan.turning.values()]).reshape(1, 1, -1)
         slack = self.judging.slack_at_samples
         if slack is not None:
-            found["slack"] = boxed([slack]).reshape(1, 1)
+            found[SLACK] = boxed([slack]).reshape(1, 1)
         return {name: nodes for name, nodes in found.items() if nodes is not None}
 
-    def _written(self, progress: Progress | None) -> tuple[dict[str, Array], Array, Array | None]:
+    def _written(self, progress: Progress | None) -> tuple[dict[str, Array], Mask]:
         """All samples of all mechanisms, each number one stream; arrays as `Solved` has them are views of that."""
         outputs = self._outputs()
         flat = [as_node(x) for nodes in outputs.values() for x in nodes.ravel()]
@@ -141,18 +151,30 @@ class _Many:
         scan = Scan(along, tuple(name for name in graph.variables if name not in along), graph.outputs)
         run = runner(scan, MACHINE_CODE, lanes_inside=True)
         room = np.empty((len(flat), self.lanes, len(self.span.parameter)))
-        values = self.varied.values(self.numbers) | self.judged.values
         of_samples = np.stack([inputs[name] for name in along])
         for rows in self._parts():
-            of_lanes = np.stack([values[name][rows] for name in scan.inputs]) if scan.inputs else None
+            of_lanes = np.stack([self.values[name][rows] for name in scan.inputs]) if scan.inputs else None
             run(of_samples, of_lanes, out=room[:, rows], steps=rows.stop - rows.start)
             if progress is not None:
                 progress(rows.stop, self.lanes)
-        found, first = {}, 0
-        for name, nodes in outputs.items():
-            found[name] = _placed(name, room[first : first + nodes.size], nodes.shape)
-            first += nodes.size
-        return found, found["sines"], found.get("slack")
+        return _rooms(outputs, room), np.ones(self.lanes, dtype=bool)
+
+    def _walked(self, progress: Progress | None) -> tuple[dict[str, Array], Mask]:
+        """The same where every place is found from the one before; and which mechanisms are sure to be right."""
+        outputs = self._outputs()
+        flat = [as_node(x) for nodes in outputs.values() for x in nodes.ravel()]
+        walking = Walking(
+            self.judging.walk, outputs=Graph({str(k): node for k, node in enumerate(flat)}).outputs
+        )
+        way = way_of(self.ready.kinematics.path, inputs_of(self.span))
+        room = np.empty((len(flat), self.lanes, len(self.span.parameter)))
+        sure = np.empty(self.lanes, dtype=bool)
+        for rows in self._parts():
+            some = {name: row[rows] for name, row in self.values.items()}
+            sure[rows] = walking.written(way, some, MACHINE_CODE, 1, room[:, rows])[SURE] > 0.0
+            if progress is not None:
+                progress(rows.stop, self.lanes)
+        return _rooms(outputs, room), sure
 
     def _parts(self) -> Iterator[slice]:
         for first in range(0, self.lanes, AT_ONCE):
@@ -162,12 +184,12 @@ class _Many:
         """Angles with their turns where their cosines stand."""
         layout, parameter = self.plan.solved.layout, self.span.parameter
         for k, link in enumerate(self.plan.turning):
-            centre, winding = (self.judged.values[of(link)][:, None] for of in (centre_of, winding_of))
+            centre, winding = (self.values[of(link)][:, None] for of in (centre_of, winding_of))
             for rows in self._parts():
                 angle = angles[0, rows, :, layout.angles.index(link)]
                 np.arctan2(sines[rows, :, k], angle, out=angle)
                 middle = centre[rows] + winding[rows] * parameter
-                turns = ((middle - angle) * (1.0 / TURN) + WHOLE) - WHOLE
+                turns = whole_turns(middle, angle)
                 angle += TURN * turns
 
     def _branches(self) -> Branches:
@@ -201,6 +223,15 @@ class _Many:
         return self._some(
             lanes[lanes < (first[0] // size + 1) * size] if len(lanes) else first
         ).worst_constraint
+
+
+def _rooms(outputs: Mapping[str, Nodes], room: Array) -> dict[str, Array]:
+    """Numbers (numbers, lanes, samples) by the names of what they are."""
+    found, first = {}, 0
+    for name, nodes in outputs.items():
+        found[name] = _placed(name, room[first : first + nodes.size], nodes.shape)
+        first += nodes.size
+    return found
 
 
 def _placed(name: str, room: Array, shape: tuple[int, ...]) -> Array:

@@ -62,7 +62,11 @@ class Matrix:
     def numbers(self) -> list[Operand]:
         """All that solving takes."""
         found = [x for rows in (self.inverse, self.across) for row in rows for x in row]
-        return [*found, *(over for _row, _column, over in self.leaves), *(x for arm in self.arms for x in arm)]
+        return [
+            *found,
+            *(over for _row, _column, over in self.leaves),
+            *(x for arm in self.arms for x in arm),
+        ]
 
     def solved(self, right: Sequence[Operand]) -> list[Operand]:
         """The free coordinates that answer right sides."""

@@ -5,7 +5,7 @@ one step with a matrix of its own, one more with the same, and one with a matrix
 rounding; the last matrix gives the derivatives as well. Whether that was the group's own curve, and regular all
 the way, is told by `slack`:
 
-Between two places the matrix A changes by D. Where the greatest row sum of |A^-1| |D| stays below one, no matrix
+Between two places the matrix A changes by D (for a short step as much more as goes into a long one). Where the greatest row sum of |A^-1| |D| stays below one, no matrix
 on the way is singular (Banach's lemma; Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 2002,
 section 7.1), so the curve runs on over the drive's value without a limit or a change point, and the place found
 is on it: Newton's steps shrink at once (Kantorovich).
@@ -23,9 +23,9 @@ from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Vector, is_literal_zero, turned
 from centrode.kinematics.compiled.matrices import Matrix
-from centrode.kinematics.compiled.small_systems import dot, minus, sizes, times
+from centrode.kinematics.compiled.small_systems import dot, minus, multiplied, plus, sizes, times, total
 from centrode.kinematics.compiled.turns import TURN, whole_turns
-from centrode.kinematics.compiled.variables import FIRST, NODE_JETS, STEP
+from centrode.kinematics.compiled.variables import FIRST, NODE_JETS, SHARE, STEP
 from centrode.kinematics.higher_class.chains import Chain, Posture
 from centrode.kinematics.higher_class.surroundings import needed, plain
 from centrode.kinematics.higher_class.system import cut
@@ -35,7 +35,7 @@ Number: TypeAlias = Any
 
 m = EXPRESSIONS
 
-CHANGE = 0.25
+CHANGE = 0.4
 """Greatest change of a matrix from one place to the next, in itself."""
 CONDITION = 1e-3
 """Part of its own numbers that counts as changed in any case: matrices of a condition above 250 are not clear."""
@@ -45,8 +45,8 @@ WRONG = 0.01
 """By how much a foretold place may be wrong, likewise."""
 SHRINKING, FAINT = 0.1, 1e-9
 """What part of a step the next one with the same matrix may be, and a step below which nothing is asked."""
-LAST = 1e-13
-"""Greatest last step: by the square of it, but for rounding, a place is wrong."""
+LAST = 1e-9
+"""Greatest last step: by the square of it, but for rounding, a place is wrong, and so are its derivatives."""
 
 
 @dataclass(frozen=True)
@@ -138,8 +138,8 @@ class _Stepping:
         matrix = self._matrix(nearer)
         three = matrix.solved(self._gaps(nearer, matrix.arms))
         found = self._moved(nearer, three)
-        rates = self._rate(found, matrix, 1, [Jet((0.0, 0.0))] * self.free)
-        bends = self._rate(found, matrix, 2, [Jet((0.0, x, 0.0)) for x in rates])
+        rates, bends = self._rates(nearer, matrix, self.rests, self.rests)
+        rates, bends = self._rates(found, matrix, rates, bends)
         state = self._state(found, rates, bends, matrix)
         slack = self._slack(matrix, ahead, one, two, three)
         whole = self._with_turns(found)
@@ -167,20 +167,32 @@ class _Stepping:
             columns.append([x.coefficients[1] if isinstance(x, Jet) else 0.0 for x in equations])
         return Matrix.of(self.chain, columns, arms)
 
-    def _rate(self, posture: Posture, matrix: Matrix, order: int, motion: Sequence[Jet]) -> list[Operand]:
-        """The next Taylor coefficient of the free coordinates, from those of lower order."""
+    def _rates(
+        self, posture: Posture, matrix: Matrix, first: Sequence[Operand], second: Sequence[Operand]
+    ) -> tuple[list[Operand], list[Operand]]:
+        """First and second Taylor coefficients of the free coordinates, from nearly right ones and a matrix near by."""
+        rates = self._righted_by(posture, matrix, [(0.0, x) for x in first])
+        bends = self._righted_by(posture, matrix, [(0.0, *pair) for pair in zip(rates, second, strict=True)])
+        return rates, bends
+
+    def _righted_by(
+        self, posture: Posture, matrix: Matrix, coefficients: Sequence[Sequence[Operand]]
+    ) -> list[Operand]:
+        """The last coefficients, made such that the equations hold to their order."""
+        order = len(coefficients[0]) - 1
         known = self.known.mapped(lambda x: cut(x, order))
-        moving = [x if any(not is_literal_zero(c) for c in x.coefficients) else 0.0 for x in motion]
-        at = self.chain.positions(known, self._with_turns(posture), moving)
+        motion = [0.0 if all(map(is_literal_zero, c)) else Jet(c) for c in coefficients]
+        at = self.chain.positions(known, self._with_turns(posture), motion)
         equations = self.chain.equations(NODE_JETS, at, matrix.arms)
-        return matrix.solved(
+        off = matrix.solved(
             [minus(0.0, x.coefficients[order]) if isinstance(x, Jet) else 0.0 for x in equations]
         )
+        return [plus(c[order], x) for c, x in zip(coefficients, off, strict=True)]
 
     # the free coordinates
 
     def _moved(self, posture: Posture, by: Sequence[Operand], far: bool = False) -> Posture:
-        """A posture with its free coordinates changed, the rotors of unit length; `far` is exact for more than a little."""
+        """A posture with its free coordinates changed; `far` is exact for more than a little."""
         rotors, angles, places = dict(posture.rotors), dict(posture.angles), dict(posture.places)
         for follow in self.chain.pattern.follows:
             name = follow.entity.name
@@ -219,18 +231,20 @@ class _Stepping:
 
     def _slack(self, matrix: Matrix, ahead: Sequence[Operand], *steps: Sequence[Operand]) -> Node:
         """The least of what is left of all that is allowed, each counted in its own measure."""
-        one, two, three = (_greatest(step) for step in steps)
-        fresh = m.equal(variable(FIRST), 1.0)
-        change = [[times(CONDITION, x) for x in row] for row in sizes(matrix.core)]
+        one, two, three = (greatest(step) for step in steps)
+        change: list[list[Operand]] = [[0.0] * len(matrix.core) for _row in matrix.core]
         for (i, j), x in matrix.changing:
-            off = m.where(fresh, 0.0, m.abs(x - variable(self._before(i, j))))
-            change[i][j] = change[i][j] + off
-        sums = [functools.reduce(lambda a, b: a + b, row) for row in change]
-        changed = _greatest([dot(row, sums) for row in sizes(matrix.inverse)])
+            change[i][j] = as_node(x - variable(self._before(i, j)))
+        # as if the step were the longest: so the samples asked for do not matter; none before the first
+        share = m.where(m.equal(variable(FIRST), 1.0), 0.0, variable(SHARE))
+        moved = [total(row) for row in sizes(multiplied(matrix.inverse, change))]
+        own = [total(row) for row in sizes(matrix.core)]
+        condition = [dot(row, own) for row in sizes(matrix.inverse)]
+        changed = plus(times(share, greatest(moved)), times(CONDITION, greatest(condition)))
         shrunk = SHRINKING * one + FAINT - two
         parts = [
             (CHANGE - changed) * (1.0 / CHANGE),
-            (FARTHEST - _greatest(ahead)) * (1.0 / FARTHEST),
+            (FARTHEST - greatest(ahead)) * (1.0 / FARTHEST),
             (WRONG - one) * (1.0 / WRONG),
             shrunk * (1.0 / WRONG),
             (LAST - three) * (1.0 / LAST),
@@ -249,15 +263,11 @@ class _Stepping:
     def _by_implication(
         self, found: Posture, rates: Sequence[Operand], bends: Sequence[Operand], matrix: Matrix
     ) -> tuple[Posture, list[Operand], list[Operand]]:
-        """The same numbers by a last step of Newton's from where they stand: it moves with the dimensions as they do."""
+        """The same numbers by a last step of Newton's from where they stand, which moves with the dimensions."""
         at = self.chain.positions(self.values, found, self.rests)
         gaps = [minus(0.0, x) for x in self.chain.equations(m, at, matrix.arms)]
         posture = self._moved(found, matrix.solved(gaps))
-        more = self._rate(posture, matrix, 1, [Jet((0.0, x)) for x in rates])
-        rates = [x + y for x, y in zip(rates, more, strict=True)]
-        motion = [Jet((0.0, x, y)) for x, y in zip(rates, bends, strict=True)]
-        more = self._rate(posture, matrix, 2, motion)
-        return posture, rates, [x + y for x, y in zip(bends, more, strict=True)]
+        return posture, *self._rates(posture, matrix, rates, bends)
 
 
 def _rotor(turn: Operand, far: bool) -> Vector:
@@ -278,6 +288,6 @@ def _righted(rotor: Vector) -> Vector:
     return cosine * factor, sine * factor
 
 
-def _greatest(values: Sequence[Operand]) -> Operand:
+def greatest(values: Sequence[Operand]) -> Operand:
     """The greatest size; NaN where one is."""
     return functools.reduce(m.max, [m.abs(x) for x in values])

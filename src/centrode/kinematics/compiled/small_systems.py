@@ -5,6 +5,7 @@ Up to three unknowns by cofactors, more by elimination in which rows are exchang
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -40,12 +41,21 @@ def product(matrix: Matrix, vector: Vector) -> list[Operand]:
     return [dot(row, vector) for row in matrix]
 
 
+def multiplied(first: Matrix, second: Matrix) -> list[list[Operand]]:
+    """Product of two matrices."""
+    columns = list(zip(*second, strict=True))
+    return [[dot(row, column) for column in columns] for row in first]
+
+
 def dot(a: Vector, b: Vector) -> Operand:
     """Scalar product."""
-    total: Operand = 0.0
-    for x, y in zip(a, b, strict=True):
-        total = plus(total, times(x, y))
-    return total
+    return total([times(x, y) for x, y in zip(a, b, strict=True)])
+
+
+def total(values: Vector) -> Operand:
+    """Sum."""
+    start: Operand = 0.0
+    return functools.reduce(plus, values, start)
 
 
 def sizes(matrix: Matrix) -> list[list[Operand]]:

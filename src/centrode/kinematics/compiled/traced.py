@@ -24,7 +24,6 @@ from centrode.kinematics.branches import branches_at_start
 from centrode.kinematics.compiled.newton_steps import Step, newton_step
 from centrode.kinematics.compiled.turns import TURN, whole_turns
 from centrode.kinematics.compiled.variables import (
-    FIRST,
     NODE_JETS,
     PARAMETER,
     Varied,
@@ -104,9 +103,7 @@ class Traced:
 class _Signs(Hooks):
     """The signs of the initial position; radicands, divisors and steps of groups of higher class are kept."""
 
-    def __init__(
-        self, signs: Mapping[int, float], chains: Mapping[int, Chain], differentiable: bool
-    ) -> None:
+    def __init__(self, signs: Mapping[int, float], chains: Mapping[int, Chain], differentiable: bool) -> None:
         self.signs = signs
         self.chains = chains
         self.differentiable = differentiable

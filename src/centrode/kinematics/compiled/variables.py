@@ -21,8 +21,10 @@ Number: TypeAlias = Any
 
 NODE_JETS = JetFunctions(EXPRESSIONS)
 PARAMETER, TIME, RATE, SECOND_RATE, SCALE = "parameter", "time", "rate", "second rate", "scale"
-STEP, FIRST, SAMPLE = "step", "first", "sample"
-"""Of a walk along the path: how far the place before is, whether there is none, whether the place is a sample."""
+STEP, SHARE, FIRST, SAMPLE = "step", "share", "first", "sample"
+"""Of a walk along the path: how far the place before is, how often that goes into the longest step, whether there is
+none, whether the place is a sample."""
+ALONG = (PARAMETER, TIME, RATE, SECOND_RATE, STEP, SHARE, FIRST, SAMPLE)
 
 
 def boxed(values: Sequence[Any]) -> Nodes:

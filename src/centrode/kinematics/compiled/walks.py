@@ -19,7 +19,7 @@ from centrode.algebra.reductions import Reduction
 from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.traced import AWAY, MOST, Traced, before_of
 from centrode.kinematics.compiled.turns import TURN
-from centrode.kinematics.compiled.variables import FIRST, SAMPLE
+from centrode.kinematics.compiled.variables import ALONG, FIRST, SAMPLE
 from centrode.kinematics.compiled.ways import Leg, Way
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -86,8 +86,9 @@ class Walking:
     reduction: Reduction = NOTHING
     outputs: Mapping[str, Node] = field(default_factory=dict)
 
-    def scan(self, leg: Leg) -> Scan:
-        """The scan of a leg."""
+    @cached_property
+    def scan(self) -> Scan:
+        """The scan of either leg."""
         at_sample = m.equal(variable(SAMPLE), 1.0)
         kept = {
             name: as_node(m.where(at_sample, node, variable(name)))
@@ -96,8 +97,8 @@ class Walking:
         states = {**self.walk.state, **kept}
         used = Graph({**self.outputs, **{f"next {name}": node for name, node in states.items()}}).variables
         return Scan(
-            tuple(name for name in used if name not in states and name not in leg.inputs),
-            tuple(name for name in leg.inputs if name in used),
+            tuple(name for name in used if name not in states and name not in ALONG),
+            tuple(name for name in ALONG if name in used),
             self.outputs,
             states,
         )
@@ -109,9 +110,7 @@ class Walking:
             so_far = self._run(leg, values, so_far, kernels, threads, None)
         return so_far
 
-    def written(
-        self, way: Way, values: Values, kernels: str, threads: int, out: Array
-    ) -> dict[str, Array]:
+    def written(self, way: Way, values: Values, kernels: str, threads: int, out: Array) -> dict[str, Array]:
         """Write outputs at the samples into `out` (outputs, lanes, samples); returns all states at the end."""
         so_far: dict[str, Array] = {}
         lanes = out.shape[1]
@@ -125,7 +124,7 @@ class Walking:
     def _run(
         self, leg: Leg, values: Values, so_far: Values, kernels: str, threads: int, out: Array | None
     ) -> dict[str, Array]:
-        scan = self.scan(leg)
+        scan = self.scan
         lanes = len(next(iter(values.values())))
         start = self.walk.start | dict(self.reduction.start)
         kept = {*self.reduction.state, SURE} & so_far.keys()

@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.compiled.variables import FIRST, PARAMETER, SAMPLE, STEP
+from centrode.kinematics.compiled.variables import FIRST, PARAMETER, SAMPLE, SHARE, STEP
 from centrode.kinematics.paths import Path
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -20,6 +20,8 @@ Places: TypeAlias = npt.NDArray[np.intp]
 
 NODES = 2
 """Longest step, in nodes of the mesh of events: 1 degree of an angle drive."""
+MOST_SHARE = 1e6
+"""Steps shorter than this part of the longest one tell nothing of rates."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ class Way:
 
 
 def way_of(path: Path, inputs: Mapping[str, Array]) -> Way:
-    """The way past all that is asked for, name -> (samples,), and a step beyond its ends."""
+    """The way past all that is asked for, name -> (samples,)."""
     off = inputs[PARAMETER] - path.initial
     order = np.argsort(off, kind="stable")
     ahead, behind = order[off[order] >= 0.0], order[off[order] < 0.0][::-1]
@@ -66,11 +68,14 @@ def way_of(path: Path, inputs: Mapping[str, Array]) -> Way:
 
 def _leg(initial: float, longest: float, inputs: Mapping[str, Array], asked: Places) -> Leg:
     parameter, places = _filled(initial, longest, inputs[PARAMETER][asked])
-    found = {name: np.zeros(len(parameter)) for name in (*inputs, STEP, FIRST, SAMPLE)}
+    found = {name: np.zeros(len(parameter)) for name in (*inputs, STEP, SHARE, FIRST, SAMPLE)}
     for name, values in inputs.items():
         found[name][places] = values[asked]
     found[PARAMETER] = parameter
     found[STEP][1:] = np.diff(parameter)
+    with np.errstate(divide="ignore"):
+        share = longest / found[STEP]
+    found[SHARE][:] = np.where(np.abs(share) < MOST_SHARE, share, 0.0)
     found[FIRST][0] = 1.0
     found[SAMPLE][places] = 1.0
     return Leg(found, places, asked)
@@ -78,14 +83,15 @@ def _leg(initial: float, longest: float, inputs: Mapping[str, Array], asked: Pla
 
 def _filled(initial: float, longest: float, asked: Array) -> tuple[Array, Places]:
     """Places with no longer steps than that, and which of them are those asked for."""
-    last = asked[-1] if len(asked) else initial
-    stops = np.concatenate([[initial], asked, [last + longest]])
+    if not len(asked):
+        return np.array([initial]), np.zeros(0, dtype=np.intp)
+    stops = np.concatenate([[initial], asked])
     counts = np.maximum(1, np.ceil(np.diff(stops) / longest * (1.0 - 1e-9)).astype(np.intp))
     parts = [
         start + (stop - start) * np.arange(1, count + 1) / count if count > 1 else [stop]
         for start, stop, count in zip(stops[:-1], stops[1:], counts, strict=True)
     ]
     parameter = np.concatenate([[initial], *parts])
-    places = np.cumsum(counts)[: len(asked)]
+    places = np.cumsum(counts)
     parameter[places] = asked  # to the last bit
     return parameter, places.astype(np.intp)

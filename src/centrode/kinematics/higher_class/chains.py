@@ -114,9 +114,7 @@ class Chain:
         turn, rotor = motion[follow.turn], posture.rotors[follow.entity.name]
         if _moves(turn):
             rotor = turned(rotor, _rotor_of_zero(turn))
-        there = (
-            self._shifted(follow, posture, motion) if follow.by is None else at.points[follow.by.point]
-        )
+        there = self._shifted(follow, posture, motion) if follow.by is None else at.points[follow.by.point]
         return pose_with_point(self._pivot(follow), there, rotor)
 
     def _shifted(self, follow: Follow, posture: Posture, motion: Sequence[Number]) -> Vector:
