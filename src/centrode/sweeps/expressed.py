@@ -12,7 +12,8 @@ import numpy.typing as npt
 from centrode.algebra.expressions import Node, as_node, variable
 from centrode.algebra.graphs import Graph
 from centrode.kinematics.compiled.judging import Judging
-from centrode.kinematics.compiled.traced import Traced, before_of, centre_of
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.turns import before_of, centre_of
 from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, inputs_of
 from centrode.kinematics.compiled.ways import Way, way_of
 from centrode.sweeps.arrays import Task

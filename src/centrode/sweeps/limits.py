@@ -23,9 +23,6 @@ KERNEL_LANES = 1 << 16
 KERNEL_BUFFER = 2_000_000
 """Bytes of the buffer that machine code writes samples to: it should stay in the cache."""
 
-LEAST_LANES = 64
-"""Mechanisms that machine code takes together at least, where each is followed along the path."""
-
 BLOCK_BYTES = 32_000_000
 """Bytes of one block's results."""
 

@@ -26,7 +26,8 @@ from centrode.algebra.scans import Scan
 from centrode.errors import Status
 from centrode.kinematics.compiled.beginnings import beginnings
 from centrode.kinematics.compiled.judging import scan_of
-from centrode.kinematics.compiled.traced import Untraceable, traced
+from centrode.kinematics.compiled.signs import Untraceable
+from centrode.kinematics.compiled.traced import traced
 from centrode.kinematics.compiled.variables import PARAMETER, varied_of
 from centrode.kinematics.compiled.walks import SURE, Walking
 from centrode.kinematics.residuals import CLOSED
@@ -221,8 +222,7 @@ class MachineCodeExecutor:
         walking = Walking(self.asked.judging.walk, outputs=outputs)
         lanes, samples = len(next(iter(rows.values()))), len(self.task.span.parameter)
         places = np.arange(len(results["samples_ok"]))[at]
-        most = limits.KERNEL_BUFFER // (NUMBER * len(outputs) * self.asked.way.steps)
-        most = max(limits.LEAST_LANES, most)
+        most = max(1, limits.KERNEL_BUFFER // (NUMBER * len(outputs) * samples))
         clear = np.empty(lanes, dtype=bool)
         for first in range(0, lanes, most):
             part = slice(first, min(first + most, lanes))

@@ -11,7 +11,8 @@ from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.gradients import gradient
 from centrode.algebra.graphs import Graph, rebuilt
 from centrode.algebra.reductions import Reduction
-from centrode.kinematics.compiled.traced import Traced, Untraceable
+from centrode.kinematics.compiled.signs import Untraceable
+from centrode.kinematics.compiled.traced import Traced
 from centrode.kinematics.compiled.variables import Varied
 from centrode.locale import mark
 from centrode.structure.gearing import Straight

@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.compiled.newton_steps import Names, numbers_of
-from centrode.kinematics.compiled.traced import chains_of
+from centrode.kinematics.compiled.postures import Names, numbers_of
+from centrode.kinematics.compiled.signs import chains_of
 from centrode.kinematics.evaluate import Hooks
 from centrode.kinematics.higher_class.newton import newton
 from centrode.kinematics.higher_class.places import starts
@@ -54,7 +54,7 @@ def _of_some(ready: Ready, numbers: Dimensions, lanes: int) -> dict[str, Array]:
         blank = around.blank(everyone)
         at = blank.at(np, Positions({}, {}, {}, {}), state)
         posture = chain.posture(at)
-        labels = Names(group, chain).labels()
+        labels = Names(group, chain).labels
         for name, values in zip(numbers_of(labels), numbers_of(posture), strict=True):
             found[name] = np.array(np.broadcast_to(values, lanes), dtype=np.float64)
     return found

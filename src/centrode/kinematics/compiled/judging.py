@@ -23,11 +23,12 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.jets import Jet
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
-from centrode.kinematics.compiled.traced import AWAY, MOST, Traced, centre_of, winding_of
-from centrode.kinematics.compiled.turns import TURN, whole_turns
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.turns import AWAY, MOST, TURN, centre_of, whole_turns, winding_of
 from centrode.kinematics.compiled.variables import FIRST, PARAMETER
 from centrode.kinematics.compiled.walks import SURE, Walk, Walking
 from centrode.kinematics.compiled.ways import way_of
+from centrode.kinematics.continuation import WINDOW
 from centrode.kinematics.mesh import LOW, mesh_of
 from centrode.kinematics.sampling import SUSPECT
 
@@ -112,9 +113,18 @@ class Judging:
     def _events(self, values: Mapping[str, Array]) -> Values:
         walk = Walk(self.traced)
         if walk.moves(list(self._of_events.state.values())):
-            way = way_of(self.traced.solved.ready.kinematics.path, {PARAMETER: self.mesh})
+            way = way_of(self.traced.solved.ready.kinematics.path, {PARAMETER: self._near})
             return Walking(walk, self._of_events).reduced(way, values, self.executor, self.threads)
         return self._run(self._of_events, self._events_scan, values, {PARAMETER: self.mesh})
+
+    @property
+    def _near(self) -> Array:
+        """The nodes on which an event would matter to a sample, or to the way from the initial position to it."""
+        path = self.traced.solved.ready.kinematics.path
+        ends = np.append(self.samples, path.initial)
+        beyond = WINDOW * path.unit + 2.0 * path.step
+        near: Array = self.mesh[(self.mesh >= ends.min() - beyond) & (self.mesh <= ends.max() + beyond)]
+        return near
 
     @cached_property
     def _events_scan(self) -> Scan:

@@ -22,14 +22,9 @@ from centrode.errors import Status
 from centrode.kinematics.branches import Branches, branches_at_start
 from centrode.kinematics.compiled.beginnings import beginnings
 from centrode.kinematics.compiled.judging import SLACK, Judging
-from centrode.kinematics.compiled.traced import (
-    Traced,
-    Untraceable,
-    centre_of,
-    traced,
-    winding_of,
-)
-from centrode.kinematics.compiled.turns import TURN, whole_turns
+from centrode.kinematics.compiled.signs import Untraceable
+from centrode.kinematics.compiled.traced import Traced, traced
+from centrode.kinematics.compiled.turns import TURN, centre_of, whole_turns, winding_of
 from centrode.kinematics.compiled.variables import PARAMETER, SCALE, boxed, inputs_of, varied_of
 from centrode.kinematics.compiled.walks import SURE, Walking
 from centrode.kinematics.compiled.ways import way_of

@@ -21,8 +21,9 @@ from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.branches import branches_at_start
-from centrode.kinematics.compiled.newton_steps import Step, newton_step
-from centrode.kinematics.compiled.turns import TURN, whole_turns
+from centrode.kinematics.compiled.newton_steps import Step
+from centrode.kinematics.compiled.signs import Signs, chains_of, refuse_untraceable
+from centrode.kinematics.compiled.turns import TURN, turns_along, turns_of
 from centrode.kinematics.compiled.variables import (
     NODE_JETS,
     PARAMETER,
@@ -30,9 +31,7 @@ from centrode.kinematics.compiled.variables import (
     boxed,
     span_of_variables,
 )
-from centrode.kinematics.evaluate import Hooks, Kinematics
-from centrode.kinematics.higher_class.chains import Chain
-from centrode.kinematics.higher_class.reduction import pattern_of
+from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.layout import Layout, layout_of, positions_from
 from centrode.kinematics.phases import with_phases
 from centrode.kinematics.ready import Ready
@@ -41,30 +40,12 @@ from centrode.kinematics.sampling import ORDERS
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import Span
 from centrode.kinematics.spins import spins_of
-from centrode.locale import mark
-from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Newton
 from centrode.structure.positions import Positions
 from centrode.structure.wheels import Contact, contact_point
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
 Number: TypeAlias = Any
-
-MOST_FREE = 9
-"""Free coordinates of a group of higher class up to which it is compiled: code grows with their third power."""
-MOST = 0.8
-"""Greatest change of an angle [rad] from one place at which turns are counted to the next."""
-AWAY = 0.2
-"""How far [rad] angles stay from half a turn off what tells their turns."""
-
-
-class Untraceable(Exception):
-    """The plan does something that expressions cannot say; `reason` is told to the user."""
-
-    def __init__(self, reason: str) -> None:
-        self.reason = reason
-        super().__init__(reason)
 
 
 @dataclass(frozen=True)
@@ -78,6 +59,7 @@ class Traced:
     turning : link -> cosine and sine of its angle where its turns have to be found
     turns : link -> the turns that stand in its angle: a whole number
     steps : group of higher class -> its step; there are places before and after then, see `walks`
+    counted : what a gear or wheel depends on -> its turns, and its angle with these
     """
 
     solved: Solved
@@ -85,6 +67,7 @@ class Traced:
     divisors: Mapping[int, Number]
     turning: Mapping[str, tuple[Operand, Operand]]
     steps: Mapping[int, Step]
+    counted: Mapping[str, tuple[Node, Node]]
 
     @property
     def turns(self) -> dict[str, Node]:
@@ -95,65 +78,10 @@ class Traced:
     def standing(self) -> dict[str, Node]:
         """Name -> what jumps, or is found by iteration: derivatives by dimensions take it as given."""
         found = {f"turns {link}": node for link, node in self.turns.items()}
+        found |= {f"turns counted {key}": turns for key, (turns, _angle) in self.counted.items()}
         for step in self.steps.values():
             found |= step.standing
         return found
-
-
-class _Signs(Hooks):
-    """The signs of the initial position; radicands, divisors and steps of groups of higher class are kept."""
-
-    def __init__(self, signs: Mapping[int, float], chains: Mapping[int, Chain], differentiable: bool) -> None:
-        self.signs = signs
-        self.chains = chains
-        self.differentiable = differentiable
-        self.steps: dict[int, Step] = {}
-        self.radicands: dict[int, Number] = {}
-        self.divisors: dict[int, Number] = {}
-
-    def root(self, group: int, radicand: Number) -> Number:
-        self.radicands[group] = radicand
-        return NODE_JETS.sqrt(radicand) * self.signs[group]
-
-    def divisor(self, group: int, divisor: Number) -> Number:
-        self.divisors[group] = divisor
-        return divisor
-
-    def continued(self, group: int, key: str, angle: Number) -> Number:
-        raise Untraceable(mark("gears or wheels whose turns are counted"))
-
-    def higher(self, group: int, m: Any, at: Positions) -> None:
-        chain = self.chains[group]
-        self.steps[group] = step = newton_step(group, chain, at, self.differentiable)
-        for name in chain.group.points:
-            at.points[name] = step.at.points[name]
-        for name in chain.group.links:
-            at.poses[name], at.angles[name] = step.at.poses[name], step.at.angles[name]
-
-
-def refuse_untraceable(ready: Ready, span: Span) -> None:
-    """Raise Untraceable for what is known before the plan is run."""
-    kinematics = ready.kinematics
-    if kinematics.path.by_time:
-        raise Untraceable(mark("several drives"))
-    for group in ready.structure.groups:
-        if isinstance(group, Newton):
-            if "gears" in kinematics.numbers.space.lacks:
-                raise Untraceable(mark("groups of higher class on the sphere"))
-            if pattern_of(group).free > MOST_FREE:
-                raise Untraceable(mark("a group of higher class with very many unknowns"))
-    if np.any(kinematics.path.impossible(span.parameter)):
-        raise Untraceable(mark("a cylinder shorter than zero"))
-    curves = [kinematics.numbers.curve(guide.id) for guide in ready.mechanism.guides]
-    if any(kinematics.numbers.space.period(np, curve) is not None for curve in curves):
-        raise Untraceable(mark("guides that close"))
-
-
-def chains_of(ready: Ready, numbers: Dimensions) -> dict[int, Chain]:
-    """The groups of higher class of a plan, with dimensions over any algebra."""
-    unit = float(ready.kinematics.numbers.scale)
-    groups = enumerate(ready.structure.groups)
-    return {i: Chain(group, numbers, unit) for i, group in groups if isinstance(group, Newton)}
 
 
 def traced(ready: Ready, span: Span, varied: Varied, differentiable: bool = False) -> Traced:
@@ -167,14 +95,14 @@ def traced(ready: Ready, span: Span, varied: Varied, differentiable: bool = Fals
         replace(ready.kinematics, numbers=varied.numbers), ready.kinematics.numbers.gearing.phase
     )
     chains = chains_of(ready, kinematics.numbers)
-    hooks = _Signs(ready.assembled.signs, chains, differentiable)
+    hooks = Signs(ready.assembled.signs, chains, differentiable)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
     columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))
     turns = turns_along if chains else turns_of
     angles, turning = _angles(layout, at, columns, ready.assembled.angles, turns)
     solved = _solved(_Parts(ready, kinematics, layout, columns, angles), span, varied)
-    return Traced(solved, hooks.radicands, hooks.divisors, turning, hooks.steps)
+    return Traced(solved, hooks.radicands, hooks.divisors, turning, hooks.steps, hooks.counted)
 
 
 @dataclass(frozen=True)
@@ -226,32 +154,6 @@ def _standing(cosine: float, sine: float, start: float) -> float:
     """The angle of a link that never turns, on the turn of the initial position."""
     angle = math.atan2(sine, cosine)
     return angle + TURN * round((start - angle) / TURN)
-
-
-def turns_of(link: str, cosine: Operand, sine: Operand) -> Operand:
-    """The turns that bring an angle within half a turn of a centre that runs on with the drive."""
-    centre = variable(centre_of(link)) + variable(winding_of(link)) * variable(PARAMETER)
-    return whole_turns(centre, EXPRESSIONS.atan2(sine, cosine))
-
-
-def turns_along(link: str, cosine: Operand, sine: Operand) -> Operand:
-    """The turns that bring an angle within half a turn of what it was at the place before."""
-    return whole_turns(variable(before_of(link)), EXPRESSIONS.atan2(sine, cosine))
-
-
-def before_of(link: str) -> str:
-    """Name of a link's angle at the place before."""
-    return f"angle before {link}"
-
-
-def centre_of(link: str) -> str:
-    """Name of the middle of a link's angles, those of the drive (times its winding) taken off."""
-    return f"centre {link}"
-
-
-def winding_of(link: str) -> str:
-    """Name of the turns that a link makes for one of the drive: -1, 0 or 1."""
-    return f"winding {link}"
 
 
 def _solved(parts: _Parts, span: Span, varied: Varied) -> Solved:

@@ -1,16 +1,53 @@
-"""Turns of angles as expressions."""
+"""Turns of angles as expressions: told by a centre that may run on with the drive, or by the place before."""
 
 from __future__ import annotations
 
 import math
+from typing import Any, TypeAlias
 
-from centrode.algebra.expressions import Operand
+from centrode.algebra.expression_functions import EXPRESSIONS
+from centrode.algebra.expressions import Operand, variable
+from centrode.kinematics.compiled.variables import PARAMETER
+
+Number: TypeAlias = Any
 
 TURN = 2.0 * math.pi
 WHOLE = 1.5 * 2.0**52
 """Added and taken away again it leaves the nearest whole number: the bits behind the point do not fit."""
+MOST = 0.8
+"""Greatest change of an angle [rad] from one place at which turns are counted to the next."""
+AWAY = 0.2
+"""How far [rad] angles stay from half a turn off what tells their turns."""
 
 
-def whole_turns(near: Operand, angle: Operand) -> Operand:
-    """The turns to add to an angle to come as close as may be to another."""
+def whole_turns(near: Number, angle: Number) -> Number:
+    """The turns to add to an angle to come as close as may be to another, over any algebra."""
     return ((near - angle) * (1.0 / TURN) + WHOLE) - WHOLE
+
+
+def turns_of(link: str, cosine: Operand, sine: Operand) -> Operand:
+    """The turns that bring an angle within half a turn of a centre that runs on with the drive."""
+    centre = variable(centre_of(link)) + variable(winding_of(link)) * variable(PARAMETER)
+    turns: Operand = whole_turns(centre, EXPRESSIONS.atan2(sine, cosine))
+    return turns
+
+
+def turns_along(link: str, cosine: Operand, sine: Operand) -> Operand:
+    """The turns that bring an angle within half a turn of what it was at the place before."""
+    turns: Operand = whole_turns(variable(before_of(link)), EXPRESSIONS.atan2(sine, cosine))
+    return turns
+
+
+def before_of(link: str) -> str:
+    """Name of a link's angle at the place before."""
+    return f"angle before {link}"
+
+
+def centre_of(link: str) -> str:
+    """Name of the middle of a link's angles, those of the drive (times its winding) taken off."""
+    return f"centre {link}"
+
+
+def winding_of(link: str) -> str:
+    """Name of the turns that a link makes for one of the drive: -1, 0 or 1."""
+    return f"winding {link}"

@@ -13,12 +13,12 @@ import numpy.typing as npt
 
 from centrode.algebra.executors import runner
 from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, as_node, variable
+from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction
 from centrode.algebra.scans import Scan
-from centrode.kinematics.compiled.traced import AWAY, MOST, Traced, before_of
-from centrode.kinematics.compiled.turns import TURN
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.turns import AWAY, MOST, TURN, before_of
 from centrode.kinematics.compiled.variables import ALONG, FIRST, SAMPLE
 from centrode.kinematics.compiled.ways import Leg, Way
 
@@ -29,6 +29,10 @@ m = EXPRESSIONS
 SURE = "sure"
 """State of a walk: the least slack of all steps so far."""
 NOTHING = Reduction({}, {})
+BUFFER = 4_000_000
+"""Bytes of what is written on the way before the samples are taken from it: it should stay in the cache."""
+LEAST_LANES = 32
+"""Mechanisms that are taken together at least."""
 
 
 @dataclass(frozen=True)
@@ -51,21 +55,30 @@ class Walk:
         slacks = [step.slack for step in self.traced.steps.values()]
         for step in self.traced.steps.values():
             found |= step.state
-        fresh = m.equal(variable(FIRST), 1.0)
+        for name, angle in self._angles.items():
+            most = m.where(m.equal(variable(FIRST), 1.0), np.pi - AWAY, MOST)
+            slacks.append(as_node(most - m.abs(angle - variable(name))))
+            found[name] = angle
+        least: Operand = variable(SURE)
+        found[SURE] = as_node(functools.reduce(m.min, slacks, least))
+        return found
+
+    @property
+    def _angles(self) -> dict[str, Node]:
+        """Angles whose turns are counted, by the names of what they were at the place before."""
+        found = {before_of(f"counted {key}"): angle for key, (_turns, angle) in self.traced.counted.items()}
         for link in self.links:
-            cosine, sine = self.traced.turning[link]
-            angle = as_node(m.atan2(sine, cosine) + TURN * self.traced.turns[link])
-            most = m.where(fresh, np.pi - AWAY, MOST)
-            slacks.append(as_node(most - m.abs(angle - variable(before_of(link)))))
-            found[before_of(link)] = angle
-        found[SURE] = as_node(functools.reduce(m.min, slacks, variable(SURE)))
+            angle = m.atan2(*reversed(self.traced.turning[link]))
+            found[before_of(link)] = as_node(angle + TURN * self.traced.turns[link])
         return found
 
     @cached_property
     def start(self) -> dict[str, float]:
         """Name -> its first value, where that is the same for all mechanisms and known here."""
         angles = self.traced.solved.ready.assembled.angles
-        return dict.fromkeys(self.state, 0.0) | {before_of(x): angles[x] for x in self.links} | {SURE: np.inf}
+        found = dict.fromkeys(self.state, 0.0) | {before_of(link): angles[link] for link in self.links}
+        found |= {before_of(f"counted {key}"): angles.get(key, 0.0) for key in self.traced.counted}
+        return found | {SURE: np.inf}
 
     def moves(self, nodes: Sequence[Node]) -> bool:
         """Whether nodes depend on what is handed on."""
@@ -112,14 +125,22 @@ class Walking:
 
     def written(self, way: Way, values: Values, kernels: str, threads: int, out: Array) -> dict[str, Array]:
         """Write outputs at the samples into `out` (outputs, lanes, samples); returns all states at the end."""
-        so_far: dict[str, Array] = {}
-        lanes = out.shape[1]
-        for leg in way.legs:
-            buffer = np.empty((len(self.outputs), leg.steps, lanes))
-            so_far = self._run(leg, values, so_far, kernels, threads, buffer)
-            if len(leg.asked):
-                out[:, :, leg.asked] = np.moveaxis(buffer[:, leg.places], 1, 2)
-        return so_far
+        lanes, places = out.shape[1], max(leg.steps for leg in way.legs)
+        most = max(LEAST_LANES * threads, BUFFER // (out.itemsize * len(self.outputs) * places))
+        room = np.empty(len(self.outputs) * places * min(most, lanes))
+        parts: list[dict[str, Array]] = []
+        for first in range(0, lanes, most):
+            rows = slice(first, min(first + most, lanes))
+            some = {name: row[rows] for name, row in values.items()}
+            so_far: dict[str, Array] = {}
+            for leg in way.legs:
+                shape = len(self.outputs), leg.steps, rows.stop - first
+                buffer = room[: shape[0] * shape[1] * shape[2]].reshape(shape)
+                so_far = self._run(leg, some, so_far, kernels, threads, buffer)
+                if len(leg.asked):
+                    out[:, rows, leg.asked] = np.moveaxis(buffer[:, leg.places], 1, 2)
+            parts.append(so_far)
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def _run(
         self, leg: Leg, values: Values, so_far: Values, kernels: str, threads: int, out: Array | None
