@@ -29,7 +29,6 @@ EXAMPLES = {
     "fourth-class-group": "links.BD.length",
     "stephenson-driven-at-rocker": "links.PR.length",
     "watt-driven-second-loop": "links.PR.length",
-    "scissor-lift-cylinder": "links.platform.points.T.x",
 }
 ORDERS = (
     ("position", "angle"), ("velocity", "angular_velocity"), ("acceleration", "angular_acceleration"),
@@ -92,13 +91,11 @@ def test_numbers_of_the_arrays(name: str, monkeypatch: pytest.MonkeyPatch) -> No
     mechanism, path = ct.example(name), EXAMPLES[name]
     vary = {path: ct.value_at(mechanism, path) * np.linspace(0.998, 1.002, 5)}
     counter = Counter(monkeypatch)
-    # far from its limits: near them the arrays take most of the time
-    ends = {"start": 0.8, "stop": 1.0} if name == "scissor-lift-cylinder" else {}
-    found, expected = both(mechanism, vary, OUTPUTS, 9, **ends)
+    found, expected = both(mechanism, vary, OUTPUTS, 9)
     assert len(counter.taken()) == 5, "those of the comparison alone"
     same_statuses(found, expected)
     assert (found["status"] == ct.Status.OK).all()
-    motion = ct.motion(mechanism, 9, **ends)
+    motion = ct.motion(mechanism, 9)
     told = answer(mechanism, motion["drive_value"].to_numpy().ravel()).max(axis=1)
     for order in range(3):
         # a five hundredth more or less of a length changes what is answered by less than twice
@@ -122,22 +119,21 @@ def drawn(kinds: list[str], seed: int) -> ct.Mechanism:
             seed += 1
 
 
-AROUND = (
-    ([], []),
-    (["RRR"], ["wheel on a circle"]),
-    (["wheel on a line"], ["RPR block"]),
-    ([], ["four sides"]),
-)
+AROUND = {
+    "alone": ([], []),
+    "dyad and wheel": (["RRR"], ["wheel on a circle"]),
+    "wheel and dyad": (["wheel on a line"], ["RPR block"]),
+    "two": ([], ["four sides"]),
+}
 
 
 @pytest.mark.parametrize(
-    "before_and_behind", AROUND, ids=["alone", "dyad and wheel", "wheel and dyad", "two"]
+    ("kind", "around"), [(kind, [*AROUND][(k + j) % 4]) for k, kind in enumerate(HIGHER) for j in (0, 2)]
 )
-@pytest.mark.parametrize("kind", HIGHER)
-def test_random_mechanisms(kind: str, before_and_behind: tuple[list[str], list[str]]) -> None:
+def test_random_mechanisms(kind: str, around: str) -> None:
     """Groups of every kind, alone and among others, from nearly alike to far apart."""
-    before, behind = before_and_behind
-    draw = np.random.default_rng([HIGHER.index(kind), AROUND.index(before_and_behind)])
+    before, behind = AROUND[around]
+    draw = np.random.default_rng([HIGHER.index(kind), [*AROUND].index(around)])
     mechanism = drawn([*before, kind, *behind], int(draw.integers(1000)))
     paths = [
         f"links.{n}.points.{p}.{a}" for n, x in mechanism.links.items() for p in x.coordinates for a in "xy"
@@ -152,19 +148,20 @@ def test_random_mechanisms(kind: str, before_and_behind: tuple[list[str], list[s
 
 
 NEAR = {
-    "inside the range": ("third-class-triad", "links.AB.length", 5.10130816180524),
-    "at its end": ("stephenson-driven-at-rocker", "links.PR.length", 1.92519812025464),
-    "at its end, five bodies": ("watt-driven-second-loop", "links.PR.length", 1.24021735922587),
+    "inside the range": ("third-class-triad", "links.AB.length", 5.10130816180524, 0.05),
+    "at its end": ("stephenson-driven-at-rocker", "links.PR.length", 1.92519812025464, 0.05),
+    "at its end, five bodies": ("watt-driven-second-loop", "links.PR.length", 1.24021735922587, 0.03),
 }
-"""Dimensions with which a mechanism just locks: between two that the arrays tell apart, halved again and again."""
+"""Dimensions with which a mechanism just locks: between two that the arrays tell apart, halved again and again.
+The last number says how far to go from there."""
 
 
 @pytest.mark.parametrize("where", NEAR)
 def test_near_a_limit(where: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """On both sides of it, down to rounding: what is certain keeps away from it."""
-    name, path, middle = NEAR[where]
+    name, path, middle, reach = NEAR[where]
     mechanism = ct.example(name)
-    aside = middle * np.geomspace(1e-12, 0.05, 14)
+    aside = middle * np.geomspace(1e-12, reach, 14)
     values = np.concatenate([middle - aside, middle + aside])
     counter = Counter(monkeypatch)
     found = ct.sweep(mechanism, {path: values}, OUTPUTS, 9, executor=MACHINE)
