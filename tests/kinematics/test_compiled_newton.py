@@ -110,6 +110,10 @@ def test_ways_pass_every_sample_in_short_steps(asked: Array) -> None:
         assert np.allclose(path.initial + np.cumsum(step), place, rtol=0.0, atol=EPS * len(place) * 10.0)
         assert leg.inputs[SAMPLE].sum() == len(leg.asked)
         assert leg.inputs[FIRST].tolist() == [1.0] + [0.0] * (leg.steps - 1)
+        parts = list(leg.parts(7))
+        assert np.array_equal(np.concatenate([part.inputs[PARAMETER] for part in parts]), place)
+        assert np.array_equal(np.concatenate([part.asked for part in parts]), leg.asked)
+        assert all(np.array_equal(p.inputs[PARAMETER][p.places], asked[p.asked]) for p in parts)
 
 
 TWO_GROUPS = grown_higher(["RRR", "four sides", "four sides"], 1092)

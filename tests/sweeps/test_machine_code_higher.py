@@ -17,7 +17,7 @@ from centrode.kinematics.ready import ready
 from centrode.sweeps import limits
 from centrode.sweeps.arrays import ArraysExecutor
 from growing_higher import HIGHER, grown_higher
-from mechanisms import EPS
+from mechanisms import EPS, parts_of
 from redriven import answer
 
 pytest.importorskip("llvmlite", reason="machine code needs the extra fast")
@@ -245,6 +245,18 @@ def test_turns_of_angles(start: float, stop: float, samples: int) -> None:
     found, expected = both(mechanism, vary, OUTPUTS, samples, start=start, stop=stop)
     same_statuses(found, expected)
     assert off(found, expected, 0) <= bound(0)
+
+
+def test_laws_go_back_and_forth() -> None:
+    """Samples in no order along the path, with rates of their own; and one sample alone."""
+    parts = parts_of(ct.example("third-class-triad"))
+    parts["drives"] = [{"link": "OA", "law": "0.6 * sin(2 * t) + 0.3 * t", "start": 0.0}]
+    mechanism, vary = ct.Mechanism(**parts), {"links.AB.length": np.linspace(4.99, 5.01, 9)}
+    for samples, stop in ((30, 5.0), (1, 1.0)):
+        found, expected = both(mechanism, vary, OUTPUTS, samples, start=0.0, stop=stop)
+        same_statuses(found, expected)
+        for order in range(3):
+            assert off(found, expected, order) <= bound(order)
 
 
 def behind(mechanism: ct.Mechanism) -> list[str]:

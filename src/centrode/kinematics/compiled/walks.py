@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -31,7 +32,7 @@ SURE = "sure"
 NOTHING = Reduction({}, {})
 BUFFER = 4_000_000
 """Bytes of what is written on the way before the samples are taken from it: it should stay in the cache."""
-LEAST_LANES = 32
+LEAST_LANES = 64
 """Mechanisms that are taken together at least."""
 
 
@@ -118,43 +119,54 @@ class Walking:
 
     def reduced(self, way: Way, values: Values, kernels: str, threads: int) -> dict[str, Array]:
         """All states at the end, name -> (lanes,)."""
-        so_far: dict[str, Array] = {}
+        state: dict[str, Array] = {}
         for leg in way.legs:
-            so_far = self._run(leg, values, so_far, kernels, threads, None)
-        return so_far
+            state = self._run(leg, values, self._begun(values, state), kernels, threads, None)
+        return state
 
     def written(self, way: Way, values: Values, kernels: str, threads: int, out: Array) -> dict[str, Array]:
         """Write outputs at the samples into `out` (outputs, lanes, samples); returns all states at the end."""
-        lanes, places = out.shape[1], max(leg.steps for leg in way.legs)
-        most = max(LEAST_LANES * threads, BUFFER // (out.itemsize * len(self.outputs) * places))
-        room = np.empty(len(self.outputs) * places * min(most, lanes))
+        lanes, each = out.shape[1], out.itemsize * len(self.outputs)
+        longest = max(leg.steps for leg in way.legs)
+        together = min(lanes, max(LEAST_LANES * threads, BUFFER // (each * longest)))
+        steps = min(longest, max(1, BUFFER // (each * together)))
+        room = np.empty(len(self.outputs) * together * steps)
         parts: list[dict[str, Array]] = []
-        for first in range(0, lanes, most):
-            rows = slice(first, min(first + most, lanes))
+        for first in range(0, lanes, together):
+            rows = slice(first, min(first + together, lanes))
             some = {name: row[rows] for name, row in values.items()}
-            so_far: dict[str, Array] = {}
+            state: dict[str, Array] = {}
             for leg in way.legs:
-                shape = len(self.outputs), leg.steps, rows.stop - first
-                buffer = room[: shape[0] * shape[1] * shape[2]].reshape(shape)
-                so_far = self._run(leg, some, so_far, kernels, threads, buffer)
-                if len(leg.asked):
-                    out[:, rows, leg.asked] = np.moveaxis(buffer[:, leg.places], 1, 2)
-            parts.append(so_far)
+                state = self._begun(some, state)
+                for part in leg.parts(steps):
+                    shape = len(self.outputs), part.steps, rows.stop - first
+                    buffer = room[: math.prod(shape)].reshape(shape)
+                    state = self._run(part, some, state, kernels, threads, buffer)
+                    out[:, rows, part.asked] = np.moveaxis(buffer[:, part.places], 1, 2)
+            parts.append(state)
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
-    def _run(
-        self, leg: Leg, values: Values, so_far: Values, kernels: str, threads: int, out: Array | None
-    ) -> dict[str, Array]:
-        scan = self.scan
+    def _begun(self, values: Values, before: Values) -> dict[str, Array]:
+        """All states in the initial position; what is kept goes on from where it stood before."""
         lanes = len(next(iter(values.values())))
         start = self.walk.start | dict(self.reduction.start)
-        kept = {*self.reduction.state, SURE} & so_far.keys()
-        rows = [
-            so_far[name] if name in kept else values[name] if name in values else np.full(lanes, start[name])
-            for name in scan.state
-        ]
+        kept = {*self.reduction.state, SURE} & before.keys()
+        return {
+            name: before[name]
+            if name in kept
+            else values[name]
+            if name in values
+            else np.full(lanes, start[name])
+            for name in self.scan.state
+        }
+
+    def _run(
+        self, leg: Leg, values: Values, state: Values, kernels: str, threads: int, out: Array | None
+    ) -> dict[str, Array]:
+        """All states behind a leg."""
+        scan = self.scan
         parameters = np.stack([values[name] for name in scan.parameters]) if scan.parameters else None
         inputs = np.stack([leg.inputs[name] for name in scan.inputs])
         run = runner(scan, kernels, threads=threads)
-        state = run(parameters, inputs, np.stack(rows), out=out).state
-        return dict(zip(scan.state, state, strict=True))
+        found = run(parameters, inputs, np.stack([state[name] for name in scan.state]), out=out).state
+        return dict(zip(scan.state, found, strict=True))

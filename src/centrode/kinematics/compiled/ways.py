@@ -5,7 +5,7 @@ Samples may be few, or lie anywhere; so many other places are put between them t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -44,17 +44,19 @@ class Leg:
         """How many places there are."""
         return len(self.inputs[PARAMETER])
 
+    def parts(self, steps: int) -> Iterator[Leg]:
+        """The leg in parts of at most so many places."""
+        for first in range(0, self.steps, steps):
+            inputs = {name: row[first : first + steps] for name, row in self.inputs.items()}
+            here = (self.places >= first) & (self.places < first + steps)
+            yield Leg(inputs, self.places[here] - first, self.asked[here])
+
 
 @dataclass(frozen=True)
 class Way:
     """Both legs."""
 
     legs: tuple[Leg, Leg]
-
-    @property
-    def steps(self) -> int:
-        """How many places both have."""
-        return sum(leg.steps for leg in self.legs)
 
 
 def way_of(path: Path, inputs: Mapping[str, Array]) -> Way:
