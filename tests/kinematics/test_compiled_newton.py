@@ -119,32 +119,31 @@ def test_ways_pass_every_sample_in_short_steps(asked: Array) -> None:
 TWO_GROUPS = grown_higher(["RRR", "four sides", "four sides"], 1092)
 
 
-def two_groups(count: int) -> tuple[ct.Mechanism, dict[str, Array]]:
-    """Two groups of higher class one behind the other, in dimensions of which some are not reached at once."""
-    mechanism = ct.Mechanism(**TWO_GROUPS)
-    draw = np.random.default_rng(3)
-    plates = [(n, p) for n, x in mechanism.links.items() for p in x.coordinates if len(x.coordinates) > 2]
-    paths = [f"links.{link}.points.{point}.x" for link, point in plates]
-    paths = [path for path in paths if ct.value_at(mechanism, path) != 0.0][::2]
-    return mechanism, {path: ct.value_at(mechanism, path) * draw.uniform(0.85, 1.15, count) for path in paths}
+def two_groups() -> tuple[ct.Mechanism, dict[str, Array]]:
+    """Two groups of higher class one behind the other, in dimensions of which some are not reached, or not at once."""
+    mechanism, draw = ct.Mechanism(**TWO_GROUPS), np.random.default_rng(3)
+    paths = [
+        f"links.{end}" for end in ("link6.points.P6bF3.x", "link9.points.P10aP6aF2.y", "link3.points.P6bF2.x")
+    ]
+    return mechanism, {path: ct.value_at(mechanism, path) * draw.uniform(0.82, 1.18, 60) for path in paths}
 
 
 def test_batches_of_two_groups_do_not_hang_on_their_neighbours() -> None:
-    mechanism, vary = two_groups(40)
-    values = np.linspace(0.0, 0.3, 3)
-    together = ct.motion(mechanism, at=values, vary=vary)
-    assert 0 < int((together.status[:, 0] == ct.Status.OK).sum()) < 40
-    for lane in range(0, 40, 8):
-        alone = ct.motion(mechanism, at=values, vary={path: x[[lane]] for path, x in vary.items()})
+    mechanism, vary = two_groups()
+    together = ct.motion(mechanism, at=[0.0], vary=vary)
+    reached = together.status[:, 0] == ct.Status.OK
+    assert 0 < int(reached.sum()) < 60
+    for lane in range(3, 60, 9):
+        alone = ct.motion(mechanism, at=[0.0], vary={path: x[[lane]] for path, x in vary.items()})
         assert np.array_equal(alone.status[0], together.status[lane])
         assert np.array_equal(alone.position[0], together.position[lane], equal_nan=True)
 
 
 def test_beginnings_close_and_are_those_of_the_arrays() -> None:
-    mechanism, vary = two_groups(40)
+    mechanism, vary = two_groups()
     prepared = ready(mechanism)
     numbers = dimensions_of(prepared.mechanism, vary, np)
-    found = beginnings(prepared, numbers, 40)
+    found = beginnings(prepared, numbers, 60)
     initial = prepared.kinematics.path.initial
     motion = ct.motion(mechanism, at=[initial], vary=vary)
     for name, values in found.items():
