@@ -25,7 +25,8 @@ from centrode.kinematics.compiled.drives import inputs_of, places_of
 from centrode.kinematics.compiled.patches import Patches
 from centrode.kinematics.compiled.searching import Search, of_mesh
 from centrode.kinematics.compiled.signs import counts_of, values_of
-from centrode.kinematics.compiled.traced import TURN, Traced, traced
+from centrode.kinematics.compiled.traced import Traced, traced
+from centrode.kinematics.compiled.turns import TURN
 from centrode.kinematics.compiled.variables import Varied, boxed, taken
 from centrode.kinematics.compiled.writing import JUDGED, ORDERED, ROOMS, SINES, Writer, nodes_of
 from centrode.kinematics.continuation import Continuation
@@ -94,8 +95,11 @@ class Eventful:
 
     @cached_property
     def possible(self) -> bool:
-        """Whether the bits will be those of the arrays: where the plan leaves no function to a kernel."""
-        return all(writer.alike for writer in self._writer({})[1:])
+        """Whether the bits will be those of the arrays: where the plan leaves no function to a kernel.
+
+        Groups of higher class, whose places hang on one another, are not for this.
+        """
+        return not self.plan.steps and all(writer.alike for writer in self._writer({})[1:])
 
     @cached_property
     def mesh(self) -> Array:

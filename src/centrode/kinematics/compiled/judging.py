@@ -24,7 +24,12 @@ from centrode.algebra.jets import Jet
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.drives import places_of
-from centrode.kinematics.compiled.traced import TURN, WHOLE, Traced, centre_of, winding_of
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.turns import AWAY, MOST, TURN, centre_of, whole_turns, winding_of
+from centrode.kinematics.compiled.variables import FIRST, PARAMETER
+from centrode.kinematics.compiled.walks import SURE, Walk, Walking
+from centrode.kinematics.compiled.ways import way_of
+from centrode.kinematics.continuation import WINDOW
 from centrode.kinematics.mesh import LOW, mesh_of
 from centrode.kinematics.paths import Path
 from centrode.kinematics.sampling import ORDERS, SUSPECT
@@ -39,11 +44,7 @@ SAFE = 2.0
 """Margins of the search are kept this many times over: the last bits may differ from those of the arrays."""
 SPARSE = 4
 """Angles are followed at every fourth node of the mesh: 2 degrees of an angle drive."""
-MOST = 0.8
-"""Greatest change of an angle [rad] from one of these nodes to the next: faster links are left to the arrays."""
-AWAY = 0.2
-"""How far [rad] angles stay from half a turn off their centre."""
-SLACK, FIRST, START, STEP = "slack", "first", "start", "step"
+SLACK, START, GAP = "slack", "start", "gap"
 
 
 @dataclass(frozen=True)
@@ -77,18 +78,26 @@ class Judging:
     def _places(self, parameter: Array) -> Values:
         return places_of(self._path, parameter, ORDERS - 1)
 
+    @cached_property
+    def walk(self) -> Walk:
+        """What is handed on along the path, where there are groups of higher class."""
+        return Walk(self.traced, self.links)
+
     def judge(self, values: Mapping[str, Array]) -> Judged:
-        """Judge the mechanisms of a batch."""
-        found = self._run(self._of_events, self._events_scan, values, self._nodes)
+        """Judge the mechanisms of a batch; with groups of higher class `values` have where walks begin.
+
+        What a walk along the samples finds out about these groups themselves is not looked at here.
+        """
+        found = self._events(values)
         lanes = len(next(iter(values.values())))
         clear = np.ones(lanes, dtype=bool)
-        if SLACK in found:
-            clear &= found[SLACK] > 0.0
+        for slack in {SLACK, SURE} & found.keys():
+            clear &= found[slack] > 0.0
         for group in self.traced.divisors:
             if f"least {group}" in found:
                 clear &= (found[f"least {group}"] > 0.0) | (found[f"most {group}"] < 0.0)
         further = {name: array for name, array in found.items() if name.startswith("largest")}
-        if self.links:
+        if self.links and not self.traced.steps:
             found = self._run(self._of_angles, self._angles_scan, values, self._sparse)
             for link in self.links:
                 clear &= self._centred(link, found, further)
@@ -109,6 +118,22 @@ class Judging:
 
     # events
 
+    def _events(self, values: Mapping[str, Array]) -> Values:
+        walk = Walk(self.traced)
+        if walk.moves(list(self._of_events.state.values())):
+            way = way_of(self._path, {PARAMETER: self._near})
+            return Walking(walk, self._of_events).reduced(way, values, self.executor, self.threads)
+        return self._run(self._of_events, self._events_scan, values, self._nodes)
+
+    @property
+    def _near(self) -> Array:
+        """The nodes on which an event would matter to a sample, or to the way from the initial position to it."""
+        path = self._path
+        ends = np.append(self.samples, path.initial)
+        beyond = WINDOW * path.unit + 2.0 * path.step
+        near: Array = self.mesh[(self.mesh >= ends.min() - beyond) & (self.mesh <= ends.max() + beyond)]
+        return near
+
     @cached_property
     def _events_scan(self) -> Scan:
         return scan_of(self._of_events, self.names, tuple(self._nodes))
@@ -118,12 +143,12 @@ class Judging:
         """The mesh; with several drives also how far from each node the next one may be."""
         gaps = np.diff(self.mesh)
         either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
-        return self._places(self.mesh) | ({STEP: either} if self._path.by_time else {})
+        return self._places(self.mesh) | ({GAP: either} if self._path.by_time else {})
 
     @cached_property
     def _of_events(self) -> Reduction:
         """States: how far the worst radicand is from what the search would look into; ends of divisors."""
-        step = variable(STEP) if self._path.by_time else self._path.step
+        step = variable(GAP) if self._path.by_time else self._path.step
         slacks, parts = [], []
         for group, radicand in self.traced.radicands.items():
             value, slope = _with_slope(radicand)
@@ -162,7 +187,7 @@ class Judging:
         for link in self.links:
             cosine, sine = self.traced.turning[link]
             raw, before = m.atan2(sine, cosine), variable(f"angle {link}")
-            angle = as_node(raw + TURN * (((before - raw) * (1.0 / TURN) + WHOLE) - WHOLE))
+            angle = as_node(raw + TURN * whole_turns(before, raw))
             jump = m.where(m.equal(variable(FIRST), 1.0), 0.0, m.abs(angle - before))
             there = m.where(m.equal(variable(START), 1.0), angle, variable(f"at start {link}"))
             parts.append(

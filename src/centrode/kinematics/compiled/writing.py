@@ -32,15 +32,19 @@ LAST_BITS = (RESIDUAL, JUDGED)
 
 
 def nodes_of(plan: Traced) -> dict[str, Nodes]:
-    """Arrays of a Solved of one lane and one sample; cosines stand where angles will, their sines beside them."""
+    """Arrays of a Solved of one lane and one sample; cosines stand where angles will, their sines beside them.
+
+    Walks know the turns of angles, so these are written at once.
+    """
     solved = plan.solved
-    angles: Nodes = solved.angles.copy()
-    for k, link in enumerate(solved.layout.angles):
-        if link in plan.turning:
-            angles[0, 0, 0, k] = plan.turning[link][0]
     found: dict[str, Nodes | None] = {name: getattr(solved, name) for name in ROOMS}
-    found["angles"] = angles
-    found[SINES] = boxed([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
+    if not plan.steps:
+        angles: Nodes = solved.angles.copy()
+        for k, link in enumerate(solved.layout.angles):
+            if link in plan.turning:
+                angles[0, 0, 0, k] = plan.turning[link][0]
+        found["angles"] = angles
+        found[SINES] = boxed([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
     return {name: nodes for name, nodes in found.items() if nodes is not None}
 
 
@@ -68,9 +72,14 @@ class Writer:
         return [as_node(x) for nodes in self.outputs.values() for x in nodes.ravel()]
 
     @cached_property
+    def graph(self) -> Graph:
+        """All nodes, each called by its place."""
+        return Graph({str(k): node for k, node in enumerate(self.flat)})
+
+    @cached_property
     def scan(self) -> Scan:
         """Lanes are places, steps are mechanisms."""
-        graph = Graph({str(k): node for k, node in enumerate(self.flat)})
+        graph = self.graph
         along = tuple(name for name in self.places if name in graph.variables or name == PARAMETER)
         return Scan(along, tuple(name for name in graph.variables if name not in along), graph.outputs)
 
