@@ -13,11 +13,11 @@ from centrode.algebra.expressions import as_node, variable
 from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.geometry.plane import dot
-from centrode.kinematics.compiled.beginnings import beginnings
 from centrode.kinematics.compiled.deciding import chains_of
-from centrode.kinematics.compiled.small_systems import inverse
+from centrode.kinematics.compiled.newton.small_systems import inverse
 from centrode.kinematics.compiled.variables import FIRST, PARAMETER, SAMPLE, STEP
-from centrode.kinematics.compiled.ways import NODES, way_of
+from centrode.kinematics.compiled.walks.beginnings import beginnings
+from centrode.kinematics.compiled.walks.ways import NODES, way_of
 from centrode.kinematics.higher_class.system import System
 from centrode.kinematics.ready import ready
 from centrode.structure.dimensions import dimensions_of

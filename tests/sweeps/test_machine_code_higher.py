@@ -12,7 +12,7 @@ import xarray as xr
 import centrode as ct
 from centrode.algebra import machine_code
 from centrode.kinematics.compiled import many
-from centrode.kinematics.compiled.certainty import CHANGE, CONDITION
+from centrode.kinematics.compiled.newton.certainty import CHANGE, CONDITION
 from centrode.kinematics.ready import ready
 from centrode.sweeps import limits
 from centrode.sweeps.arrays import ArraysExecutor

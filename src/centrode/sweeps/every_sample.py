@@ -12,13 +12,11 @@ import numpy.typing as npt
 from centrode.algebra.expressions import Node
 from centrode.algebra.scans import room_of
 from centrode.sweeps import limits
+from centrode.sweeps.arrays import NUMBER
 from centrode.sweeps.streams import Columns
 
 Array: TypeAlias = npt.NDArray[np.float64]
 AnyArray: TypeAlias = npt.NDArray[Any]
-
-NUMBER = 8
-"""Bytes of a float64."""
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from centrode.kinematics.compiled.judging import Judging
 from centrode.kinematics.compiled.traced import Traced
 from centrode.kinematics.compiled.turns import before_of, centre_of
 from centrode.kinematics.compiled.variables import ALONG, SCALE, Varied, boxed
-from centrode.kinematics.compiled.walks import Walk
-from centrode.kinematics.compiled.ways import Way, way_of
+from centrode.kinematics.compiled.walks.walking import Walk
+from centrode.kinematics.compiled.walks.ways import Way, way_of
 from centrode.sweeps.arrays import Task
 from centrode.sweeps.folds import Folds
 from centrode.sweeps.slopes import Slopes

@@ -1,8 +1,8 @@
 """Sweeps as machine code: what has no events is computed in one go, the rest as motions with events.
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
-and the formulas of `traced`; the motions of all others have the bits of the arrays (`compiled.eventful`), and what is
-asked for is taken from them as `ArraysExecutor` does it.
+and the formulas of `traced`. The motions of all others have the bits of the arrays (`compiled.events`; with groups of
+higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does it.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.errors import Status
-from centrode.kinematics.compiled.beginnings import beginnings
 from centrode.kinematics.compiled.deciding import Untraceable
-from centrode.kinematics.compiled.eventful import Eventful
+from centrode.kinematics.compiled.events.eventful import Eventful
 from centrode.kinematics.compiled.traced import traced
 from centrode.kinematics.compiled.variables import taken, varied_of
-from centrode.kinematics.compiled.walks import SURE
+from centrode.kinematics.compiled.walks.beginnings import beginnings
+from centrode.kinematics.compiled.walks.walking import SURE
 from centrode.kinematics.residuals import CLOSED
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
 from centrode.sweeps import limits
-from centrode.sweeps.arrays import ArraysExecutor, Task, fill_columns
+from centrode.sweeps.arrays import NUMBER, ArraysExecutor, Task, fill_columns
 from centrode.sweeps.designs import Rows
-from centrode.sweeps.every_sample import NUMBER, EverySample
+from centrode.sweeps.every_sample import EverySample
 from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
 from centrode.sweeps.passing import Passing, judging_states, passing_of
 from centrode.sweeps.streams import Columns, columns_for

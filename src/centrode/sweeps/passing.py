@@ -11,14 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.executors import runner
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import as_node, variable
 from centrode.algebra.graphs import Graph
-from centrode.algebra.reductions import Reduction
+from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
-from centrode.kinematics.compiled.judging import scan_of
+from centrode.kinematics.compiled.passes import Pass, greatest, least
 from centrode.kinematics.compiled.variables import PARAMETER
-from centrode.kinematics.compiled.walks import Walking
+from centrode.kinematics.compiled.walks.walking import Walking
 from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -26,8 +24,6 @@ Values: TypeAlias = Mapping[str, Array]
 """Of mechanisms: name -> (lanes,)."""
 Rooms: TypeAlias = Iterable[tuple[slice, Array]]
 """Some mechanisms after the other, and where their samples go: (numbers, lanes, samples)."""
-
-m = EXPRESSIONS
 
 
 class Passing(Protocol):
@@ -53,14 +49,9 @@ class EachForItself:
 
     def reduced(self, reduction: Reduction, rows: Values) -> dict[str, Array]:
         asked = self.asked
-        scan = scan_of(reduction, tuple(rows), tuple(asked.inputs))
-        parameters = np.stack([rows[name] for name in scan.parameters]) if scan.parameters else None
-        inputs = np.stack([asked.inputs[name] for name in scan.inputs]) if scan.inputs else None
-        start = np.repeat([[value] for value in reduction.start.values()], _lanes(rows), axis=1)
-        # nothing that moves: the samples are counted all the same
-        steps = None if scan.inputs else asked.samples
-        run = runner(scan, asked.kernels, threads=asked.threads)
-        return dict(zip(scan.state, run(parameters, inputs, start, steps=steps).state, strict=True))
+        over_samples = Pass(reduction, tuple(rows), asked.inputs)
+        # where nothing moves the samples are counted all the same
+        return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
 
     def written(self, rows: Values, rooms: Rooms) -> dict[str, Array]:
         scan = self._scan
@@ -103,13 +94,7 @@ class Along:
 def judging_states(asked: Expressed) -> Reduction:
     """Greatest residual, least slack of radicands; NaN where one is."""
     judges = asked.judges
-    state = {RESIDUAL: as_node(m.max(judges[RESIDUAL], variable(RESIDUAL)))}
-    start = {RESIDUAL: 0.0}
+    parts = [greatest(RESIDUAL, judges[RESIDUAL], 0.0)]
     if SLACK in judges:
-        state[SLACK] = as_node(m.min(judges[SLACK], variable(SLACK)))
-        start[SLACK] = np.inf
-    return Reduction(state, start)
-
-
-def _lanes(rows: Values) -> int:
-    return len(next(iter(rows.values())))
+        parts.append(least(SLACK, judges[SLACK]))
+    return together(*parts)

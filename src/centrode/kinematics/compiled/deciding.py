@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
-from centrode.kinematics.compiled.newton_steps import Step, newton_step
+from centrode.kinematics.compiled.newton.steps import Step, newton_step
 from centrode.kinematics.compiled.turns import TURN, before_of, whole_turns
 from centrode.kinematics.compiled.variables import NODE_JETS
 from centrode.kinematics.evaluate import Hooks

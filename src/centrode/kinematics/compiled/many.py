@@ -20,16 +20,16 @@ from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.errors import Status
 from centrode.kinematics.branches import Branches, branches_at_start
-from centrode.kinematics.compiled.beginnings import beginnings
 from centrode.kinematics.compiled.deciding import Untraceable
 from centrode.kinematics.compiled.drives import inputs_of
-from centrode.kinematics.compiled.eventful import Eventful
+from centrode.kinematics.compiled.events.eventful import Eventful
 from centrode.kinematics.compiled.judging import Judged, Judging
 from centrode.kinematics.compiled.traced import Traced, traced
 from centrode.kinematics.compiled.turns import TURN, centre_of, whole_turns, winding_of
 from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, taken, varied_of
-from centrode.kinematics.compiled.walks import SURE, Walking
-from centrode.kinematics.compiled.ways import Way, way_of
+from centrode.kinematics.compiled.walks.beginnings import beginnings
+from centrode.kinematics.compiled.walks.walking import SURE, Walking
+from centrode.kinematics.compiled.walks.ways import Way, way_of
 from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, streams_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready

@@ -23,8 +23,7 @@ from centrode.errors import Status
 from centrode.kinematics.branches import branches_at_start
 from centrode.kinematics.compiled.deciding import Deciding, chains_of, refuse_untraceable
 from centrode.kinematics.compiled.drives import traced_path, winders_of
-from centrode.kinematics.compiled.newton_steps import Step
-from centrode.kinematics.compiled.signs import signs_of
+from centrode.kinematics.compiled.newton.steps import Step
 from centrode.kinematics.compiled.turns import TURN, turns_along, turns_of
 from centrode.kinematics.compiled.variables import (
     NODE_JETS,
@@ -94,21 +93,21 @@ def traced(
     ready: Ready,
     span: Span,
     varied: Varied,
-    crossings: Mapping[int, int] | None = None,
+    signs: Mapping[int, Operand] | None = None,
     on_mesh: bool = False,
     differentiable: bool = False,
 ) -> Traced:
     """The motion of a mechanism of a batch at one place of the path, a sample or a node of the mesh.
 
-    `crossings` says of how many change points of a group the sign is to know (see `signs`); `differentiable` makes what
-    groups of higher class give depend on the dimensions as their equations say. Raises Untraceable.
+    `signs` of groups are those of the initial position where they are not given; `differentiable` makes what groups of
+    higher class give depend on the dimensions as their equations say. Raises Untraceable.
     """
     refuse_untraceable(ready, span)
     known = ready.kinematics
     path = traced_path(known.path, span.parameter, ORDERS - 1)
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
     chains = chains_of(ready, kinematics.numbers)
-    hooks = Deciding(signs_of(ready, crossings or {}), on_mesh, chains, differentiable)
+    hooks = Deciding(signs or ready.assembled.signs, on_mesh, chains, differentiable)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
     columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))

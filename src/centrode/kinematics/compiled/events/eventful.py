@@ -22,9 +22,9 @@ from centrode.errors import Status
 from centrode.kinematics.angles import NodeTurns
 from centrode.kinematics.branches import Branches
 from centrode.kinematics.compiled.drives import inputs_of, places_of
-from centrode.kinematics.compiled.patches import Patches
-from centrode.kinematics.compiled.searching import Search, of_mesh
-from centrode.kinematics.compiled.signs import counts_of, values_of
+from centrode.kinematics.compiled.events.patches import Patches
+from centrode.kinematics.compiled.events.searching import Search, of_mesh
+from centrode.kinematics.compiled.events.signs import counts_of, signs_of, values_of
 from centrode.kinematics.compiled.traced import Traced, traced
 from centrode.kinematics.compiled.turns import TURN
 from centrode.kinematics.compiled.variables import Varied, boxed, taken
@@ -133,10 +133,11 @@ class Eventful:
     def _writer(self, counts: Mapping[int, int]) -> tuple[Traced, Writer, Writer]:
         key = tuple(sorted(counts.items()))
         if key not in self._writers:
-            plan = traced(self.ready, self.span, self.varied, counts) if counts else self.plan
+            signs = signs_of(self.ready, counts)
+            plan = traced(self.ready, self.span, self.varied, signs) if counts else self.plan
             nodes = plan
             if not all(isinstance(radicand, Jet) for radicand in plan.radicands.values()):
-                nodes = traced(self.ready, self.span, self.varied, counts, on_mesh=True)
+                nodes = traced(self.ready, self.span, self.varied, signs, on_mesh=True)
             path = self.ready.kinematics.path
             mesh, samples = places_of(path, self.mesh, ORDERS - 1), inputs_of(path, self.span)
             self._writers[key] = (

@@ -15,10 +15,10 @@ from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Vector, is_literal_zero
-from centrode.kinematics.compiled.certainty import slack_of
-from centrode.kinematics.compiled.matrices import Matrix
-from centrode.kinematics.compiled.postures import Names, moved, numbers_of, with_turns
-from centrode.kinematics.compiled.small_systems import minus, plus
+from centrode.kinematics.compiled.newton.certainty import slack_of
+from centrode.kinematics.compiled.newton.matrices import Matrix
+from centrode.kinematics.compiled.newton.postures import Names, moved, numbers_of, with_turns
+from centrode.kinematics.compiled.newton.small_systems import minus, plus
 from centrode.kinematics.compiled.variables import NODE_JETS, STEP
 from centrode.kinematics.higher_class.chains import Chain, Posture
 from centrode.kinematics.higher_class.surroundings import needed, plain

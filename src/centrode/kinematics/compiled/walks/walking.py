@@ -21,7 +21,7 @@ from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.traced import Traced
 from centrode.kinematics.compiled.turns import AWAY, MOST, TURN, before_of
 from centrode.kinematics.compiled.variables import ALONG, FIRST, SAMPLE
-from centrode.kinematics.compiled.ways import Leg, Way
+from centrode.kinematics.compiled.walks.ways import Leg, Way
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Values: TypeAlias = Mapping[str, Array]

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.compiled.deciding import chains_of
-from centrode.kinematics.compiled.postures import Names, numbers_of
+from centrode.kinematics.compiled.newton.postures import Names, numbers_of
 from centrode.kinematics.evaluate import Hooks
 from centrode.kinematics.higher_class.newton import newton
 from centrode.kinematics.higher_class.places import starts

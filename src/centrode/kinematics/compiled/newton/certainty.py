@@ -13,9 +13,9 @@ from collections.abc import Sequence
 
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.kinematics.compiled.matrices import Matrix
-from centrode.kinematics.compiled.postures import Names
-from centrode.kinematics.compiled.small_systems import dot, multiplied, plus, sizes, times, total
+from centrode.kinematics.compiled.newton.matrices import Matrix
+from centrode.kinematics.compiled.newton.postures import Names
+from centrode.kinematics.compiled.newton.small_systems import dot, multiplied, plus, sizes, times, total
 from centrode.kinematics.compiled.variables import FIRST, SHARE
 
 CHANGE = 0.4

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 from centrode.algebra.expressions import Node, Operand
 from centrode.geometry.plane import Vector, dot
-from centrode.kinematics.compiled.small_systems import inverse, minus, product, times
+from centrode.kinematics.compiled.newton.small_systems import inverse, minus, product, times
 from centrode.kinematics.higher_class.chains import Chain
 
 Number: TypeAlias = Any
