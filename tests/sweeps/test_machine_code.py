@@ -18,6 +18,8 @@ from centrode.quantities import QUANTITIES
 from centrode.structure.groups import Newton
 from centrode.sweeps import limits
 from centrode.sweeps.arrays import ArraysExecutor
+from growing import mechanism_of
+from growing_sphere import grown
 from mechanisms import EPS, four_bar, parts_of
 
 pytest.importorskip("llvmlite", reason="machine code needs the extra fast")
@@ -111,6 +113,18 @@ def test_the_same_as_arrays(name: str) -> None:
     mechanism = ct.example(name)
     outputs = everything(mechanism)
     same(*both(mechanism, around(mechanism, 0.1, 21), outputs, 37), outputs)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_arcs_that_vary_give_the_same_bits_reduced(seed: int) -> None:
+    """Their sine and cosine are those of NumPy, whichever loop is inside."""
+    mechanism = mechanism_of(grown(["turned link", "RRR"], seed).parts())
+    path = path_of(mechanism)
+    vary = {path: ct.value_at(mechanism, path) * np.linspace(0.999, 1.001, 16)}
+    found, expected = (
+        ct.sweep(mechanism, vary, "position", 37, reduce="range", executor=name) for name in (MACHINE, ARRAYS)
+    )
+    np.testing.assert_array_equal(found["position"], expected["position"])
 
 
 @pytest.mark.parametrize("name", sorted(REASONS))

@@ -197,9 +197,11 @@ FORMULAS = {
 }
 
 
-def test_reduced_on_the_way() -> None:
+@pytest.mark.parametrize("more", [{}, {"start": -2.0, "stop": 3.0}])
+def test_reduced_on_the_way(more: dict[str, float]) -> None:
+    """Folds inside folds pass the samples again, from the initial position in their midst too."""
     mechanism, vary = triads(20)
-    found, expected = both(mechanism, vary, None, 31, reduce=FORMULAS)
+    found, expected = both(mechanism, vary, None, 31, reduce=FORMULAS, **more)
     np.testing.assert_array_equal(found["samples_ok"], expected["samples_ok"])
     for name in FORMULAS:
         size = np.nanmax(np.abs(expected[name]), initial=1.0)
@@ -284,6 +286,22 @@ def test_derivatives_by_dimensions() -> None:
         np.testing.assert_allclose(
             exact[f"gradient.{name}"][0], slopes, rtol=0.0, atol=1e3 * step**2 + rounding, err_msg=name
         )
+
+
+def test_several_drives_are_left_to_the_arrays(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The platform's rod DC stands on a second crank."""
+    parts = parts_of(ct.example("third-class-triad"))
+    parts["frame"]["points"]["Q"] = [-0.5, 0.0]
+    del parts["frame"]["points"]["D"]
+    parts["links"]["QD"] = {"length": 0.5}
+    parts["drives"].append({"link": "QD", "start": 0.0, "speed": 0.1})
+    mechanism, vary = ct.Mechanism(**parts), {"links.AB.length": [4.99, 5.01]}
+    with pytest.raises(ct.InputError, match="groups of higher class with several drives; say executor"):
+        ct.sweep(mechanism, vary, "position", 3, executor=MACHINE)
+    monkeypatch.setattr(limits, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(many, "WORTH_COMPILING", 1)
+    assert ct.sweep(mechanism, vary, "position", 3).attrs["executor"].startswith(f"{ARRAYS} (")
+    assert (ct.motion(mechanism, 3, start=0.0, stop=0.1, vary=vary)["status"] == ct.Status.OK).all()
 
 
 def test_many_motions(monkeypatch: pytest.MonkeyPatch) -> None:
