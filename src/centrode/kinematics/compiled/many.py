@@ -30,7 +30,7 @@ from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, taken, 
 from centrode.kinematics.compiled.walks.beginnings import beginnings
 from centrode.kinematics.compiled.walks.walking import SURE, Walking
 from centrode.kinematics.compiled.walks.ways import Way, way_of
-from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, streams_of
+from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, solved_of, streams_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED, Kept
@@ -109,23 +109,10 @@ class _Many:
         left = np.nonzero(~clear)[0]
         if len(left):
             self._fill(left, found, status, branches)
-        points = found["all_points"]
-        moving = points[:, :, :, len(self.numbers.frame) :]
-        return replace(
-            self.plan.solved,
-            ready=self.ready,
-            span=self.span,
-            branches=branches,
-            all_points=points,
-            points=moving,
-            angles=found["angles"],
-            slides=found["slides"],
-            spins=found.get("spins"),
-            status=status,
-            residual=residual,
-            worst_constraint=self._worst(residual),
-            contacts=found["contacts"],
+        solved = solved_of(
+            self.plan.solved, found, status, ready=self.ready, span=self.span, branches=branches
         )
+        return replace(solved, worst_constraint=self._worst(residual))
 
     def _outputs(self) -> dict[str, Nodes]:
         found = nodes_of(self.plan)
@@ -139,22 +126,18 @@ class _Many:
     def _write(self, writer: Writer, room: Array, progress: Progress | None) -> Mask:
         """All samples of all mechanisms, but where none of some is clear; which of them are sure to be right."""
         sure = self.judged.clear.copy()
+        walking = Walking(self.judging.walk, outputs=writer.graph.outputs) if self.plan.steps else None
         for rows in self._parts():
             if sure[rows].any():
                 some = {name: row[rows] for name, row in self.values.items()}
-                if self.plan.steps:
-                    sure[rows] &= self._walked(writer, some, room[:, rows])
-                else:
+                if walking is None:
                     writer.write(some, room[:, rows])
+                else:
+                    at_end = walking.written(self._way, some, MACHINE_CODE, 1, room[:, rows])
+                    sure[rows] &= at_end[SURE] > 0.0
             if progress is not None:
                 progress(rows.stop, self.lanes)
         return sure
-
-    def _walked(self, writer: Writer, values: Mapping[str, Array], room: Array) -> Mask:
-        """Write some mechanisms where every place is found from the one before; which of them are sure."""
-        walking = Walking(self.judging.walk, outputs=writer.graph.outputs)
-        found: Mask = walking.written(self._way, values, MACHINE_CODE, 1, room)[SURE] > 0.0
-        return found
 
     @cached_property
     def _way(self) -> Way:

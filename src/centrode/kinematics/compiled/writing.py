@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -19,6 +19,7 @@ from centrode.algebra.operations import VARIABLE
 from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.traced import Traced
 from centrode.kinematics.compiled.variables import PARAMETER, boxed
+from centrode.kinematics.solve import Solved
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
@@ -151,3 +152,21 @@ def streams_of(name: str, array: Array) -> Array:
     """An array of a Solved with its mechanisms and samples behind everything else."""
     lane = 1 if name in ORDERED else 0
     return np.moveaxis(array, (lane, lane + 1), (-2, -1))
+
+
+def solved_of(plan: Solved, found: Mapping[str, Array], status: npt.NDArray[np.int8], **whole: Any) -> Solved:
+    """The motion of a plan of one sample with what was written; `whole` are its parts that are no arrays."""
+    points = found["all_points"]
+    frame = plan.all_points.shape[3] - plan.points.shape[3]
+    return replace(
+        plan,
+        all_points=points,
+        points=points[:, :, :, frame:],
+        angles=found["angles"],
+        slides=found["slides"],
+        spins=found.get("spins"),
+        status=status,
+        residual=found["residual"],
+        contacts=found["contacts"],
+        **whole,
+    )
