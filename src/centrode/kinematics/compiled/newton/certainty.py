@@ -60,7 +60,8 @@ def _changed(names: Names, matrix: Matrix) -> Operand:
         change[i][j] = x - variable(names.of_matrix(i, j))
     moved = multiplied(matrix.inverse, change)
     twice = [total(row) for row in sizes(multiplied(moved, moved))]
-    own = [total(row) for row in sizes(matrix.core)]
+    # where all numbers of a row are small its equation is no better known than its terms
+    own = [plus(total(row), size) for row, size in zip(sizes(matrix.core), matrix.terms, strict=True)]
     condition = [dot(row, own) for row in sizes(matrix.inverse)]
     # as if the step were the longest: so it does not matter which samples are asked for; none before the first
     share = m.where(m.equal(variable(FIRST), 1.0), 0.0, variable(SHARE))
