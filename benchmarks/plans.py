@@ -15,8 +15,7 @@ from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, variable
 from centrode.algebra.graphs import Graph
 from centrode.algebra.jets import Jet
-from centrode.kinematics.compiled.traced import NODE_JETS
-from centrode.kinematics.compiled.variables import PARAMETER, varied_of
+from centrode.kinematics.compiled.variables import NODE_JETS, PARAMETER, varied_of
 from centrode.kinematics.evaluate import FixedSigns
 from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.ready import ready

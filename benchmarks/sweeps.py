@@ -30,6 +30,7 @@ ROUNDS = 5
 MECHANISMS = {
     "crank-rocker": (("links.AB.length", "links.DB.length"), "B"),
     "six-bar-press": (("links.OA.length", "links.DH.points.H.x"), "D"),
+    "third-class-triad": (("links.AB.length", "links.DC.length"), "C"),
     "spherical-four-bar": (("links.BC.length", "links.DC.length"), "C"),
 }
 """Dimensions that vary by one per cent, and the point that is looked at."""

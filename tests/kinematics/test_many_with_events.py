@@ -12,7 +12,7 @@ import pytest
 import centrode as ct
 from centrode.algebra import machine_code
 from centrode.kinematics.compiled import many
-from centrode.kinematics.compiled.eventful import Eventful
+from centrode.kinematics.compiled.events.eventful import Eventful
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.kinematics.spans import Span, span_at

@@ -1,73 +1,60 @@
-"""Every sample of mechanisms without events, written by machine code."""
+"""Where every sample of mechanisms without events goes: straight to its place in a result, or by way of a buffer."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.executors import runner
 from centrode.algebra.expressions import Node
-from centrode.algebra.graphs import Graph
-from centrode.algebra.scans import Scan, room_of
-from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.algebra.scans import room_of
 from centrode.sweeps import limits
-from centrode.sweeps.expressed import Expressed
+from centrode.sweeps.arrays import NUMBER
+from centrode.sweeps.streams import Columns
 
 Array: TypeAlias = npt.NDArray[np.float64]
 AnyArray: TypeAlias = npt.NDArray[Any]
-Values: TypeAlias = Mapping[str, Array]
-
-NUMBER = 8
-"""Bytes of a float64."""
 
 
 @dataclass(frozen=True)
 class EverySample:
-    """Kernels whose lanes are samples and whose steps are mechanisms: every number is written as one stream."""
+    """The columns of a result that have every sample.
 
-    asked: Expressed
-    kernels: str
-    threads: int
+    Attributes
+    ----------
+    columns : column -> its numbers
+    results : column -> (mechanisms, ...)
+    at : the mechanisms among these that are written: a whole slice, or their numbers
+    samples : how many there are
+    """
 
-    @cached_property
-    def scan(self) -> Scan:
-        """What is asked for."""
-        outputs: dict[str, Node] = {}
-        for name, nodes in self.asked.columns.items():
-            outputs |= {f"{name} {k}": node for k, node in enumerate(nodes)}
-        used = Graph(outputs).variables
-        along = tuple(name for name in self.asked.inputs if name in used or name == PARAMETER)
-        return Scan(along, tuple(name for name in used if name not in along), outputs)
+    columns: Mapping[str, Sequence[Node]]
+    results: Mapping[str, AnyArray]
+    at: Any
+    samples: int
 
-    @property
-    def samples(self) -> int:
-        """How many there are."""
-        return len(self.asked.task.span.parameter)
-
-    def write(self, rows: Values, streams: Array) -> None:
-        """Fill (numbers, mechanisms, samples)."""
-        scan, lanes = self.scan, streams.shape[1]
-        along = np.stack([self.asked.inputs[name] for name in scan.parameters])
-        inputs = np.stack([rows[name] for name in scan.inputs]) if scan.inputs else None
-        run = runner(scan, self.kernels, lanes_inside=True, threads=self.threads)
-        run(along, inputs, out=streams, steps=lanes)
-
-    def put(self, rows: Values, places: npt.NDArray[np.intp], results: Mapping[str, AnyArray]) -> None:
-        """Fill the columns of mechanisms at some places by way of a buffer."""
-        size = max(1, limits.KERNEL_BUFFER // (NUMBER * len(self.scan.outputs) * self.samples))
-        buffer = room_of(len(self.scan.outputs), min(size, len(places)), self.samples)
+    def rooms(self) -> Iterator[tuple[slice, Array]]:
+        """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is asked for."""
+        streams = self.results.streams if isinstance(self.results, Columns) else None
+        if streams is not None and isinstance(self.at, slice):
+            yield slice(0, streams.shape[1]), streams
+            return
+        numbers = sum(map(len, self.columns.values()))
+        places = np.arange(len(self.results["samples_ok"]))[self.at]
+        size = max(1, limits.KERNEL_BUFFER // (NUMBER * numbers * self.samples))
+        buffer = room_of(numbers, min(size, len(places)), self.samples)
         for first in range(0, len(places), size):
-            part = slice(first, first + size)
-            where = places[part]
-            out = buffer[:, : len(where)]
-            self.write({name: row[part] for name, row in rows.items()}, out)
-            stream = iter(out)
-            for name, nodes in self.asked.columns.items():
-                target = results[name].reshape(*results[name].shape[:2], len(nodes))
-                for k in range(len(nodes)):
-                    target[where, :, k] = next(stream)
+            where = places[first : first + size]
+            room = buffer[:, : len(where)]
+            yield slice(first, first + size), room
+            self._put(room, where)
+
+    def _put(self, room: Array, where: npt.NDArray[np.intp]) -> None:
+        stream = iter(room)
+        for name, nodes in self.columns.items():
+            target = self.results[name].reshape(*self.results[name].shape[:2], len(nodes))
+            for k in range(len(nodes)):
+                target[where, :, k] = next(stream)

@@ -13,8 +13,11 @@ from centrode.algebra.expressions import Node, as_node, variable
 from centrode.algebra.graphs import Graph
 from centrode.kinematics.compiled.drives import inputs_of
 from centrode.kinematics.compiled.judging import Judging
-from centrode.kinematics.compiled.traced import Traced, centre_of
-from centrode.kinematics.compiled.variables import SCALE, Varied, boxed
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.turns import before_of, centre_of
+from centrode.kinematics.compiled.variables import ALONG, SCALE, Varied, boxed
+from centrode.kinematics.compiled.walks.walking import Walk
+from centrode.kinematics.compiled.walks.ways import Way, way_of
 from centrode.sweeps.arrays import Task
 from centrode.sweeps.folds import Folds
 from centrode.sweeps.slopes import Slopes
@@ -67,9 +70,20 @@ class Expressed:
         }
 
     @cached_property
+    def outputs(self) -> dict[str, Node]:
+        """All numbers of a sample, column by column."""
+        return {f"{name} {k}": node for name, nodes in self.columns.items() for k, node in enumerate(nodes)}
+
+    @cached_property
     def slopes(self) -> Slopes:
         """How derivatives are found. Raises Untraceable."""
-        return Slopes.of(self.task.paths, self.varied, self.traced, self.folds)
+        return Slopes.of(self.task.paths, self.varied, self.traced, self.folds, self._moving)
+
+    @property
+    def _moving(self) -> frozenset[str]:
+        """Variables that differ from sample to sample."""
+        walked = Walk(self.traced, tuple(self.traced.turning)).state if self.traced.steps else ()
+        return frozenset([*self.inputs, *ALONG, *walked])
 
     @cached_property
     def final(self) -> dict[str, list[Node]]:
@@ -86,7 +100,8 @@ class Expressed:
         nodes = [node for column in self.columns.values() for node in column]
         nodes += [fold.value for fold in self.folds.found.values()]
         used = frozenset(Graph({str(k): node for k, node in enumerate([*nodes, residual])}).variables)
-        links = tuple(link for link in self.traced.turning if centre_of(link) in used)
+        told_by = before_of if self.traced.steps else centre_of
+        links = tuple(link for link in self.traced.turning if told_by(link) in used)
         names = tuple(dict.fromkeys([*self.varied.names, SCALE]))
         return Judging(self.traced, self.task.span.parameter, names, links, self.kernels, self.threads)
 
@@ -97,10 +112,20 @@ class Expressed:
         slack = self.judging.slack_at_samples
         return found if slack is None else {**found, SLACK: slack}
 
+    @property
+    def samples(self) -> int:
+        """How many there are."""
+        return len(self.task.span.parameter)
+
     @cached_property
     def inputs(self) -> Values:
         """What the variables of a place stand for at the samples."""
         return inputs_of(self.task.ready.kinematics.path, self.task.span)
+
+    @cached_property
+    def way(self) -> Way:
+        """The way past all samples, where there are groups of higher class."""
+        return way_of(self.task.ready.kinematics.path, self.inputs)
 
     @property
     def states(self) -> int:
@@ -109,4 +134,5 @@ class Expressed:
         if self.task.asked.slopes:
             folds += sum(len(self.slopes.states_of(fold.name).parts) for fold in self.folds.found.values())
         angles = 10 * len(self.judging.links)
-        return len(self.varied.names) + folds + angles + 2 * len(self.traced.radicands) + 2
+        walked = 2 * len(self.judging.walk.state) if self.traced.steps else 0
+        return len(self.varied.names) + folds + angles + walked + 2 * len(self.traced.radicands) + 2

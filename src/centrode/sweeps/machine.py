@@ -1,13 +1,13 @@
 """Sweeps as machine code: what has no events is computed in one go, the rest as motions with events.
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
-and the formulas of `traced`; the motions of all others have the bits of the arrays (`compiled.eventful`), and what is
-asked for is taken from them as `ArraysExecutor` does it.
+and the formulas of `traced`. The motions of all others have the bits of the arrays (`compiled.events`; with groups of
+higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -16,25 +16,26 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra import machine_code
-from centrode.algebra.executors import MACHINE_CODE, runner
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, as_node, variable
+from centrode.algebra.executors import MACHINE_CODE
 from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.errors import Status
-from centrode.kinematics.compiled.eventful import Eventful
-from centrode.kinematics.compiled.judging import scan_of
-from centrode.kinematics.compiled.traced import Untraceable, traced
+from centrode.kinematics.compiled.deciding import Untraceable
+from centrode.kinematics.compiled.events.eventful import Eventful
+from centrode.kinematics.compiled.traced import traced
 from centrode.kinematics.compiled.variables import taken, varied_of
+from centrode.kinematics.compiled.walks.beginnings import beginnings
+from centrode.kinematics.compiled.walks.walking import SURE
 from centrode.kinematics.residuals import CLOSED
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
 from centrode.sweeps import limits
-from centrode.sweeps.arrays import ArraysExecutor, Task, fill_columns
+from centrode.sweeps.arrays import NUMBER, ArraysExecutor, Task, fill_columns
 from centrode.sweeps.designs import Rows
-from centrode.sweeps.every_sample import NUMBER, EverySample
+from centrode.sweeps.every_sample import EverySample
 from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
+from centrode.sweeps.passing import Passing, judging_states, passing_of
 from centrode.sweeps.streams import Columns, columns_for
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -43,7 +44,6 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 Lanes: TypeAlias = npt.NDArray[np.intp]
 Values: TypeAlias = dict[str, Array]
 
-m = EXPRESSIONS
 COPIES = 4
 """Of what a mechanism has while samples are passed: before, after, as kernels are given it."""
 
@@ -82,7 +82,13 @@ class MachineCodeExecutor:
         if kernels == MACHINE_CODE and not machine_code.PRESENT:
             raise Untraceable(mark("llvmlite is not installed"))
         varied = varied_of(numbers, values)
-        asked = Expressed(task, varied, traced(task.ready, task.span, varied), kernels, threads)
+        asked = Expressed(
+            task,
+            varied,
+            traced(task.ready, task.span, varied, differentiable=bool(task.asked.slopes)),
+            kernels,
+            threads,
+        )
         if task.asked.slopes:
             _ = asked.slopes  # what cannot be differentiated is told before anything is computed
         return cls(task, asked, threads, kernels)
@@ -97,6 +103,8 @@ class MachineCodeExecutor:
     def run(self, task: Task, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]) -> None:
         """Fill in all columns for the mechanisms of these dimensions."""
         rows = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
+        if self.asked.traced.steps:
+            rows |= beginnings(task.ready, numbers, len(next(iter(rows.values()))))
         judged = self.asked.judging.judge(rows)
         rows |= judged.values
         clear = judged.clear.copy()
@@ -104,8 +112,7 @@ class MachineCodeExecutor:
             everywhere = bool(clear.all())
             at: Any = slice(None) if everywhere else np.nonzero(clear)[0]
             some = rows if everywhere else {name: row[at] for name, row in rows.items()}
-            kernels = self._reduced if task.asked.reduced else self._written
-            clear[at] = kernels(some, at, results)
+            clear[at] = self._without_events(some, at, results)
         left = np.nonzero(~clear)[0]
         worth = len(left) * task.places >= limits.WORTH_COMPILING and self.kernels == MACHINE_CODE
         if worth and self._eventful.possible:
@@ -142,79 +149,53 @@ class MachineCodeExecutor:
         """Columns of mechanisms that do not stand side by side."""
         return columns_for(self.task.asked.columns, lanes)
 
-    # one number a motion
+    # without events
 
-    def _reduced(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
-        """Fill in what is reduced for the mechanisms at some places; returns which of them stay clear."""
-        lanes = len(next(iter(rows.values())))
+    @cached_property
+    def _passing(self) -> Passing:
+        return passing_of(self.asked)
+
+    def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
+        """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
+        found = (
+            self._reduced(rows, at, results) if self.task.asked.reduced else self._written(rows, at, results)
+        )
+        results["samples_ok"][at] = self.asked.samples
+        results["worst_residual"][at] = found[RESIDUAL]
+        clear: Mask = found[RESIDUAL] <= 0.5 * CLOSED
+        for slack in {SLACK, SURE} & found.keys():
+            clear &= found[slack] > 0.0
+        return clear
+
+    def _reduced(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+        """Fill in one number, or a few, of each motion; returns what mechanisms are judged by."""
         rows = dict(rows)
         columns = self.asked.final
         for depth in range(self.asked.folds.passes):
-            rows |= self._passed(depth, rows, lanes)
-        graph = Graph(
-            {f"{name} {k}": node for name, nodes in columns.items() for k, node in enumerate(nodes)}
-        )
-        found = evaluate(graph, rows)
-        for name, nodes in columns.items():
-            flat = results[name].reshape(len(results[name]), len(nodes))
-            for k in range(len(nodes)):
+            rows |= self._passing.reduced(self._states(depth), rows)
+        nodes = {f"{name} {k}": node for name, nodes in columns.items() for k, node in enumerate(nodes)}
+        found = evaluate(Graph(nodes), rows)
+        for name, numbers in columns.items():
+            flat = results[name].reshape(len(results[name]), len(numbers))
+            for k in range(len(numbers)):
                 flat[at, k] = found[f"{name} {k}"]
-        return self._judged(rows[RESIDUAL], rows.get(SLACK), at, results)
+        return rows
 
-    def _passed(self, depth: int, rows: Values, lanes: int) -> Values:
-        """The states after a pass over the samples."""
-        parts = [fold.state for fold in self.asked.folds.at_depth(depth)]
+    def _states(self, depth: int) -> Reduction:
+        """What is handed on in a pass over the samples."""
+        folds = self.asked.folds.at_depth(depth)
+        parts = [fold.state for fold in folds]
         if self.task.asked.slopes:
-            parts += [self.asked.slopes.of_fold(fold) for fold in self.asked.folds.at_depth(depth)]
+            parts += [self.asked.slopes.of_fold(fold) for fold in folds]
         if depth == 0:
-            parts.append(_judging_states(self.asked.judges))
-        return self._states(parts, rows, lanes)
+            parts.append(judging_states(self.asked))
+        return together(*parts)
 
-    def _states(self, parts: Sequence[Reduction], rows: Values, lanes: int) -> Values:
-        reduction = together(*parts)
-        scan = scan_of(reduction, tuple(rows), tuple(self.asked.inputs))
-        parameters = np.stack([rows[name] for name in scan.parameters]) if scan.parameters else None
-        inputs = np.stack([self.asked.inputs[name] for name in scan.inputs]) if scan.inputs else None
-        start = np.repeat([[value] for value in reduction.start.values()], lanes, axis=1)
-        # nothing that moves: the samples are counted all the same
-        steps = None if scan.inputs else len(self.task.span.parameter)
-        state = runner(scan, self.kernels, threads=self.threads)(parameters, inputs, start, steps=steps).state
-        return dict(zip(scan.state, state, strict=True))
-
-    def _judged(self, residual: Array, slack: Array | None, at: Any, results: Mapping[str, AnyArray]) -> Mask:
-        """Fill in what is said of every mechanism."""
-        results["samples_ok"][at] = len(self.task.span.parameter)
-        results["worst_residual"][at] = residual
-        closed: Mask = residual <= 0.5 * CLOSED
-        return closed if slack is None else closed & (slack > 0.0)
-
-    # every sample
-
-    @cached_property
-    def _samples(self) -> EverySample:
-        return EverySample(self.asked, self.kernels, self.threads)
-
-    def _written(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
-        """Fill in every sample of the mechanisms at some places; returns which of them stay clear."""
-        lanes = len(next(iter(rows.values())))
-        streams = results.streams if isinstance(results, Columns) else None
-        if streams is not None and isinstance(at, slice):
-            self._samples.write(rows, streams)
-        else:
-            self._samples.put(rows, np.arange(len(results["samples_ok"]))[at], results)
+    def _written(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+        """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
-        states = self._states([_judging_states(self.asked.judges)], rows, lanes)
-        return self._judged(states[RESIDUAL], states.get(SLACK), at, results)
-
-
-def _judging_states(judges: Mapping[str, Node]) -> Reduction:
-    """Greatest residual, least slack; NaN where one is."""
-    state = {RESIDUAL: as_node(m.max(judges[RESIDUAL], variable(RESIDUAL)))}
-    start = {RESIDUAL: 0.0}
-    if SLACK in judges:
-        state[SLACK] = as_node(m.min(judges[SLACK], variable(SLACK)))
-        start[SLACK] = np.inf
-    return Reduction(state, start)
+        every = EverySample(self.asked.columns, results, at, self.asked.samples)
+        return self._passing.written(rows, every.rooms())
 
 
 def _rows_at(values: Rows, lanes: Lanes) -> Rows:

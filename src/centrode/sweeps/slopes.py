@@ -12,8 +12,9 @@ from centrode.algebra.gradients import gradient
 from centrode.algebra.graphs import Graph, rebuilt, split
 from centrode.algebra.operations import CONSTANT, VARIABLE
 from centrode.algebra.reductions import Reduction
-from centrode.kinematics.compiled.traced import Traced, Untraceable
-from centrode.kinematics.compiled.variables import PARAMETER, RATE, SECOND_RATE, TIME, Varied
+from centrode.kinematics.compiled.deciding import Untraceable
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.variables import Varied
 from centrode.locale import mark
 from centrode.structure.gearing import Straight
 from centrode.sweeps.folds import Fold, Folds
@@ -22,8 +23,6 @@ Through: TypeAlias = Sequence[tuple[Node, Operand]]
 """The variables that a value moves, each with its derivative by that value."""
 
 m = EXPRESSIONS
-MOVING = frozenset({PARAMETER, TIME, RATE, SECOND_RATE})
-"""Variables that differ from sample to sample."""
 
 
 @dataclass(frozen=True)
@@ -47,26 +46,29 @@ class Slopes:
     Attributes
     ----------
     through : path -> the variables of the plan that it moves
-    turns : name -> whole turns in angles, which jump and have no derivative
+    standing : name -> whole turns in angles, which jump and have no derivative; what is found by iteration
     folds : whose results have derivatives of their own
+    moving : variables that differ from sample to sample
     known : fold -> its states, once they have been asked for
     """
 
     through: Mapping[str, Through]
-    turns: Mapping[str, Node]
+    standing: Mapping[str, Node]
     folds: Folds
+    moving: frozenset[str]
     known: dict[str, States] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, paths: Sequence[str], varied: Varied, traced: Traced, folds: Folds) -> Slopes:
+    def of(
+        cls, paths: Sequence[str], varied: Varied, traced: Traced, folds: Folds, moving: frozenset[str]
+    ) -> Slopes:
         """Derivatives by all paths that vary. Raises Untraceable for one that moves more than is known here."""
         through = {path: _through(path, varied) for path in paths}
-        turns = {f"turns {link}": node for link, node in traced.turns.items()}
-        return cls(through, turns, folds)
+        return cls(through, traced.standing, folds, moving)
 
     def of_node(self, node: Node) -> dict[str, Node]:
         """Path -> derivative of an expression, that of the folds it uses included."""
-        still = self._without_turns(node)
+        still = self._without_standing(node)
         used = frozenset(Graph({"": still}).variables)
         names = [fold.name for fold in self.folds.found.values() if fold.name in used]
         moved = list(dict.fromkeys(x for path in self.through.values() for x, _factor in path))
@@ -81,7 +83,7 @@ class Slopes:
             for name, part in of_folds.items():
                 total = total + part * self.states_of(name).at_end[path]
             found[path] = total
-        return dict(Graph.of(found).substituted(self.turns).outputs)
+        return dict(Graph.of(found).substituted(self.standing).outputs)
 
     def of_fold(self, fold: Fold) -> Reduction:
         """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""
@@ -102,7 +104,7 @@ class Slopes:
                 fold.kind == "sum"
             ):  # an extreme selects for each state, and its two ends have the chain in common
                 ways.append(self._by_parts(fold))
-            self.known[name] = min(ways, key=_work)
+            self.known[name] = min(ways, key=self._work)
         return self.known[name]
 
     def _by_paths(self, fold: Fold) -> States:
@@ -118,8 +120,9 @@ class Slopes:
         To fold is linear in derivatives. So the chain from these parts down to the values at paths is gone through
         once a mechanism, at the end.
         """
-        still = self._without_turns(fold.value)
-        variables = [x for x in Graph({"": still}).variables if x not in MOVING and x not in self.turns]
+        still = self._without_standing(fold.value)
+        jumping = self.moving | self.standing.keys()
+        variables = [x for x in Graph({"": still}).variables if x not in jumping]
         parts, rest = split(Graph({"": still}), variables, f"{fold.name} part")
         standing = {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
         factors = {x: self.of_node(node) for x, node in standing.items()}
@@ -133,25 +136,25 @@ class Slopes:
                 ends[path] = (
                     ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
                 )
-        outputs = found.substituted({**self.turns, **parts.outputs}).outputs
+        outputs = found.substituted({**self.standing, **parts.outputs}).outputs
         return States(outputs, {path: as_node(end) for path, end in ends.items()})
 
-    def _without_turns(self, node: Node) -> Node:
-        standing = {turns: variable(name) for name, turns in self.turns.items()}
+    def _without_standing(self, node: Node) -> Node:
+        standing = {x: variable(name) for name, x in self.standing.items()}
         return rebuilt({"": node}, lambda x, _arguments: standing.get(x))[""]
+
+    def _work(self, states: States) -> int:
+        """Operations that are carried out at every sample."""
+        moving = set()
+        for node in Graph(states.parts).order:
+            own = node.operation == VARIABLE and node.detail in self.moving
+            if own or any(x in moving for x in node.arguments):
+                moving.add(node)
+        return len(moving) + len(states.parts)
 
 
 def _is_something(factor: Node) -> bool:
     return factor.operation != CONSTANT or factor.detail != 0.0
-
-
-def _work(states: States) -> int:
-    """Operations that are carried out at every sample."""
-    order, moving = Graph(states.parts).order, set()
-    for node in order:
-        if (node.operation == VARIABLE and node.detail in MOVING) or any(x in moving for x in node.arguments):
-            moving.add(node)
-    return len(moving) + len(states.parts)
 
 
 def by(name: str, path: str) -> str:

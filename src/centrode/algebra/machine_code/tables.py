@@ -52,8 +52,8 @@ class Tables:
     """A scan with what is computed beforehand taken out of it.
 
     What depends on the inner loop's variables alone would be computed again at every turn of the outer loop.
-    Functions of the inputs alone are taken out in any case: so the drive's sine and cosine, and the statuses
-    that hang on them, are NumPy's whichever loop is inside.
+    Functions of inputs or parameters alone are taken out in any case: so sine and cosine of the drive, and of arcs
+    on the sphere, and the statuses that hang on them, are NumPy's whichever loop is inside.
 
     Attributes
     ----------
@@ -68,9 +68,10 @@ class Tables:
     @classmethod
     def of(cls, scan: Scan, lanes_inside: bool) -> Tables:
         """The tables of a scan."""
-        only = FUNCTIONS if lanes_inside else None
-        steps, graph = split(scan.graph, scan.inputs, "of step", only)
-        lanes, graph = split(graph, scan.parameters if lanes_inside else (), "of lane")
+        steps, graph = split(scan.graph, scan.inputs, "of step", FUNCTIONS if lanes_inside else None)
+        # of one step that hands nothing on nothing is computed twice
+        known = scan.parameters if lanes_inside or scan.inputs or scan.state else ()
+        lanes, graph = split(graph, known, "of lane", None if lanes_inside else FUNCTIONS)
         rest = scan.with_graph(graph, (*scan.parameters, *lanes.outputs), (*scan.inputs, *steps.outputs))
         return cls(Table(scan.inputs, steps), Table(scan.parameters, lanes), rest)
 

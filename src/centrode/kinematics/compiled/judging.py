@@ -1,4 +1,4 @@
-"""Which mechanisms of a batch have no events, and where their angles stand: judged on the mesh of events.
+"""Which mechanisms of a batch have no events: judged on the mesh of events, along the path where that is needed.
 
 A mechanism is clear where every radicand stays so far above zero, and every divisor so far from it, that the
 search of `events` would find nothing: no sign change and no low minimum. Then no sign flips, nothing is cut off,
@@ -8,7 +8,7 @@ mechanism unclear costs time and nothing else.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -16,15 +16,18 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.executors import runner
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.graphs import Graph
 from centrode.algebra.jets import Jet
 from centrode.algebra.reductions import Reduction, together
-from centrode.algebra.scans import Scan
+from centrode.kinematics.compiled.centring import Centring
 from centrode.kinematics.compiled.drives import places_of
-from centrode.kinematics.compiled.traced import TURN, WHOLE, Traced, centre_of, winding_of
+from centrode.kinematics.compiled.passes import Pass, greatest, least, least_of
+from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.kinematics.compiled.walks.walking import SURE, Walk, Walking
+from centrode.kinematics.compiled.walks.ways import way_of
+from centrode.kinematics.continuation import WINDOW
 from centrode.kinematics.mesh import LOW, mesh_of
 from centrode.kinematics.paths import Path
 from centrode.kinematics.sampling import ORDERS, SUSPECT
@@ -34,16 +37,9 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 Values: TypeAlias = dict[str, Array]
 
 m = EXPRESSIONS
-INFINITE = float("inf")
 SAFE = 2.0
 """Margins of the search are kept this many times over: the last bits may differ from those of the arrays."""
-SPARSE = 4
-"""Angles are followed at every fourth node of the mesh: 2 degrees of an angle drive."""
-MOST = 0.8
-"""Greatest change of an angle [rad] from one of these nodes to the next: faster links are left to the arrays."""
-AWAY = 0.2
-"""How far [rad] angles stay from half a turn off their centre."""
-SLACK, FIRST, START, STEP = "slack", "first", "start", "step"
+SLACK, GAP = "slack", "gap"
 
 
 @dataclass(frozen=True)
@@ -77,130 +73,78 @@ class Judging:
     def _places(self, parameter: Array) -> Values:
         return places_of(self._path, parameter, ORDERS - 1)
 
+    @cached_property
+    def _centring(self) -> Centring:
+        return Centring(self.traced, self.links, self.mesh, self.names)
+
+    @cached_property
+    def walk(self) -> Walk:
+        """What is handed on along the path, where there are groups of higher class."""
+        return Walk(self.traced, self.links)
+
     def judge(self, values: Mapping[str, Array]) -> Judged:
-        """Judge the mechanisms of a batch."""
-        found = self._run(self._of_events, self._events_scan, values, self._nodes)
+        """Judge the mechanisms of a batch; with groups of higher class `values` have where walks begin.
+
+        What a walk along the samples finds out about these groups themselves is not looked at here.
+        """
+        found = self._events(values)
         lanes = len(next(iter(values.values())))
         clear = np.ones(lanes, dtype=bool)
-        if SLACK in found:
-            clear &= found[SLACK] > 0.0
+        for slack in {SLACK, SURE} & found.keys():
+            clear &= found[slack] > 0.0
         for group in self.traced.divisors:
             if f"least {group}" in found:
                 clear &= (found[f"least {group}"] > 0.0) | (found[f"most {group}"] < 0.0)
         further = {name: array for name, array in found.items() if name.startswith("largest")}
-        if self.links:
-            found = self._run(self._of_angles, self._angles_scan, values, self._sparse)
-            for link in self.links:
-                clear &= self._centred(link, found, further)
+        if self.links and not self.traced.steps:
+            near, centres = self._centring.centres(values, self.executor, self.threads)
+            clear &= near
+            further |= centres
         return Judged(clear, further)
 
-    def _run(
-        self, reduction: Reduction, scan: Scan, values: Mapping[str, Array], inputs: Mapping[str, Array]
-    ) -> Values:
-        if not scan.state:
-            return {}
-        parameters = np.stack([values[name] for name in scan.parameters]) if scan.parameters else None
-        steps = np.stack([inputs[name] for name in scan.inputs]) if scan.inputs else None
-        lanes = len(next(iter(values.values())))
-        start = np.repeat([[value] for value in reduction.start.values()], lanes, axis=1)
-        run = runner(scan, self.executor, threads=self.threads)
-        state = run(parameters, steps, start, steps=None if scan.inputs else 1).state
-        return dict(zip(scan.state, state, strict=True))
+    def _events(self, values: Mapping[str, Array]) -> Values:
+        walk = Walk(self.traced)
+        if walk.moves(list(self._of_events.state.values())):
+            way = way_of(self._path, {PARAMETER: self._near})
+            return Walking(walk, self._of_events).reduced(way, values, self.executor, self.threads)
+        return self._over_nodes.run(values, self.executor, self.threads)
 
-    # events
+    @property
+    def _near(self) -> Array:
+        """The nodes on which an event would matter to a sample, or to the way from the initial position to it."""
+        path = self._path
+        ends = np.append(self.samples, path.initial)
+        beyond = WINDOW * path.unit + 2.0 * path.step
+        near: Array = self.mesh[(self.mesh >= ends.min() - beyond) & (self.mesh <= ends.max() + beyond)]
+        return near
 
     @cached_property
-    def _events_scan(self) -> Scan:
-        return scan_of(self._of_events, self.names, tuple(self._nodes))
+    def _over_nodes(self) -> Pass:
+        return Pass(self._of_events, self.names, self._nodes)
 
     @cached_property
     def _nodes(self) -> Values:
         """The mesh; with several drives also how far from each node the next one may be."""
         gaps = np.diff(self.mesh)
         either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
-        return self._places(self.mesh) | ({STEP: either} if self._path.by_time else {})
+        return self._places(self.mesh) | ({GAP: either} if self._path.by_time else {})
 
     @cached_property
     def _of_events(self) -> Reduction:
         """States: how far the worst radicand is from what the search would look into; ends of divisors."""
-        step = variable(STEP) if self._path.by_time else self._path.step
+        step = variable(GAP) if self._path.by_time else self._path.step
         slacks, parts = [], []
         for group, radicand in self.traced.radicands.items():
             value, slope = _with_slope(radicand)
             # a minimum next to a node lies no deeper than its tangent reaches in one step
             slacks.append(as_node(value * (1.0 - SAFE * LOW) - m.abs(slope) * step))
-            parts.append(_greatest(f"largest {group}", as_node(m.abs(value))))
+            parts.append(greatest(f"largest {group}", as_node(m.abs(value))))
         for group, divisor in self.traced.divisors.items():
             value = as_node(_with_slope(divisor)[0])
-            parts += [_greatest(f"most {group}", value), _least(f"least {group}", value)]
+            parts += [greatest(f"most {group}", value), least(f"least {group}", value)]
         if slacks:
-            parts.append(_least(SLACK, _least_of(slacks)))
+            parts.append(least(SLACK, least_of(slacks)))
         return together(*parts)
-
-    # angles
-
-    @cached_property
-    def _sparse(self) -> Values:
-        """Every fourth node, the one nearest to the initial position among them."""
-        start = int(np.argmin(np.abs(self.mesh - self._path.initial)))
-        nodes = np.arange(len(self.mesh))
-        chosen = np.unique(np.concatenate([nodes[start % SPARSE :: SPARSE], nodes[[0, -1]]]))
-        return {
-            **self._places(self.mesh[chosen]),
-            START: (chosen == start).astype(np.float64),
-            FIRST: (chosen == 0).astype(np.float64),
-        }
-
-    @cached_property
-    def _angles_scan(self) -> Scan:
-        return scan_of(self._of_angles, self.names, tuple(self._sparse))
-
-    @cached_property
-    def _of_angles(self) -> Reduction:
-        """States: each angle run on from node to node, its jumps, its ends less those of some turns of the drive."""
-        parts = [Reduction({}, {})]
-        for link in self.links:
-            cosine, sine = self.traced.turning[link]
-            raw, before = m.atan2(sine, cosine), variable(f"angle {link}")
-            angle = as_node(raw + TURN * (((before - raw) * (1.0 / TURN) + WHOLE) - WHOLE))
-            jump = m.where(m.equal(variable(FIRST), 1.0), 0.0, m.abs(angle - before))
-            there = m.where(m.equal(variable(START), 1.0), angle, variable(f"at start {link}"))
-            parts.append(
-                Reduction(
-                    {f"angle {link}": angle, f"at start {link}": as_node(there)},
-                    {f"angle {link}": 0.0, f"at start {link}": 0.0},
-                )
-            )
-            parts.append(_greatest(f"jump {link}", as_node(jump)))
-            for k, winding in enumerate(self._windings):
-                rest = angle
-                for drive, turns in winding.items():
-                    rest = as_node(rest - turns * self.traced.winders[drive])
-                parts += [_greatest(f"high {k} {link}", rest), _least(f"low {k} {link}", rest)]
-        return together(*parts)
-
-    def _centred(self, link: str, found: Values, further: Values) -> Mask:
-        """Where an angle stays within half a turn of a centre; the centre and its winding are added."""
-        start = self.traced.solved.ready.assembled.angles[link]
-        whole = np.round((start - found[f"at start {link}"]) / TURN)
-        off = np.abs(start - found[f"at start {link}"] - TURN * whole)
-        kinds = range(len(self._windings))
-        halves = np.stack([found[f"high {k} {link}"] - found[f"low {k} {link}"] for k in kinds]) / 2.0
-        best = np.argmin(np.where(np.isnan(halves), INFINITE, halves), axis=0)
-        middles = np.stack([found[f"high {k} {link}"] + found[f"low {k} {link}"] for k in kinds]) / 2.0
-        lanes = np.arange(len(best))
-        for drive in self.traced.winders:
-            of_each = np.array([winding.get(drive, 0.0) for winding in self._windings])
-            further[winding_of(link, drive)] = of_each[best]
-        further[centre_of(link)] = middles[best, lanes] + TURN * whole
-        jump = found[f"jump {link}"]
-        fits: Mask = halves[best, lanes] + jump < np.pi - AWAY
-        return fits & (jump < MOST) & (off < np.pi - AWAY)
-
-    @cached_property
-    def _windings(self) -> list[dict[str, float]]:
-        """Turns that a link may make for one of a drive: none, or one to either side for one of the drives."""
-        return [{}, *[{drive: sense} for drive in self.traced.winders for sense in (1.0, -1.0)]]
 
     @cached_property
     def slack_at_samples(self) -> Node | None:
@@ -209,37 +153,10 @@ class Judging:
         for group, radicand in self.traced.radicands.items():
             value = _with_slope(radicand)[0]
             slacks.append(as_node(value - SAFE * SUSPECT * variable(f"largest {group}")))
-        return _least_of(slacks) if slacks else None
-
-
-def scan_of(reduction: Reduction, parameters: Sequence[str], inputs: Sequence[str]) -> Scan:
-    """The scan of a reduction, with those of the names that it uses."""
-    used = frozenset(Graph(reduction.state).variables)
-    return Scan(
-        tuple(name for name in dict.fromkeys(parameters) if name in used),
-        tuple(name for name in inputs if name in used),
-        {},
-        reduction.state,
-    )
+        return least_of(slacks) if slacks else None
 
 
 def _with_slope(number: object) -> tuple[Operand, Operand]:
     if isinstance(number, Jet):
         return number.coefficients[0], number.coefficients[1]
     return number, 0.0  # type: ignore[return-value]
-
-
-def _greatest(name: str, value: Node) -> Reduction:
-    """The greatest of all steps; NaN where one is: such a mechanism is not clear."""
-    return Reduction({name: as_node(m.max(value, variable(name)))}, {name: -INFINITE})
-
-
-def _least(name: str, value: Node) -> Reduction:
-    return Reduction({name: as_node(m.min(value, variable(name)))}, {name: INFINITE})
-
-
-def _least_of(values: Sequence[Node]) -> Node:
-    least = values[0]
-    for value in values[1:]:
-        least = as_node(m.min(least, value))
-    return least

@@ -1,12 +1,12 @@
 """The motions of many mechanisms as machine code where that pays, to the bits of `solve`.
 
 What is not rounded alike everywhere, the arc tangent, stays with NumPy. So a result does not tell how many
-mechanisms were computed with it.
+mechanisms were computed with it; only what groups of higher class give, and what stands on them, is rounded otherwise.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -20,20 +20,17 @@ from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.errors import Status
 from centrode.kinematics.branches import Branches, branches_at_start
+from centrode.kinematics.compiled.deciding import Untraceable
 from centrode.kinematics.compiled.drives import inputs_of
-from centrode.kinematics.compiled.eventful import Eventful
+from centrode.kinematics.compiled.events.eventful import Eventful
 from centrode.kinematics.compiled.judging import Judged, Judging
-from centrode.kinematics.compiled.traced import (
-    TURN,
-    WHOLE,
-    Traced,
-    Untraceable,
-    centre_of,
-    traced,
-    winding_of,
-)
+from centrode.kinematics.compiled.traced import Traced, traced
+from centrode.kinematics.compiled.turns import TURN, centre_of, whole_turns, winding_of
 from centrode.kinematics.compiled.variables import SCALE, Varied, boxed, taken, varied_of
-from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, streams_of
+from centrode.kinematics.compiled.walks.beginnings import beginnings
+from centrode.kinematics.compiled.walks.walking import SURE, Walking
+from centrode.kinematics.compiled.walks.ways import Way, way_of
+from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, solved_of, streams_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import CLOSED, Kept
@@ -44,9 +41,12 @@ from centrode.structure.dimensions import Dimensions
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
 Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 
 WORTH_COMPILING = 200_000
 """Samples, or nodes of the mesh if they are more, of all mechanisms from which on compiling pays."""
+WORTH_WALKING = 0.5
+"""Share of mechanisms with groups of higher class that have to be clear: arrays compute the others anyway."""
 AT_ONCE = 256
 """Mechanisms between two reports of progress."""
 SLACK = "slack"
@@ -68,10 +68,17 @@ def solve_many(
     names = tuple(dict.fromkeys([*varied.names, SCALE]))
     judging = Judging(plan, span.parameter, names, tuple(plan.turning), MACHINE_CODE)
     values = varied.values(numbers)
-    if not values or not Writer(nodes_of(plan), inputs_of(ready.kinematics.path, span), MACHINE_CODE).alike:
+    writer = Writer(nodes_of(plan), inputs_of(ready.kinematics.path, span), MACHINE_CODE)
+    if not values or not (plan.steps or writer.alike):
         return solve(ready, span, numbers, lanes, progress)
+    if plan.steps:
+        values |= beginnings(ready, numbers, lanes)
     judged = judging.judge(values)
-    return _Many(ready, span, numbers, lanes, varied, plan, judging, judged).solved(progress)
+    if plan.steps and np.mean(judged.clear) < WORTH_WALKING:
+        return solve(ready, span, numbers, lanes, progress)
+    return _Many(ready, span, numbers, lanes, varied, values | judged.values, plan, judging, judged).solved(
+        progress
+    )
 
 
 @dataclass(frozen=True)
@@ -81,6 +88,7 @@ class _Many:
     numbers: Dimensions
     lanes: int
     varied: Varied
+    values: Mapping[str, Array]
     plan: Traced
     judging: Judging
     judged: Judged
@@ -88,35 +96,23 @@ class _Many:
     def solved(self, progress: Progress | None) -> Solved:
         writer = Writer(self._outputs(), self._inputs, MACHINE_CODE)
         room = writer.room(self.lanes)
-        self._write(writer, room, progress)
+        sure = self._write(writer, room, progress)
         found = writer.placed(room)
         residual = found["residual"]
-        clear = self.judged.clear & (residual.max(axis=1) <= 0.5 * CLOSED)
+        clear = sure & (residual.max(axis=1) <= 0.5 * CLOSED)
         if SLACK in found:
             clear &= found[SLACK].min(axis=1) > 0.0
-        self._angles(found["angles"], found[SINES])
+        if SINES in found:
+            self._angles(found["angles"], found[SINES])
         status = np.full(residual.shape, Status.OK, dtype=np.int8)
         branches = self._branches()
         left = np.nonzero(~clear)[0]
         if len(left):
             self._fill(left, found, status, branches)
-        points = found["all_points"]
-        moving = points[:, :, :, len(self.numbers.frame) :]
-        return replace(
-            self.plan.solved,
-            ready=self.ready,
-            span=self.span,
-            branches=branches,
-            all_points=points,
-            points=moving,
-            angles=found["angles"],
-            slides=found["slides"],
-            spins=found.get("spins"),
-            status=status,
-            residual=residual,
-            worst_constraint=self._worst(residual),
-            contacts=found["contacts"],
+        solved = solved_of(
+            self.plan.solved, found, status, ready=self.ready, span=self.span, branches=branches
         )
+        return replace(solved, worst_constraint=self._worst(residual))
 
     def _outputs(self) -> dict[str, Nodes]:
         found = nodes_of(self.plan)
@@ -127,14 +123,25 @@ class _Many:
     def _inputs(self) -> dict[str, Array]:
         return inputs_of(self.ready.kinematics.path, self.span)
 
-    def _write(self, writer: Writer, room: Array, progress: Progress | None) -> None:
-        """All samples of all mechanisms, but where none of some is clear."""
-        values = self.varied.values(self.numbers) | self.judged.values
+    def _write(self, writer: Writer, room: Array, progress: Progress | None) -> Mask:
+        """All samples of all mechanisms, but where none of some is clear; which of them are sure to be right."""
+        sure = self.judged.clear.copy()
+        walking = Walking(self.judging.walk, outputs=writer.graph.outputs) if self.plan.steps else None
         for rows in self._parts():
-            if self.judged.clear[rows].any():
-                writer.write({name: row[rows] for name, row in values.items()}, room[:, rows])
+            if sure[rows].any():
+                some = {name: row[rows] for name, row in self.values.items()}
+                if walking is None:
+                    writer.write(some, room[:, rows])
+                else:
+                    at_end = walking.written(self._way, some, MACHINE_CODE, 1, room[:, rows])
+                    sure[rows] &= at_end[SURE] > 0.0
             if progress is not None:
                 progress(rows.stop, self.lanes)
+        return sure
+
+    @cached_property
+    def _way(self) -> Way:
+        return way_of(self.ready.kinematics.path, self._inputs)
 
     def _parts(self) -> Iterator[slice]:
         for first in range(0, self.lanes, AT_ONCE):
@@ -153,7 +160,7 @@ class _Many:
                 middle = values[centre_of(link)][rows, None]
                 for drive, value in drives.items():
                     middle = middle + values[winding_of(link, drive)][rows, None] * value
-                turns = ((middle - angle) * (1.0 / TURN) + WHOLE) - WHOLE
+                turns = whole_turns(middle, angle)
                 angle += TURN * turns
 
     def _branches(self) -> Branches:
@@ -177,9 +184,11 @@ class _Many:
             branches.events += [replace(event, lane=int(lanes[event.lane])) for event in some.branches.events]
 
     def _with_events(self, left: Lanes) -> Iterator[tuple[Lanes, Solved]]:
-        if len(left) * self._places < WORTH_COMPILING:
-            self._events.unclosed.update(left.tolist())  # nobody has looked
-            yield left, self._some(left)
+        if self.plan.steps or len(left) * self._places < WORTH_COMPILING:
+            some = self._some(left)
+            opened = (some.status == Status.OPEN).any(axis=1)
+            self._events.unclosed.update(left[opened].tolist())  # nobody has looked
+            yield left, some
         else:
             yield from self._events.solved(self.numbers, left)
 

@@ -9,7 +9,7 @@ places are variables too.
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
@@ -18,14 +18,21 @@ import numpy.typing as npt
 
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.branches import branches_at_start
+from centrode.kinematics.compiled.deciding import Deciding, chains_of, refuse_untraceable
 from centrode.kinematics.compiled.drives import traced_path, winders_of
-from centrode.kinematics.compiled.signs import signs_of
-from centrode.kinematics.compiled.variables import PARAMETER, Varied, boxed, span_of_variables
-from centrode.kinematics.evaluate import Hooks, Kinematics
+from centrode.kinematics.compiled.newton.steps import Step
+from centrode.kinematics.compiled.turns import TURN, turns_along, turns_of
+from centrode.kinematics.compiled.variables import (
+    NODE_JETS,
+    PARAMETER,
+    Varied,
+    boxed,
+    span_of_variables,
+)
+from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.layout import Layout, layout_of, positions_from
 from centrode.kinematics.phases import with_phases
 from centrode.kinematics.ready import Ready
@@ -34,27 +41,14 @@ from centrode.kinematics.sampling import ORDERS
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import Span
 from centrode.kinematics.spins import spins_of
-from centrode.locale import mark
-from centrode.structure.groups import Newton
 from centrode.structure.positions import Positions
 from centrode.structure.wheels import Contact, contact_point
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
 Number: TypeAlias = Any
-
-NODE_JETS = JetFunctions(EXPRESSIONS)
-TURN = 2.0 * np.pi
-WHOLE = 1.5 * 2.0**52
-"""Added and taken away again it leaves the nearest whole number: the bits behind the point do not fit."""
-
-
-class Untraceable(Exception):
-    """The plan does something that expressions cannot say; `reason` is told to the user."""
-
-    def __init__(self, reason: str) -> None:
-        self.reason = reason
-        super().__init__(reason)
+Turns: TypeAlias = Callable[[str, Operand, Operand], Operand]
+"""From a link with cosine and sine of its angle: the turns to add to that."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +62,8 @@ class Traced:
     turning : link -> cosine and sine of its angle where its turns have to be found
     winders : drive -> its value, with which links may turn
     turns : link -> the turns that stand in its angle: a whole number
+    steps : group of higher class -> its step; there are places before and after then, see `walks`
+    counted : what a gear or wheel depends on -> its turns, and its angle with these
     """
 
     solved: Solved
@@ -75,77 +71,55 @@ class Traced:
     divisors: Mapping[int, Number]
     turning: Mapping[str, tuple[Operand, Operand]]
     winders: Mapping[str, Operand]
+    steps: Mapping[int, Step]
+    counted: Mapping[str, tuple[Node, Node]]
 
     @property
     def turns(self) -> dict[str, Node]:
-        return {link: as_node(turns_of(link, *rotor, self.winders)) for link, rotor in self.turning.items()}
+        turns = _turns(bool(self.steps), self.winders)
+        return {link: as_node(turns(link, *rotor)) for link, rotor in self.turning.items()}
 
-
-class _Signs(Hooks):
-    """Signs as they are given; radicands and divisors are kept.
-
-    At samples a root that does not move has derivatives that are zero, on the mesh none, as with arrays: quotients by
-    what depends on it are rounded otherwise.
-    """
-
-    def __init__(self, signs: Mapping[int, Operand], on_mesh: bool) -> None:
-        self.signs = signs
-        self.on_mesh = on_mesh
-        self.radicands: dict[int, Number] = {}
-        self.divisors: dict[int, Number] = {}
-
-    def root(self, group: int, radicand: Number) -> Number:
-        self.radicands[group] = radicand
-        if not isinstance(radicand, Jet) and not self.on_mesh:
-            radicand = Jet((radicand, *[0.0] * (ORDERS - 1)))
-        return NODE_JETS.sqrt(radicand) * self.signs[group]
-
-    def divisor(self, group: int, divisor: Number) -> Number:
-        self.divisors[group] = divisor
-        return divisor
-
-    def continued(self, group: int, key: str, angle: Number) -> Number:
-        raise Untraceable(mark("gears or wheels whose turns are counted"))
-
-    def higher(self, group: int, m: Any, at: Positions) -> None:
-        raise Untraceable(mark("groups of higher class"))
-
-
-def refuse_untraceable(ready: Ready, span: Span) -> None:
-    """Raise Untraceable for what is known before the plan is run."""
-    kinematics = ready.kinematics
-    if any(isinstance(group, Newton) for group in ready.structure.groups):
-        raise Untraceable(mark("groups of higher class"))
-    if np.any(kinematics.path.impossible(span.parameter)):
-        raise Untraceable(mark("a cylinder shorter than zero"))
-    curves = [kinematics.numbers.curve(guide.id) for guide in ready.mechanism.guides]
-    if any(kinematics.numbers.space.period(np, curve) is not None for curve in curves):
-        raise Untraceable(mark("guides that close"))
+    @property
+    def standing(self) -> dict[str, Node]:
+        """Name -> what jumps, or is found by iteration: derivatives by dimensions take it as given."""
+        found = {f"turns {link}": node for link, node in self.turns.items()}
+        found |= {f"turns counted {key}": turns for key, (turns, _angle) in self.counted.items()}
+        for step in self.steps.values():
+            found |= step.standing
+        return found
 
 
 def traced(
     ready: Ready,
     span: Span,
     varied: Varied,
-    crossings: Mapping[int, int] | None = None,
+    signs: Mapping[int, Operand] | None = None,
     on_mesh: bool = False,
+    differentiable: bool = False,
 ) -> Traced:
     """The motion of a mechanism of a batch at one place of the path, a sample or a node of the mesh.
 
-    `crossings` says of how many change points of a group the sign is to know (see `signs`). Raises Untraceable.
+    `signs` of groups are those of the initial position where they are not given; `differentiable` makes what groups of
+    higher class give depend on the dimensions as their equations say. Raises Untraceable.
     """
     refuse_untraceable(ready, span)
     known = ready.kinematics
     path = traced_path(known.path, span.parameter, ORDERS - 1)
     kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
-    hooks = _Signs(signs_of(ready, crossings or {}), on_mesh)
+    chains = chains_of(ready, kinematics.numbers)
+    hooks = Deciding(signs or ready.assembled.signs, on_mesh, chains, differentiable)
     at = kinematics.positions(NODE_JETS, Jet.variable(variable(PARAMETER), ORDERS - 1), hooks)
     layout = layout_of(kinematics)
     columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))
     winders = winders_of(path)
-    angles, turning = _angles(kinematics, layout, at, columns, ready.assembled.angles, winders)
+    angles, turning = _angles(layout, at, columns, ready.assembled.angles, _turns(bool(chains), winders))
     solved = _solved(_Parts(ready, kinematics, layout, columns, angles), span, varied)
-    return Traced(solved, hooks.radicands, hooks.divisors, turning, winders)
+    return Traced(solved, hooks.radicands, hooks.divisors, turning, winders, hooks.steps, hooks.counted)
+
+
+def _turns(walked: bool, winders: Mapping[str, Operand]) -> Turns:
+    """What tells the turns of a link's angle: the place before, or a centre that runs on with a drive."""
+    return turns_along if walked else functools.partial(turns_of, winders=winders)
 
 
 @dataclass(frozen=True)
@@ -168,12 +142,11 @@ def _derivative(x: Number, order: int) -> Operand:
 
 
 def _angles(
-    kinematics: Kinematics,
     layout: Layout,
     at: Positions,
     columns: Nodes,
     start: Mapping[str, float],
-    winders: Mapping[str, Operand],
+    turns: Turns,
 ) -> tuple[Nodes, dict[str, tuple[Operand, Operand]]]:
     """Angles with their derivatives as `turning.fill_angles` has them: (3, angles); rotors of those that may turn."""
     found = np.empty((ORDERS, len(layout.angles)), dtype=object)
@@ -188,9 +161,7 @@ def _angles(
             found[0, k] = _standing(cosine[0], sine[0], start[link])
             continue
         turning[link] = cosine[0], sine[0]
-        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns_of(
-            link, cosine[0], sine[0], winders
-        )
+        found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns(link, cosine[0], sine[0])
         for order in (1, 2):
             found[order, k] = cosine[0] * sine[order] - sine[0] * cosine[order]
     return found, turning
@@ -200,24 +171,6 @@ def _standing(cosine: float, sine: float, start: float) -> float:
     """The angle of a link that never turns, on the turn of the initial position."""
     angle = float(np.arctan2(sine, cosine))
     return angle + TURN * round((start - angle) / TURN)
-
-
-def turns_of(link: str, cosine: Operand, sine: Operand, winders: Mapping[str, Operand]) -> Operand:
-    """The turns that bring an angle within half a turn of a centre that runs on with a drive."""
-    centre: Operand = variable(centre_of(link))
-    for drive, value in winders.items():
-        centre = centre + variable(winding_of(link, drive)) * value
-    return ((centre - EXPRESSIONS.atan2(sine, cosine)) * (1.0 / TURN) + WHOLE) - WHOLE
-
-
-def centre_of(link: str) -> str:
-    """Name of the middle of a link's angles, those of the drive (times its winding) taken off."""
-    return f"centre {link}"
-
-
-def winding_of(link: str, drive: str) -> str:
-    """Name of the turns that a link makes for one of a drive: -1, 0 or 1."""
-    return f"winding {link} with {drive}"
 
 
 def _solved(parts: _Parts, span: Span, varied: Varied) -> Solved:

@@ -9,7 +9,9 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Operand, variable
+from centrode.algebra.jet_functions import JetFunctions
 from centrode.kinematics.spans import Span
 from centrode.structure.dimensions import Dimensions
 
@@ -17,7 +19,12 @@ Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
 Number: TypeAlias = Any
 
+NODE_JETS = JetFunctions(EXPRESSIONS)
 PARAMETER, TIME, RATE, SECOND_RATE, SCALE = "parameter", "time", "rate", "second rate", "scale"
+STEP, SHARE, FIRST, SAMPLE = "step", "share", "first", "sample"
+"""Of a walk along the path: how far the place before is, how often that goes into the longest step, whether there is
+none, whether the place is a sample."""
+ALONG = (PARAMETER, TIME, RATE, SECOND_RATE, STEP, SHARE, FIRST, SAMPLE)
 
 
 def boxed(values: Sequence[Any]) -> Nodes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -19,6 +19,7 @@ from centrode.algebra.operations import VARIABLE
 from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.traced import Traced
 from centrode.kinematics.compiled.variables import PARAMETER, boxed
+from centrode.kinematics.solve import Solved
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
@@ -32,15 +33,19 @@ LAST_BITS = (RESIDUAL, JUDGED)
 
 
 def nodes_of(plan: Traced) -> dict[str, Nodes]:
-    """Arrays of a Solved of one lane and one sample; cosines stand where angles will, their sines beside them."""
+    """Arrays of a Solved of one lane and one sample; cosines stand where angles will, their sines beside them.
+
+    Walks know the turns of angles, so these are written at once.
+    """
     solved = plan.solved
-    angles: Nodes = solved.angles.copy()
-    for k, link in enumerate(solved.layout.angles):
-        if link in plan.turning:
-            angles[0, 0, 0, k] = plan.turning[link][0]
     found: dict[str, Nodes | None] = {name: getattr(solved, name) for name in ROOMS}
-    found["angles"] = angles
-    found[SINES] = boxed([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
+    if not plan.steps:
+        angles: Nodes = solved.angles.copy()
+        for k, link in enumerate(solved.layout.angles):
+            if link in plan.turning:
+                angles[0, 0, 0, k] = plan.turning[link][0]
+        found["angles"] = angles
+        found[SINES] = boxed([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
     return {name: nodes for name, nodes in found.items() if nodes is not None}
 
 
@@ -68,9 +73,14 @@ class Writer:
         return [as_node(x) for nodes in self.outputs.values() for x in nodes.ravel()]
 
     @cached_property
+    def graph(self) -> Graph:
+        """All nodes, each called by its place."""
+        return Graph({str(k): node for k, node in enumerate(self.flat)})
+
+    @cached_property
     def scan(self) -> Scan:
         """Lanes are places, steps are mechanisms."""
-        graph = Graph({str(k): node for k, node in enumerate(self.flat)})
+        graph = self.graph
         along = tuple(name for name in self.places if name in graph.variables or name == PARAMETER)
         return Scan(along, tuple(name for name in graph.variables if name not in along), graph.outputs)
 
@@ -142,3 +152,21 @@ def streams_of(name: str, array: Array) -> Array:
     """An array of a Solved with its mechanisms and samples behind everything else."""
     lane = 1 if name in ORDERED else 0
     return np.moveaxis(array, (lane, lane + 1), (-2, -1))
+
+
+def solved_of(plan: Solved, found: Mapping[str, Array], status: npt.NDArray[np.int8], **whole: Any) -> Solved:
+    """The motion of a plan of one sample with what was written; `whole` are its parts that are no arrays."""
+    points = found["all_points"]
+    frame = plan.all_points.shape[3] - plan.points.shape[3]
+    return replace(
+        plan,
+        all_points=points,
+        points=points[:, :, :, frame:],
+        angles=found["angles"],
+        slides=found["slides"],
+        spins=found.get("spins"),
+        status=status,
+        residual=found["residual"],
+        contacts=found["contacts"],
+        **whole,
+    )

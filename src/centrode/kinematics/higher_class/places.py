@@ -115,7 +115,7 @@ def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial:
     while (going := np.nonzero((done < 1.0) & (part >= LEAST_PART))[0]).size:
         aim = np.minimum(done[going] + part[going], 1.0)
         numbers = around.kinematics.taken(going).numbers
-        between = around.with_numbers(blended(nominal, numbers, aim))
+        between = around.with_numbers(blended(nominal, numbers, aim), going)
         everyone = np.arange(len(going))
         known = between.known_at(np.full(len(going), initial), everyone)
         system = between.system(known, everyone)

@@ -74,9 +74,13 @@ class Surroundings:
             self.equations, self.kinematics.taken(lanes).numbers, Positions({}, {}, {}, {}), len(lanes)
         )
 
-    def with_numbers(self, numbers: Dimensions) -> Surroundings:
-        """The same part of the plan with other dimensions."""
-        return replace(self, kinematics=replace(self.kinematics, numbers=numbers))
+    def with_numbers(self, numbers: Dimensions, lanes: Lanes) -> Surroundings:
+        """The same part of the plan with other dimensions of some mechanisms, which are counted anew."""
+
+        def hooks(m: Namespace, parameter: Array, which: Lanes) -> Hooks:
+            return self.hooks(m, parameter, lanes[which])
+
+        return replace(self, kinematics=replace(self.kinematics, numbers=numbers), hooks=hooks)
 
     def system(self, known: Positions, lanes: Lanes) -> System:
         """The group's equations beside known positions, one lane for each place."""

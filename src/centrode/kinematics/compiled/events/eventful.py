@@ -8,7 +8,7 @@ rounding and those that are interpolated: they are computed one by one, and put 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -20,14 +20,14 @@ from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.angles import NodeTurns
-from centrode.kinematics.branches import Branches
 from centrode.kinematics.compiled.drives import inputs_of, places_of
-from centrode.kinematics.compiled.patches import Patches
-from centrode.kinematics.compiled.searching import Search, of_mesh
-from centrode.kinematics.compiled.signs import counts_of, values_of
-from centrode.kinematics.compiled.traced import TURN, Traced, traced
+from centrode.kinematics.compiled.events.patches import Patches
+from centrode.kinematics.compiled.events.searching import Search, of_mesh
+from centrode.kinematics.compiled.events.signs import counts_of, signs_of, values_of
+from centrode.kinematics.compiled.traced import Traced, traced
+from centrode.kinematics.compiled.turns import TURN
 from centrode.kinematics.compiled.variables import Varied, boxed, taken
-from centrode.kinematics.compiled.writing import JUDGED, ORDERED, ROOMS, SINES, Writer, nodes_of
+from centrode.kinematics.compiled.writing import JUDGED, ORDERED, ROOMS, SINES, Writer, nodes_of, solved_of
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.mending import inside
 from centrode.kinematics.mesh import mesh_of
@@ -95,8 +95,11 @@ class Eventful:
 
     @cached_property
     def possible(self) -> bool:
-        """Whether the bits will be those of the arrays: where the plan leaves no function to a kernel."""
-        return all(writer.alike for writer in self._writer({})[1:])
+        """Whether the bits will be those of the arrays: where the plan leaves no function to a kernel.
+
+        Groups of higher class, whose places hang on one another, are not for this.
+        """
+        return not self.plan.steps and all(writer.alike for writer in self._writer({})[1:])
 
     @cached_property
     def mesh(self) -> Array:
@@ -125,15 +128,16 @@ class Eventful:
         if len(lanes):
             patches = Patches(continuation, self.span, plan.solved, turns, self.mesh)
             self.unclosed.update(some[patches.put(lanes, places, found, status)].tolist())
-        return self._solved(plan.solved, branches, found, status)
+        return solved_of(plan.solved, found, status, ready=self.ready, span=self.span, branches=branches)
 
     def _writer(self, counts: Mapping[int, int]) -> tuple[Traced, Writer, Writer]:
         key = tuple(sorted(counts.items()))
         if key not in self._writers:
-            plan = traced(self.ready, self.span, self.varied, counts) if counts else self.plan
+            signs = signs_of(self.ready, counts)
+            plan = traced(self.ready, self.span, self.varied, signs) if counts else self.plan
             nodes = plan
             if not all(isinstance(radicand, Jet) for radicand in plan.radicands.values()):
-                nodes = traced(self.ready, self.span, self.varied, counts, on_mesh=True)
+                nodes = traced(self.ready, self.span, self.varied, signs, on_mesh=True)
             path = self.ready.kinematics.path
             mesh, samples = places_of(path, self.mesh, ORDERS - 1), inputs_of(path, self.span)
             self._writers[key] = (
@@ -168,24 +172,6 @@ class Eventful:
             if windows is not None:
                 doubtful[inside(windows, self.span.parameter, None)[0]] = True
         return status, doubtful
-
-    def _solved(self, plan: Solved, branches: Branches, found: dict[str, Array], status: Any) -> Solved:
-        points = found["all_points"]
-        frame = plan.all_points.shape[3] - plan.points.shape[3]
-        return replace(
-            plan,
-            ready=self.ready,
-            span=self.span,
-            branches=branches,
-            all_points=points,
-            points=points[:, :, :, frame:],
-            angles=found["angles"],
-            slides=found["slides"],
-            spins=found.get("spins"),
-            status=status,
-            residual=found["residual"],
-            contacts=found["contacts"],
-        )
 
 
 def largest_of(group: int) -> str:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.kinematics.angles import NodeTurns, node_turns
-from centrode.kinematics.compiled.signs import MOST, counts_of, values_of
+from centrode.kinematics.compiled.events.signs import MOST, counts_of, values_of
 from centrode.kinematics.compiled.traced import Traced
 from centrode.kinematics.compiled.variables import boxed
 from centrode.kinematics.compiled.writing import Writer
