@@ -15,7 +15,7 @@ from centrode.dynamics.inertia import share
 from centrode.dynamics.reducer import Burden, Reducer
 from centrode.dynamics.states import Moving, State
 from centrode.errors import InputError
-from centrode.kinematics.compiled.traced import Untraceable
+from centrode.kinematics.compiled.deciding import Untraceable
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import is_uniform
 from centrode.locale import _, mark
