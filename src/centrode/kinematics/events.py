@@ -33,6 +33,9 @@ Lanes: TypeAlias = npt.NDArray[np.intp]
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
 
+INSIDE = 1e-10
+"""How far before a limit of another group, as a part of a cell, a radicand is looked at: the limit is exact to less."""
+
 
 @dataclass(frozen=True)
 class Scan:
@@ -111,7 +114,32 @@ class Scan:
         lanes, cells = sign_changes(value)
         rest = ~settled[lanes, cells]
         roots = self._roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
-        return found + self._limits(group, lanes[rest], roots)
+        found += self._limits(group, lanes[rest], roots)
+        return found + self._before_limits(group, value)
+
+    def _before_limits(self, group: int, value: Array) -> list[Event]:
+        """Limits between a node and a limit of a group before this one: links run fastest there, and no node follows."""
+        limits = [
+            event for event in self.branches.events if event.group < group and event.closes_above is not None
+        ]
+        if not limits:
+            return []
+        lanes = np.array([event.lane for event in limits], dtype=np.intp)
+        ends = np.array([event.at for event in limits])
+        above = np.array([event.closes_above for event in limits])
+        cells = np.clip(np.searchsorted(self.mesh, ends) - 1, 0, len(self.mesh) - 2)
+        nodes, beyond = np.where(above, (cells + 1, cells), (cells, cells + 1))
+        cut = np.isfinite(value[lanes, nodes]) & ~np.isfinite(value[lanes, beyond])
+        lanes, nodes, ends = lanes[cut], nodes[cut], ends[cut]
+        if not len(lanes):
+            return []
+        ends = ends + INSIDE * (self.mesh[nodes] - ends)
+        last = self.guard(group, lanes, ends, 0).value
+        with np.errstate(invalid="ignore"):
+            changes = np.sign(value[lanes, nodes]) * np.sign(last) < 0.0
+        low, high = np.minimum(self.mesh[nodes], ends), np.maximum(self.mesh[nodes], ends)
+        lanes = lanes[changes]
+        return self._limits(group, lanes, self._roots(group, lanes, low[changes], high[changes]))
 
     def _limits(self, group: int, lanes: Lanes, at: Array) -> list[Event]:
         if not len(lanes):
