@@ -257,7 +257,9 @@ def test_velocities_of_small_and_slow_mechanisms(size: float, speed: float) -> N
     ours = ct.integrate(four_bar(*(size * length for length in lengths), drives=drives), "adaptive", 12)
     alike = ct.integrate(four_bar(*lengths), "adaptive", 12)
     velocities = (np.asarray(data["velocity"]) for data in (ours, alike))
-    assert next(velocities) / (size * speed) == pytest.approx(next(velocities), abs=100 * ours.attrs["tolerance"])
+    assert next(velocities) / (size * speed) == pytest.approx(
+        next(velocities), abs=100 * ours.attrs["tolerance"]
+    )
 
 
 def test_laws_of_time_are_followed() -> None:

@@ -1,4 +1,4 @@
-"""A group that locks just before a group in front of it does: links run ever faster there, between two nodes of the mesh."""
+"""A group that locks just before a group in front of it does: links run ever faster there, and no node follows."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ class Scan:
         return found + self._before_limits(group, value)
 
     def _before_limits(self, group: int, value: Array) -> list[Event]:
-        """Limits between a node and a limit of a group before this one: links run fastest there, and no node follows."""
+        """Limits between a node and a limit of a group before: links run fastest there, and no node follows."""
         limits = [
             event for event in self.branches.events if event.group < group and event.closes_above is not None
         ]

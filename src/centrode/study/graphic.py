@@ -40,7 +40,11 @@ def _row(row: CheckRow, display: Display, greatest: float) -> tuple[str, ...]:
     # of a mechanism at rest the integrated rates are rounding of its lengths and turns
     floor = INTEGRATED * (greatest or factor)
     integrated = NOTHING if row.integrated is None else _number(factor * row.integrated, floor)
-    values = _number(factor * row.graphic, NONE * greatest), integrated, _number(factor * row.closed, NONE * greatest)
+    values = (
+        _number(factor * row.graphic, NONE * greatest),
+        integrated,
+        _number(factor * row.closed, NONE * greatest),
+    )
     difference = factor * row.difference
     return symbol, unit, *values, "0" if abs(difference) <= ALIKE * greatest else f"{difference:.1e}"
 
