@@ -124,7 +124,7 @@ def _pace(prepared: Ready, form: CauchyForm, rates: Array) -> Array:
     drive, least = prepared.mechanism.drives[0], 1.0
     if len(prepared.mechanism.drives) == 1 and drive.speed:
         least = abs(drive.speed) / (1.0 if drive.kind == "angle" else scale)
-    return np.maximum(least, (np.abs(rates) / sizes).max(axis=1, initial=0.0))
+    return np.asarray(np.maximum(least, (np.abs(rates) / sizes).max(axis=1, initial=0.0)))
 
 
 def _speeds(places: Places, times: Array, states: Array, rates: Array, step: Array) -> Array:
