@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import centrode as ct
-from mechanisms import EPS, point
+from mechanisms import EPS, four_bar, point
 
 
 def curve(data: Any, name: str) -> Any:
@@ -305,3 +305,18 @@ def test_wrong_questions_about_centrodes_and_curvature() -> None:
     ):
         with pytest.raises(ct.NotComputedYet, match="on the sphere"):
             ask()
+
+
+def test_arcs_next_to_infinity_are_those_of_the_chords() -> None:
+    """A centrode is nearly straight there, so that its arc is that of its chords, however long they are."""
+    motion = ct.motion(four_bar(1.0, 3.5, 3.0, 4.0), samples=361)
+    found = ct.centrodes(motion, "AB")
+    pieces = found["centrode_piece"].to_numpy()
+    for name in ("fixed", "moving"):
+        places = found[f"{name}_centrode"].to_numpy() @ [1, 1j]
+        for piece in range(pieces.max() + 1):
+            here = np.flatnonzero(pieces == piece)
+            chords = np.abs(np.diff(places[here]))
+            arc = float(found[f"{name}_arc"][here[-1]])
+            # an arc is longer than its chords, and by a part of them that the turning of the curve tells
+            assert chords.sum() * (1 - 1e-12) <= arc <= 1.001 * chords.sum()

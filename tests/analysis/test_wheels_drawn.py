@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import centrode as ct
@@ -160,3 +162,41 @@ def test_a_link_that_is_found_before_its_points() -> None:
     assert (found[0] <= found[1]).all()
     figures = ct.diagram_figures(ct.graphic_check(mechanism, 0.5).diagrams)
     assert len(figures) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "at", "equations"),
+    [
+        (
+            "planetary-gear-train",
+            0.5,
+            ["(X_planet − X_OA) = -1.3333·(X_sun − X_OA)", "(0 − X_OA) = 0.3·(X_planet − X_OA)"],
+        ),
+        ("geared-five-bar", 0.5, ["X_EC = -2·X_OA"]),
+        ("rolling-wheel-rod", 0.3, []),
+    ],
+)
+def test_equations_of_wheels_are_written_and_hold(name: str, at: float, equations: list[str]) -> None:
+    check = ct.graphic_check(ct.example(name), at)
+    found = ct.graphic_steps(check)
+    for letter, diagram in (("ω", check.diagrams.velocity), ("ε", check.diagrams.acceleration)):
+        for equation in equations:
+            told = equation.replace("X", letter)
+            assert f"    {told}" in found
+            numbers = re.sub(rf"{letter}_(\w+)", lambda one, turns=diagram.turns: repr(turns[one[1]]), told)
+            left, right = numbers.split(" = ")
+            # the ratio is told with five figures
+            assert value_of(left) == pytest.approx(value_of(right), rel=1e-4, abs=1e-12)
+    if name == "rolling-wheel-rod":
+        assert "    |ω_wheel| = |v_C|/r" in found
+        velocity = check.diagrams.velocity
+        assert abs(velocity.turns["wheel"]) == pytest.approx(abs(velocity.images["C"]) / 0.3, rel=1e-14)
+
+
+def value_of(text: str) -> float:
+    """A number, a difference "(a − b)", or a product of two of them."""
+    product = 1.0
+    for factor in text.split("·"):
+        first, *rest = factor.strip("()").split(" − ")
+        product *= float(first) - sum(map(float, rest))
+    return product

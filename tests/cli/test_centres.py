@@ -141,6 +141,15 @@ def test_the_way_to_a_pair_is_told(centrode: Centrode) -> None:
     assert "by way of: " in done.out and "velocity field" in done.out.partition("by way of")[2]
 
 
+def test_a_link_that_translates_has_no_centrode(centrode: Centrode, folder: Path) -> None:
+    done = centrode(
+        "centrodes", "rack-and-pinion", "--link", "rack", "--samples", "5", "--no-figures", "--out", "r"
+    )
+    assert done.code == 3
+    assert "rack-and-pinion: rack has no centre against frame in this range: it translates" in done.err
+    assert "--against" in done.err
+
+
 def test_centrodes_of_links_against_each_other(centrode: Centrode, folder: Path) -> None:
     done = centrode(
         "centrodes", "antiparallelogram", "--link", "DB", "--against", "OA", "--from", "30 deg", "--to", "160 deg",

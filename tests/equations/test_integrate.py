@@ -249,6 +249,19 @@ def test_a_stop_and_a_turn_backwards() -> None:
     check_against_closed_forms(crank_rocker, data)
 
 
+@pytest.mark.parametrize(("size", "speed"), [(1e-6, 1e-10), (1e3, 1e4)])
+def test_velocities_of_small_and_slow_mechanisms(size: float, speed: float) -> None:
+    """Similar mechanisms have similar velocities, whatever a second and a metre are to them."""
+    lengths = (1.0, 3.5, 3.0, 4.0)
+    drives = [{"link": "OA", "start": 1.0, "speed": speed}]
+    ours = ct.integrate(four_bar(*(size * length for length in lengths), drives=drives), "adaptive", 12)
+    alike = ct.integrate(four_bar(*lengths), "adaptive", 12)
+    velocities = (np.asarray(data["velocity"]) for data in (ours, alike))
+    assert next(velocities) / (size * speed) == pytest.approx(
+        next(velocities), abs=100 * ours.attrs["tolerance"]
+    )
+
+
 def test_laws_of_time_are_followed() -> None:
     wiper = ct.integrate(ct.example("wiper"), steps=20)
     law = ct.motion(ct.example("wiper"), 21)

@@ -121,11 +121,14 @@ WRONG = [
     ("variant,l2\n1,\n", 'row 2, column "l2": the cell is empty'),
     ("variant,l2\n,1\n", "row 2: the variant has no name"),
     ("variant,l2\n../x,1\n", "row 2: "),
+    ("variant,l2\n=1+1,1\n", 'row 2: "=1+1" begins like a formula of a spreadsheet'),
+    ("variant,l2\n@a,1\n", "begins like a formula"),
+    ('variant,l2\n"a\nb",1\n', "characters a name may not have"),
     ("variant,l2\n1,1\n1,2\n", 'variant "1" is there twice'),
     ("variant,l2\na,1\nA,2\n", 'variant "A" is there twice'),
     ("variant,l2\n1,1,5\n", "row 2: it has 3 cells, the headers are 2; where decimals have commas"),
     ("variant;l2;l3\n1;1\n", "row 2: it has 2 cells, the headers are 3; give every column a value"),
-    ('variant,l2\n1,"1\n', "is not a CSV file"),
+    ('variant,l2\n1,"1\n', 't.csv, row 2: "t.csv" is not a CSV file'),
     ("variant,l2\n" + "\n".join(f"{n},1" for n in range(10_001)), "at most 10000 rows"),
 ]
 

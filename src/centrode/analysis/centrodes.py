@@ -84,10 +84,27 @@ def _rates(motion: xr.Dataset, seen: Seen) -> tuple[Places, Places]:
     return fixed, np.asarray(np.conj(seen.turned) * fixed)
 
 
+def _tamed(chord: Places, first: Places, last: Places) -> tuple[Places, Places]:
+    """Tangents of cubics, no longer than thrice the chord where all three point the same way.
+
+    Next to infinity the pole covers nearly all of a step at one of its ends: with such a tangent the cubic would run
+    beyond the place where it ends, and back. Where the curve has a cusp the tangents point against each other.
+    """
+    reach = 3.0 * np.abs(chord)
+    onwards = [
+        np.real(np.conj(one) * other) > 0.0 for one, other in ((first, last), (first, chord), (last, chord))
+    ]
+    same = np.logical_and.reduce(onwards)
+    tamed = [
+        np.where(same & (np.abs(one) > reach), one * (reach / np.abs(one)), one) for one in (first, last)
+    ]
+    return tamed[0], tamed[1]
+
+
 def _arc(curve: Places, rate: Places, pieces: npt.NDArray[np.int32]) -> Array:
     """Length of a curve from the beginning of each piece: that of cubics through its places with its tangents."""
     chord = curve[..., 1:] - curve[..., :-1]
-    first, last = rate[..., :-1], rate[..., 1:]
+    first, last = _tamed(chord, rate[..., :-1], rate[..., 1:])
     steps = np.zeros(chord.shape)
     for node, weight in zip(NODES, WEIGHTS, strict=True):
         t = 0.5 * (node + 1.0)

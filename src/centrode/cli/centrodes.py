@@ -13,6 +13,7 @@ from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.cli.progress import Progress
 from centrode.cli.reached import is_moving, tell_absent
+from centrode.errors import MotionError
 from centrode.locale import _, mark, ngettext
 
 if TYPE_CHECKING:
@@ -105,6 +106,13 @@ def centrodes(
     click.echo(f"\n{output.paragraph(f'{count}:', names)}")
     if looked is not None:
         tell_absent(mechanism, looked)
+    if not (found["centrode_piece"] >= 0).any():
+        what = _("{link} has no centre against {other} in this range: it translates, or does not move")
+        raise MotionError(
+            mechanism,
+            what.format(link=link, other=against),
+            _("name another link, or another body with --against"),
+        )
 
 
 def _draw(

@@ -17,6 +17,8 @@ from centrode.locale import _, mark, ngettext
 
 DEFAULT_FOLDER = "{name}-diagrams"
 MOST_INSTANTS = 100
+SCALE = "length=0.02"
+"""A scale as it is written."""
 
 
 @click.command(help=mark("Check velocities and accelerations by drawing them."))
@@ -73,7 +75,7 @@ def diagrams(
             _("{count} instants were asked for").format(count=len(instants)),
             _("ask for at most {most}").format(most=MOST_INSTANTS),
         )
-    given = {name: number(value) for name, value in pairs(scales, "--scale").items()}
+    given = {name: number(value) for name, value in pairs(scales, "--scale", SCALE).items()}
     texts = [_(description.title) or mechanism]
     with output.output_folder(folder) as draft, Progress() as progress:
         for count, text in enumerate(instants, start=1):
@@ -103,7 +105,7 @@ def number(text: str) -> float:
         return float(text)
     except ValueError:
         what = _("expected a number, got {text}").format(text=f'"{text}"')
-        raise InputError("--scale", what, _('write "length=0.02"')) from None
+        raise InputError("--scale", what, _("write {sample}").format(sample=f'"{SCALE}"')) from None
 
 
 def report(check: ct.GraphicCheck) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import click
@@ -11,7 +12,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.cli.progress import Progress
-from centrode.errors import MotionError
+from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
 
 DEFAULT_FOLDER = "{name}-integration"
@@ -49,6 +50,9 @@ def integrate(
     """Integrate and write; exit code 3 if the equations stop within the range (the rows before are written)."""
     description = ct.load(mechanism)
     folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    if tolerance is not None and method == "rk4":
+        what = _("fixed steps have no tolerance")
+        raise InputError("--tolerance", what, _("add --method adaptive, or ask for more --steps"))
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("integrating"))
         last = None if stop is None else ct.range_value(description, stop, "--to")
@@ -79,6 +83,7 @@ def integrate(
     click.echo(f"\n{output.paragraph(f'{count}:', names)}")
     stopped = ct.integration_failure(description, found)
     if stopped is not None:
-        raise MotionError(
-            mechanism, stopped, _("ask for a range that ends before it, or change the dimensions")
-        )
+        # steps that are too coarse are told with their repair
+        ends = not math.isnan(found.attrs["stop_time"])
+        repair = _("ask for a range that ends before it, or change the dimensions") if ends else ""
+        raise MotionError(mechanism, stopped, repair)

@@ -8,14 +8,19 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 
-def pairs(texts: Iterable[str], where: str) -> dict[str, str]:
-    """Name -> value of texts NAME=VALUE; raises InputError for another form, and for a name given twice."""
+def pairs(texts: Iterable[str], where: str, sample: str = "EC=30 deg") -> dict[str, str]:
+    """Name -> value of texts NAME=VALUE; raises InputError for another form, and for a name given twice.
+
+    `sample` is what a refusal shows as right.
+    """
     found: dict[str, str] = {}
     for text in texts:
         name, sign, value = (part.strip() for part in text.partition("="))
         if not sign or not name or not value:
             raise InputError(
-                where, _("expected NAME=VALUE, got {text}").format(text=f'"{text}"'), _('write "EC=30 deg"')
+                where,
+                _("expected NAME=VALUE, got {text}").format(text=f'"{text}"'),
+                _("write {sample}").format(sample=f'"{sample}"'),
             )
         if name in found:
             raise InputError(where, _("{name} is given twice").format(name=name), _("keep one of them"))

@@ -53,7 +53,9 @@ def course_of(prepared: Ready, closed: xr.Dataset, form: CauchyForm, found: Traj
     points, velocities = np.full((2, len(times), len(names), 2), np.nan)
     if reached.any():
         points[reached] = places(times[reached], found.state[reached])
-        velocities[reached] = _speeds(places, times[reached], found.state[reached], found.rates[reached])
+        rates = found.rates[reached]
+        step = STRIDE / _pace(prepared, form, rates)
+        velocities[reached] = _speeds(places, times[reached], found.state[reached], rates, step)
     seen = _Seen(prepared.mechanism, prepared.kinematics.numbers, names, angles, spins, points, velocities)
     slides, slips = np.full((2, len(times), len(prepared.mechanism.guides)), np.nan)
     for column, guide in enumerate(prepared.mechanism.guides):
@@ -112,9 +114,21 @@ def _places(form: CauchyForm, names: list[str], numbers: Dimensions) -> Places:
     return places
 
 
-def _speeds(places: Places, times: Array, states: Array, rates: Array) -> Array:
-    """Velocities of all points: derivatives of their places along the rates."""
-    step = STRIDE / np.maximum(1.0, np.abs(rates).max(axis=1, initial=0.0))
+def _pace(prepared: Ready, form: CauchyForm, rates: Array) -> Array:
+    """How fast the mechanism moves at rows of rates [rad/s, and parts of the greatest length]: (n,).
+
+    A law of time may rest and yet turn within a second, so that with one a second is the longest time.
+    """
+    scale = float(prepared.kinematics.numbers.scale)
+    sizes = np.array([scale if name.startswith("slide.") else 1.0 for name in form.names])
+    drive, least = prepared.mechanism.drives[0], 1.0
+    if len(prepared.mechanism.drives) == 1 and drive.speed:
+        least = abs(drive.speed) / (1.0 if drive.kind == "angle" else scale)
+    return np.asarray(np.maximum(least, (np.abs(rates) / sizes).max(axis=1, initial=0.0)))
+
+
+def _speeds(places: Places, times: Array, states: Array, rates: Array, step: Array) -> Array:
+    """Velocities of all points: derivatives of their places along the rates, by steps of time."""
     moved = sum(
         weight * places(times + shift * step, states + (shift * step)[:, None] * rates)
         for shift, weight in zip(STENCIL, WEIGHTS, strict=True)

@@ -42,7 +42,7 @@ DASHES: Mapping[str, Any] = {
 MARKS = {"normal": "ⁿ", "tangential": "ᵗ", "coriolis": "ᵏ", "driven": "ʳ", "sliding": "ʳ"}
 LETTERS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
 GREEK = {"ω": r"\omega", "ε": r"\varepsilon", "μ": r"\mu"}
-TERM = re.compile(r"(?<!\w)([vapωεμ])([ⁿᵗᵏʳ]?)_([A-Za-z0-9′]+)")
+TERM = re.compile(r"(?<!\w)([vapωεμP])([ⁿᵗᵏʳ]?)_([A-Za-z0-9′]+)")
 
 
 def diagram_page(found: Diagrams, diagram: Diagram, caption: str) -> Figure:

@@ -166,8 +166,8 @@ def draw_centres(page: Page, view: View, found: Diagrams, factor: float, colours
         names.append((at, [link]))
         signs.cross(page.overlay, at, 1.0, colours[link].colour)
     for at, links in names:
-        text = "P " + ", ".join(links[:4]) + (", …" if len(links) > 4 else "")
-        page.name(at, plain(text), clear=1.4, size=7.5)
+        text = ", ".join(symbol("P", link) for link in links[:4]) + (", …" if len(links) > 4 else "")
+        page.name(at, text, clear=1.4, size=7.5)
 
 
 def draw_senses(page: Page, view: View, scene: Scene, found: Diagrams, colours: Mapping[str, Pen]) -> None:

@@ -13,23 +13,40 @@ from centrode.model.mechanism import Display
 from centrode.quantities import QUANTITIES, display_unit
 
 NOTHING = "-"
+NONE = 1e-14
+"""What is smaller than this part of the greatest number of its kind is nothing: rounding of the drawing."""
+INTEGRATED = 1e-10
+"""The same of what is integrated, which is as exact as the tolerance of a step."""
+ALIKE = 1e-15
+"""Differences below this part of the greatest number are none."""
 
 
 def graphic_rows(check: GraphicCheck) -> list[tuple[str, ...]]:
     """The table of a check in the units of the display, its heads first."""
     heads = (_("quantity"), _("unit"), _("drawn"), _("integrated"), _("closed form"), _("difference"))
     display = check.diagrams.mechanism.display
-    return [heads, *(_row(row, display) for row in check.rows)]
+    greatest: dict[str, float] = {}
+    for row in check.rows:
+        greatest[row.quantity] = max(greatest.get(row.quantity, 0.0), abs(row.closed), abs(row.graphic))
+    return [heads, *(_row(row, display, greatest[row.quantity]) for row in check.rows)]
 
 
-def _row(row: CheckRow, display: Display) -> tuple[str, ...]:
+def _row(row: CheckRow, display: Display, greatest: float) -> tuple[str, ...]:
     factor, unit = display_unit(row.unit, display.length, display.angle)
     symbol = f"{QUANTITIES[row.quantity].symbol}_{row.name}"
     if not row.quantity.startswith("angular"):
         symbol = f"|{symbol}|"
-    integrated = NOTHING if row.integrated is None else _number(factor * row.integrated)
-    values = _number(factor * row.graphic), integrated, _number(factor * row.closed)
-    return symbol, unit, *values, _small(factor * row.difference)
+    greatest *= factor
+    # of a mechanism at rest the integrated rates are rounding of its lengths and turns
+    floor = INTEGRATED * (greatest or factor)
+    integrated = NOTHING if row.integrated is None else _number(factor * row.integrated, floor)
+    values = (
+        _number(factor * row.graphic, NONE * greatest),
+        integrated,
+        _number(factor * row.closed, NONE * greatest),
+    )
+    difference = factor * row.difference
+    return symbol, unit, *values, "0" if abs(difference) <= ALIKE * greatest else f"{difference:.1e}"
 
 
 def graphic_csv(check: GraphicCheck) -> str:
@@ -52,13 +69,14 @@ def graphic_about(check: GraphicCheck) -> list[tuple[str, str]]:
         (_("read"), _reading(found.board)),
     ]
     label = _("instant centres")
+    none = NONE * length * max((abs(place) for place in found.places.values()), default=0.0)
     for link, centre in found.centres.items():
         if centre is None:
             text = _("{link}: at infinity, it translates").format(link=link)
         else:
-            place = f"({_number(length * centre.real)}, {_number(length * centre.imag)}) {unit}"
+            place = f"({_number(length * centre.real, none)}, {_number(length * centre.imag, none)}) {unit}"
             apart = [
-                f"P{point} = {_number(length * found.reach(link, point))}"
+                f"P{point} = {_number(length * found.reach(link, point), none)}"
                 for point in found.mechanism.links[link].coordinates
             ]
             text = f"{link}: {place}, {', '.join(apart[:3])} {unit}"
@@ -136,11 +154,13 @@ def trial_lines(step: Step, order: int) -> list[str]:
             links=", ".join(turned), cut=", ".join(trial.checked)
         )
     ]
+    rate = NONE * max(abs(x) for values in (*trial.values, trial.found) for x in values)
+    apart = NONE * max(abs(x) for misfits in trial.misfits for x in misfits)
     for values, misfits in zip(trial.values, trial.misfits, strict=True):
-        tried = ", ".join(f"{name} = {_number(x)}" for name, x in zip(turned, values, strict=True))
-        amiss = ", ".join(_number(x) for x in misfits)
+        tried = ", ".join(f"{name} = {_number(x, rate)}" for name, x in zip(turned, values, strict=True))
+        amiss = ", ".join(_number(x, apart) for x in misfits)
         lines.append(_("{tried}: amiss by {amiss}").format(tried=tried, amiss=amiss))
-    found = ", ".join(f"{name} = {_number(x)}" for name, x in zip(turned, trial.found, strict=True))
+    found = ", ".join(f"{name} = {_number(x, rate)}" for name, x in zip(turned, trial.found, strict=True))
     return [*lines, _("so {found}").format(found=found)]
 
 
@@ -148,16 +168,6 @@ def _degrees(angle: float) -> str:
     return f"{math.degrees(angle):.5g}°"
 
 
-def _small(x: float) -> str:
-    """A difference; less than rounding of numbers about one is none."""
-    return f"{x:.1e}" if abs(x) > 1e-15 else "0"
-
-
-def _tidy(x: float) -> float:
-    """Zero without a sign."""
-    return x + 0.0
-
-
-def _number(x: float) -> str:
-    """Six figures; what is nothing beside one, as nothing."""
-    return f"{_tidy(x):.6g}" if abs(x) > 1e-14 else "0"
+def _number(x: float, none: float) -> str:
+    """Six figures; what is not greater than `none`, as nothing."""
+    return f"{x:.6g}" if abs(x) > none else "0"

@@ -36,7 +36,7 @@ def integration_rows(mechanism: Mechanism, integration: xr.Dataset) -> Rows:
     counts = [(Status(code), int(np.sum(status == code))) for code in np.unique(status)]
     said = ", ".join(f"{status_word(which)} {number}" for which, number in counts)
     times = integration["time"].to_numpy()
-    shown = [value_text(float(times[end]), "s", mechanism.display) for end in (0, -1)]
+    shown = [value_text(float(times[end]) + 0.0, "s", mechanism.display) for end in (0, -1)]
     return [
         (_("method"), _method(integration)),
         (_("range"), _("{first} to {last}").format(first=shown[0], last=shown[1])),
@@ -118,6 +118,11 @@ def _drift(integration: xr.Dataset) -> str:
     )
 
 
+def _small(value: float) -> str:
+    """Two figures of a small number; nothing as nothing."""
+    return f"{value:.1e}" if value else "0"
+
+
 def _difference(mechanism: Mechanism, integration: xr.Dataset) -> str:
     """Worst angle and worst place against the closed forms."""
     found = []
@@ -127,7 +132,9 @@ def _difference(mechanism: Mechanism, integration: xr.Dataset) -> str:
             continue
         _row, column = np.unravel_index(int(np.nanargmax(values)), values.shape)
         unit = str(integration[name].attrs["units"])
-        found.append(f"{np.nanmax(values):.1e} {unit} ({integration[dimension].to_numpy()[column]})")
+        worst = float(np.nanmax(values))
+        named = f" ({integration[dimension].to_numpy()[column]})" if worst else ""
+        found.append(f"{_small(worst)} {unit}{named}")
     return ", ".join(found) or _("none")
 
 
@@ -139,4 +146,4 @@ def _return(integration: xr.Dataset) -> str:
         return _("does not repeat the first: {own:.3g} apart, {closed:.3g} in closed form").format(
             own=own, closed=closed
         )
-    return _("repeats the first to {own:.1e}").format(own=own)
+    return _("repeats the first to {own}").format(own=_small(own)) if own else _("repeats the first")

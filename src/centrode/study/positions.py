@@ -32,5 +32,5 @@ def plan_rows(mechanism: Mechanism, plan: PositionPlan) -> list[tuple[str, str]]
     else:
         rows.append((_("position 0"), shown(plan.zero)))
     rows.append((_("step"), shown(float(values[1] - values[0]))))
-    range_text = _("a full turn") if plan.closed else _("between the ends of the range")
-    return [*rows, (_("range"), range_text)]
+    ends = _("{first} to {last}").format(first=shown(float(values[0])), last=shown(float(values[-1])))
+    return [*rows, (_("range"), _("a full turn") if plan.closed else ends)]

@@ -29,6 +29,7 @@ class Roles:
     swings : link -> angle between its extremes [rad]
     turned : link -> what it turns from the first sample to the last [rad]
     strokes : guide -> way between the extremes of its displacement [m, rad on the sphere]
+    ways : guide -> how far its displacement is from first to last sample [m, rad]
     one_turn : whether the motion is one turn of the only drive
     """
 
@@ -36,6 +37,7 @@ class Roles:
     swings: Mapping[str, float] = field(default_factory=dict)
     turned: Mapping[str, float] = field(default_factory=dict)
     strokes: Mapping[str, float] = field(default_factory=dict)
+    ways: Mapping[str, float] = field(default_factory=dict)
     one_turn: bool = False
 
     def pivot(self, link: str) -> str | None:
@@ -46,6 +48,20 @@ class Roles:
     def turns_fully(self, link: str) -> bool:
         """Whether a link goes all the way round."""
         return self.swings.get(link, 0.0) >= math.tau - WHOLE
+
+    def comes_back(self, guide: str) -> bool:
+        """Whether what moves along a guide ends nearer to where it began than its stroke is long."""
+        return abs(self.ways[guide]) < (1 - WHOLE) * self.strokes[guide]
+
+    def is_wheel(self, link: str) -> bool:
+        """Whether a link is nothing but a wheel: nothing is hinged to it off its axis."""
+        wheels = {one.link for one in self.mechanism.rolling}
+        wheels.update(name for gear in self.mechanism.gears for name in gear.links)
+        others = [other for name, other in self.mechanism.links.items() if name != link]
+        joined = {point for other in others for point in other.coordinates}
+        joined.update(guide.point for guide in self.mechanism.guides)
+        points = set(self.mechanism.links[link].coordinates) - set(self.mechanism.frame.points)
+        return link in wheels and not points & joined
 
     def angle_text(self, angle: float) -> str:
         """An angle as prose has it: in degrees, where the description does not ask for another unit."""
@@ -71,15 +87,16 @@ def roles_of(mechanism: Mechanism) -> Roles:
         return Roles(mechanism)
     if not np.isin(data["status"].to_numpy(), (Status.OK, Status.SINGULAR)).all():
         return Roles(mechanism)
-    swings, turned, strokes = {}, {}, {}
+    swings, turned, strokes, ways = {}, {}, {}, {}
     name = "angle" if "angle" in data else "joint_angle"
     labels = data["link" if name == "angle" else "joint"].to_numpy()
     for column, link in enumerate(labels):
         angles = data[name].to_numpy()[:, column]
         swings[str(link)], turned[str(link)] = float(np.ptp(angles)), float(angles[-1] - angles[0])
     for column, guide in enumerate(data["guide"].to_numpy()):
-        strokes[str(guide)] = float(np.ptp(data["slide"].to_numpy()[:, column]))
+        slides = data["slide"].to_numpy()[:, column]
+        strokes[str(guide)], ways[str(guide)] = float(np.ptp(slides)), float(slides[-1] - slides[0])
     one = len(mechanism.drives) == 1 and mechanism.drives[0].kind == "angle"
     value = data["drive_value"].to_numpy()[:, 0]
     one_turn = one and abs(abs(value[-1] - value[0]) - math.tau) < WHOLE
-    return Roles(mechanism, swings, turned, strokes, one_turn)
+    return Roles(mechanism, swings, turned, strokes, ways, one_turn)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +23,8 @@ from centrode.study.variant_columns import NAME, Column, columns_of
 
 Table: TypeAlias = str | Path | Sequence[Mapping[str, object]]
 SEPARATORS = ",;\t"
+FORMULAS = ("=", "+", "-", "@")
+"""With these begins what a spreadsheet computes when it opens a summary."""
 
 
 @dataclass(frozen=True)
@@ -82,12 +85,13 @@ def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
     """Headers and rows of a CSV file; blank lines count but hold nothing."""
     text = read_file(path)
     separator = max(SEPARATORS, key=text.partition("\n")[0].count)
-    reader = csv.reader(text.splitlines(), delimiter=separator, strict=True)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     try:
         lines = [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
     except csv.Error as error:
         what = _("{name} is not a CSV file: {reason}").format(name=shown(where), reason=error)
-        raise InputError(f"{where}, {reader.line_num}", what) from None
+        place = _("{table}, row {number}").format(table=where, number=reader.line_num)
+        raise InputError(place, what) from None
     if not lines:
         raise InputError(
             where, _("the file is empty"), _("give it a row of headers, and one for each variant")
@@ -152,6 +156,9 @@ def _name(cell: object, where: str) -> str:
         raise InputError(
             where, _("the variant has no name"), _("give every variant a name, such as its number")
         )
+    if text.startswith(FORMULAS):
+        what = _("{name} begins like a formula of a spreadsheet").format(name=shown(text))
+        raise InputError(where, what, _("begin it with a letter or a digit"))
     try:
         return read_name(text)
     except Problem as problem:

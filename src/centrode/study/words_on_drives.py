@@ -46,7 +46,7 @@ def sentence_on_drive(drive: Drive, roles: Roles) -> str:
     elif pivot is None:
         kind = "free"
     else:
-        kind = "crank" if roles.turns_fully(link) else "link"
+        kind = "crank" if roles.turns_fully(link) and not roles.is_wheel(link) else "link"
     return _(DRIVEN[kind, constant]).format(
         link=called(link), pivot=pivot, base=called(drive.relative_to), speed=speed
     )

@@ -38,7 +38,7 @@ FOLLOWERS = {
         "Coupler {coupler} passes the motion on to rocker {follower}, which swings about {pivot} through {angle}."
     ),
     "moves": mark("Coupler {coupler} passes the motion on to link {follower}, which turns about {pivot}."),
-    "still": mark("Coupler {coupler} leads to link {follower}, which does not turn about {pivot}."),
+    "still": mark("Coupler {coupler} leads to link {follower}, which does not turn."),
 }
 LEVERS = {
     "turns": mark("The slider in {point} moves along link {link} and turns it fully about {pivot}."),
@@ -46,19 +46,19 @@ LEVERS = {
         "The slider in {point} moves along link {link} and swings it about {pivot} through {angle}."
     ),
     "moves": mark("The slider in {point} moves along link {link} and turns it about {pivot}."),
-    "still": mark("The slider in {point} moves along link {link}, which does not turn about {pivot}."),
+    "still": mark("The slider in {point} moves along link {link}, which does not turn."),
 }
 BLOCKS = {
     "turns": mark("Link {block} slides along link {link} and turns it fully about {pivot}."),
     "swings": mark("Link {block} slides along link {link} and swings it about {pivot} through {angle}."),
     "moves": mark("Link {block} slides along link {link} and turns it about {pivot}."),
-    "still": mark("Link {block} slides along link {link}, which does not turn about {pivot}."),
+    "still": mark("Link {block} slides along link {link}, which does not turn."),
 }
 RESTING = {
     "turns": mark("Link {link} rests on wheel {wheel} and is turned fully about {pivot}."),
     "swings": mark("Link {link} rests on wheel {wheel} and swings about {pivot} through {angle}."),
     "moves": mark("Link {link} rests on wheel {wheel} and turns about {pivot}."),
-    "still": mark("Link {link} rests on wheel {wheel} and does not turn about {pivot}."),
+    "still": mark("Link {link} rests on wheel {wheel} and does not turn."),
 }
 
 
@@ -97,9 +97,9 @@ def _on_group(structure: Structure, roles: Roles, group: Group, told: set[str]) 
     elif isinstance(group, TurnedLink):
         yield from _on_turned_link(roles, group)
     elif isinstance(group, TwoPointLink):
-        yield _("Link {link} is led by {first} and {second}, which move without it as well.").format(
-            link=called(group.link), first=group.first, second=group.second
-        )
+        yield _(
+            "Link {link}, hinged in {first} and {second}, only follows: without it everything else moves the same."
+        ).format(link=called(group.link), first=group.first, second=group.second)
 
 
 def _extent(roles: Roles, link: str) -> tuple[str, str]:
@@ -189,10 +189,12 @@ def _on_carriage(roles: Roles, group: Meet) -> Iterator[str]:
         return
     guides = [guide for guide in roles.mechanism.guides if guide.link == link and guide.on == FRAME]
     if guides and guides[0].id in roles.strokes:
-        stroke = roles.length_text(roles.strokes[guides[0].id])
-        yield _("Link {link} moves to and fro along its guide; its stroke is {stroke}.").format(
-            link=called(link), stroke=stroke
+        text = (
+            _("Link {link} moves to and fro along its guide; its stroke is {stroke}.")
+            if roles.comes_back(guides[0].id)
+            else _("Link {link} moves along its guide, by {stroke} in all.")
         )
+        yield text.format(link=called(link), stroke=roles.length_text(roles.strokes[guides[0].id]))
     elif guides:
         yield _("Link {link} moves along its guide.").format(link=called(link))
     else:
@@ -241,6 +243,9 @@ def _on_slider(roles: Roles, rod: Rod, rail: Rail) -> str:
         return _("Link {coupler} moves the slider in {point} along link {on}.").format(**place)
     if guide.id not in roles.strokes:
         return _("Coupler {coupler} moves the slider in {point} along its guide.").format(**place)
-    return _(
-        "Coupler {coupler} moves the slider in {point} to and fro along its guide; its stroke is {stroke}."
-    ).format(stroke=roles.length_text(roles.strokes[guide.id]), **place)
+    text = (
+        _("Coupler {coupler} moves the slider in {point} to and fro along its guide; its stroke is {stroke}.")
+        if roles.comes_back(guide.id)
+        else _("Coupler {coupler} moves the slider in {point} along its guide, by {stroke} in all.")
+    )
+    return text.format(stroke=roles.length_text(roles.strokes[guide.id]), **place)

@@ -13,7 +13,7 @@ from centrode.analysis.graphic.board import cross, dot, meet
 from centrode.analysis.graphic.false_position import solve_by_trials
 from centrode.analysis.graphic.rays import Leg, Ray, carrying, letter, ray_of, turning
 from centrode.analysis.graphic.stage import ORIGIN, Edge, Stage, Step, Triangle
-from centrode.analysis.graphic.wheel_rates import meshed_rate, rolled_rate, train_rates
+from centrode.analysis.graphic.wheel_rates import meshed_rate, rolled_rate, train_rates, wheel_equations
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.structure.groups import (
@@ -61,7 +61,7 @@ def _construct(group: Group, stage: Stage) -> tuple[list[str], Triangle | None]:
     if isinstance(group, TurnedLink):
         stage.bases[group.link] = group.pivot
         stage.turns[group.link] = _turn_of(stage, group.turning, group.link)
-        return [], None
+        return wheel_equations(stage, group.turning), None
     if isinstance(group, Aim):
         return _aim(stage, group)
     if isinstance(group, Meet):
@@ -220,7 +220,7 @@ def _angle(a: complex, b: complex) -> float:
 def _train(stage: Stage, group: Train) -> list[str]:
     """Links that gears turn together: angular velocities by their equations, then images one after the other."""
     stage.turns.update(train_rates(stage, group))
-    equations = []
+    equations = [line for one in group.equations for line in wheel_equations(stage, one)]
     for link, pivot in group.places:
         stage.bases[link] = pivot
         for point, bringing in group.brought:

@@ -8,8 +8,8 @@ from centrode.analysis.graphic.board import dot
 from centrode.analysis.graphic.stage import Stage
 from centrode.kinematics.wheels import solved_angles
 from centrode.structure.gearing import Straight
-from centrode.structure.positions import Positions
-from centrode.structure.wheel_groups import AngleEquation, AngleGiven, Arm, Train
+from centrode.structure.positions import FRAME, Positions
+from centrode.structure.wheel_groups import AngleEquation, AngleGiven, Arm, Meshed, Rolled, Train
 from centrode.structure.wheels import GearRatio, NoSlip
 
 
@@ -18,6 +18,29 @@ def meshed_rate(stage: Stage, gear: GearRatio, link: str) -> float:
     weights = gear.weights(stage.drawing.numbers)
     known = sum(weight * stage.turns[other] for other, weight in weights.items() if other != link)
     return float(-known / weights[link])
+
+
+def wheel_equations(stage: Stage, turning: object) -> list[str]:
+    """The equation of a gear (Willis), or of a wheel that rolls on the frame, as a person writes it."""
+    letter = "ω" if stage.order == 1 else "ε"
+    if isinstance(turning, Meshed):
+        turning = turning.gear
+    if isinstance(turning, GearRatio):
+        weights = turning.weights(stage.drawing.numbers)
+        ratio = -weights[turning.first] / weights[turning.second]
+        first, second = (_seen(letter, link, turning.carrier) for link in (turning.first, turning.second))
+        return [f"{second} = {ratio:.5g}·{first}"]
+    if isinstance(turning, Rolled) and turning.rolling.on == FRAME:
+        wheel, centre = turning.rolling.link, turning.rolling.centre
+        rate = "v" if stage.order == 1 else "aᵗ"
+        return [f"|{letter}_{wheel}| = |{rate}_{centre}|/r"]
+    return []
+
+
+def _seen(letter: str, link: str, carrier: str) -> str:
+    """Turning of a link as its gear's carrier sees it."""
+    parts = ["0" if name == FRAME else f"{letter}_{name}" for name in (link, carrier)]
+    return parts[0] if carrier == FRAME else f"({parts[0]} − {parts[1]})"
 
 
 def rolled_rate(stage: Stage, rolling: NoSlip) -> float:
