@@ -9,28 +9,27 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import (
+    dark_option,
+    mechanism_argument,
+    no_figures_option,
+    results_option,
+    samples_option,
+)
 from centrode.cli.progress import Progress
-from centrode.locale import _, mark, ngettext
-
-DEFAULT_FOLDER = "{name}-angles"
+from centrode.locale import _, mark
 
 
 @click.command(help=mark("Compute transmission and pressure angles over the motion."))
 @mechanism_argument
-@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
-@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Folder for the results; named after the mechanism if left out."),
-)
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@samples_option
+@dark_option
+@results_option
+@no_figures_option
 def angles(mechanism: str, samples: int | None, dark: bool, out: Path | None, no_figures: bool) -> None:
     """Compute, write and draw."""
     description = ct.load(mechanism)
-    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    folder = output.folder_of(out, mechanism, "angles")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
         with about(mechanism):
@@ -45,7 +44,4 @@ def angles(mechanism: str, samples: int | None, dark: bool, out: Path | None, no
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.transmission_rows(found), right=(1, 2, 3)))
-    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-        n=len(names), folder=folder
-    )
-    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    click.echo("\n" + output.files_in(folder, names))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
 from centrode.locale import mark
@@ -12,3 +14,23 @@ mechanism_argument = click.argument(
     help=mark("A TOML file, or the name of a built-in mechanism."),
 )
 """The mechanism that a command is about."""
+
+results_option = click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Folder for the results; named after the mechanism if left out."),
+)
+"""Where a command that always writes puts its files; `output.folder_of` names it."""
+
+samples_option = click.option(
+    "--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included.")
+)
+
+stop_option = click.option(
+    "--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time.")
+)
+
+no_figures_option = click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+
+dark_option = click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))

@@ -11,11 +11,11 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option
 from centrode.cli.progress import Progress
 from centrode.cli.reached import is_moving, tell_absent
 from centrode.errors import InputError
-from centrode.locale import _, mark, ngettext
+from centrode.locale import _, mark
 
 if TYPE_CHECKING:
     import xarray
@@ -50,8 +50,8 @@ MOST_ROWS = 300
     metavar=mark("DIR"),
     help=mark("Also write tables and pictures into this folder."),
 )
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
-@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
+@no_figures_option
+@dark_option
 def centres(
     mechanism: str,
     places: tuple[str, ...],
@@ -90,10 +90,7 @@ def centres(
     for text in texts:
         click.echo(f"\n{text}")
     if out is not None:
-        count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(files)).format(
-            n=len(files), folder=out
-        )
-        click.echo(f"\n{output.paragraph(f'{count}:', files)}")
+        click.echo("\n" + output.files_in(out, files))
     tell_absent(mechanism, motion)
 
 

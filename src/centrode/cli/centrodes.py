@@ -10,16 +10,21 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import (
+    dark_option,
+    mechanism_argument,
+    no_figures_option,
+    results_option,
+    samples_option,
+    stop_option,
+)
 from centrode.cli.progress import Progress
 from centrode.cli.reached import is_moving, tell_absent
 from centrode.errors import MotionError
-from centrode.locale import _, mark, ngettext
+from centrode.locale import _, mark
 
 if TYPE_CHECKING:
     import xarray
-
-DEFAULT_FOLDER = "{name}-centrodes"
 
 
 @click.command(help=mark("Compute the centrodes of a link and draw them."))
@@ -33,9 +38,9 @@ DEFAULT_FOLDER = "{name}-centrodes"
     metavar=mark("LINK"),
     help=mark("The link that it rolls on; the frame if left out."),
 )
-@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
+@samples_option
 @click.option("--from", "start", metavar=mark("A"), help=mark("First value of the drive, or first time."))
-@click.option("--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time."))
+@stop_option
 @click.option(
     "--at",
     "places",
@@ -43,17 +48,12 @@ DEFAULT_FOLDER = "{name}-centrodes"
     metavar=mark("VALUE"),
     help=mark("Also the curvature of the paths of the link's points there; as often as needed."),
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Folder for the results; named after the mechanism if left out."),
-)
+@results_option
 @click.option(
     "--animate", is_flag=True, help=mark("Also write an animation: one centrode rolls on the other.")
 )
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
-@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
+@no_figures_option
+@dark_option
 def centrodes(
     mechanism: str,
     link: str,
@@ -69,7 +69,7 @@ def centrodes(
 ) -> None:
     """Compute and write both curves, and the curvature where asked."""
     description = ct.load(mechanism)
-    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    folder = output.folder_of(out, mechanism, "centrodes")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
         with about(mechanism):
@@ -100,10 +100,7 @@ def centrodes(
     for sample in range(len(at)):
         assert bent is not None
         click.echo(f"\n{output.table(ct.curvature_rows(description, bent, sample))}")
-    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-        n=len(names), folder=folder
-    )
-    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    click.echo("\n" + output.files_in(folder, names))
     if looked is not None:
         tell_absent(mechanism, looked)
     if not (found["centrode_piece"] >= 0).any():

@@ -9,13 +9,12 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, results_option
 from centrode.cli.pairs import pairs
 from centrode.cli.progress import Progress
 from centrode.errors import InputError
-from centrode.locale import _, mark, ngettext
+from centrode.locale import _, mark
 
-DEFAULT_FOLDER = "{name}-diagrams"
 MOST_INSTANTS = 100
 SCALE = "length=0.02"
 """A scale as it is written."""
@@ -48,14 +47,9 @@ SCALE = "length=0.02"
     metavar=mark("NAME=VALUE"),
     help=mark('What a millimetre stands for in SI: length, velocity or acceleration ("length=0.02").'),
 )
-@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Folder for the results; named after the mechanism if left out."),
-)
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@dark_option
+@results_option
+@no_figures_option
 def diagrams(
     mechanism: str,
     instants: tuple[str, ...],
@@ -68,7 +62,7 @@ def diagrams(
 ) -> None:
     """Construct, compare and draw."""
     description = ct.load(mechanism)
-    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    folder = output.folder_of(out, mechanism, "diagrams")
     if len(instants) > MOST_INSTANTS:
         raise InputError(
             "--at",
@@ -93,10 +87,7 @@ def diagrams(
             texts += ["", _("at {value}").format(value=text), report(check)]
         names = sorted(path.name for path in draft.iterdir())
     click.echo("\n".join(texts))
-    told = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-        n=len(names), folder=folder
-    )
-    click.echo(f"\n{output.paragraph(f'{told}:', names)}")
+    click.echo("\n" + output.files_in(folder, names))
 
 
 def number(text: str) -> float:

@@ -10,12 +10,10 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import mechanism_argument, no_figures_option, results_option, stop_option
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
-from centrode.locale import _, mark, ngettext
-
-DEFAULT_FOLDER = "{name}-integration"
+from centrode.locale import _, mark
 
 
 @click.command(help=mark("Integrate the differential equations of a mechanism."))
@@ -30,14 +28,9 @@ DEFAULT_FOLDER = "{name}-integration"
     "--steps", type=int, default=100, metavar=mark("N"), help=mark("Number of steps, and of rows less one.")
 )
 @click.option("--tolerance", type=float, metavar=mark("X"), help=mark("Tolerance of each adaptive step."))
-@click.option("--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time."))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Folder for the results; named after the mechanism if left out."),
-)
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@stop_option
+@results_option
+@no_figures_option
 def integrate(
     mechanism: str,
     method: str,
@@ -49,7 +42,7 @@ def integrate(
 ) -> None:
     """Integrate and write; exit code 3 if the equations stop within the range (the rows before are written)."""
     description = ct.load(mechanism)
-    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    folder = output.folder_of(out, mechanism, "integration")
     if tolerance is not None and method == "rk4":
         what = _("fixed steps have no tolerance")
         raise InputError("--tolerance", what, _("add --method adaptive, or ask for more --steps"))
@@ -77,10 +70,7 @@ def integrate(
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.integration_rows(description, found)))
-    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-        n=len(names), folder=folder
-    )
-    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    click.echo("\n" + output.files_in(folder, names))
     stopped = ct.integration_failure(description, found)
     if stopped is not None:
         # steps that are too coarse are told with their repair

@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from centrode.errors import InputError
-from centrode.locale import _
+from centrode.locale import _, ngettext
 
 WIDTH = 100
 """Columns of a paragraph."""
@@ -49,6 +49,17 @@ def paragraph(heading: str, items: Sequence[str]) -> str:
         WIDTH, initial_indent="  ", subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
     )
     return f"{heading}\n{wrap.fill(line)}"
+
+
+def folder_of(out: Path | None, source: str, kind: str) -> Path:
+    """The folder that was asked for, else one named after what is read and what is computed."""
+    return out if out is not None else Path(f"{Path(source).stem}-{kind}")
+
+
+def files_in(folder: Path, names: Sequence[str]) -> str:
+    """A paragraph that counts and names the files of a folder."""
+    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names))
+    return paragraph(count.format(n=len(names), folder=folder) + ":", names)
 
 
 @contextmanager

@@ -9,11 +9,9 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, results_option
 from centrode.cli.progress import Progress
-from centrode.locale import _, mark, ngettext
-
-DEFAULT_FOLDER = "{name}-plan"
+from centrode.locale import _, mark
 
 
 @click.command(help=mark("Draw the mechanism in numbered positions of its cycle."))
@@ -24,20 +22,15 @@ DEFAULT_FOLDER = "{name}-plan"
     metavar=mark("NAME"),
     help=mark("Link or guide whose velocity vanishes in position 0; a slider or rocker if left out."),
 )
-@click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Folder for the results; named after the mechanism if left out."),
-)
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@dark_option
+@results_option
+@no_figures_option
 def plan(
     mechanism: str, positions: int | None, link: str | None, dark: bool, out: Path | None, no_figures: bool
 ) -> None:
     """Find the extreme position, compute and draw; with the transmission angles where there are any."""
     description = ct.load(mechanism)
-    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    folder = output.folder_of(out, mechanism, "plan")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
         with about(mechanism):
@@ -53,7 +46,4 @@ def plan(
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.plan_rows(description, found)))
-    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-        n=len(names), folder=folder
-    )
-    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    click.echo("\n" + output.files_in(folder, names))

@@ -10,16 +10,14 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import mechanism_argument, no_figures_option, results_option
 from centrode.cli.pairs import pairs, ranges
 from centrode.cli.progress import Progress
 from centrode.errors import InputError
-from centrode.locale import _, mark, ngettext
+from centrode.locale import _, mark
 
 if TYPE_CHECKING:
     import xarray
-
-DEFAULT_FOLDER = "{name}-region"
 
 
 @click.command(help=mark("Compute the reachable region of two drives and draw it."))
@@ -45,13 +43,8 @@ DEFAULT_FOLDER = "{name}-region"
     help=mark("Value of a further drive; its initial one if left out."),
 )
 @click.option("--samples", type=int, metavar=mark("N"), help=mark("Grid lines of each drive."))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Folder for the results; named after the mechanism if left out."),
-)
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@results_option
+@no_figures_option
 def region(
     mechanism: str,
     drives: tuple[str, ...],
@@ -63,7 +56,7 @@ def region(
 ) -> None:
     """Compute and write the region of two drives."""
     description = ct.load(mechanism)
-    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    folder = output.folder_of(out, mechanism, "region")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
         with about(mechanism):
@@ -85,10 +78,7 @@ def region(
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.region_rows(description, found)))
-    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-        n=len(names), folder=folder
-    )
-    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    click.echo("\n" + output.files_in(folder, names))
 
 
 def _motion(description: ct.Mechanism) -> xarray.Dataset | None:

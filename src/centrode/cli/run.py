@@ -11,35 +11,34 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import (
+    mechanism_argument,
+    no_figures_option,
+    results_option,
+    samples_option,
+    stop_option,
+)
 from centrode.cli.flywheel import write as write_machine
 from centrode.cli.progress import Progress
 from centrode.errors import MotionError
-from centrode.locale import _, mark, ngettext
+from centrode.locale import _, mark
 
 if TYPE_CHECKING:
     from centrode.study.running import StudyResults
 
-DEFAULT_FOLDER = "{name}-result"
-
 
 @click.command(help=mark("Compute the motion of a mechanism: tables and pictures."))
 @mechanism_argument
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Folder for the results; named after the mechanism if left out."),
-)
-@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
+@results_option
+@samples_option
 @click.option(
     "--from",
     "start",
     metavar=mark("A"),
     help=mark('First value of the drive ("0 deg"); a time ("0 s") where the drive is a law.'),
 )
-@click.option("--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time."))
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@stop_option
+@no_figures_option
 def run(
     mechanism: str,
     out: Path | None,
@@ -50,7 +49,7 @@ def run(
 ) -> None:
     """Compute and write; exit code 3 if the mechanism locks in the range asked for (the rest is written)."""
     description = ct.load(mechanism)
-    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(mechanism).stem))
+    folder = output.folder_of(out, mechanism, "result")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
         first = None if start is None else ct.range_value(description, start, "--from")
@@ -60,10 +59,7 @@ def run(
         write(study, draft, progress, figures=not no_figures)
         names = sorted(path.name for path in draft.iterdir())
     click.echo(summary_text(study, mechanism))
-    count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-        n=len(names), folder=folder
-    )
-    click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+    click.echo("\n" + output.files_in(folder, names))
     if study.failure is not None:
         raise MotionError(
             mechanism, study.failure, _("ask for a range between the limits, or change the dimensions")

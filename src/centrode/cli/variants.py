@@ -12,8 +12,6 @@ from centrode.cli.progress import Progress
 from centrode.errors import MotionError
 from centrode.locale import _, mark
 
-DEFAULT_FOLDER = "{name}-variants"
-
 
 @click.command(help=mark("Compute every variant of a table."))
 @click.argument("table", metavar=mark("TABLE"), help=mark("A CSV file with one row a variant."))
@@ -36,7 +34,7 @@ DEFAULT_FOLDER = "{name}-variants"
 def variants(table: str, topology: str, out: Path | None, jobs: int, figures: bool) -> None:
     """Compute and write; exit code 3 if a variant was refused (the others are written)."""
     description = ct.load(topology)
-    folder = out if out is not None else Path(DEFAULT_FOLDER.format(name=Path(table).stem))
+    folder = output.folder_of(out, table, "variants")
     try:
         with Progress() as progress:
 
