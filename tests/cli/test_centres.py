@@ -116,7 +116,7 @@ def test_centrodes_are_written(centrode: Centrode, folder: Path) -> None:
     assert sorted(path.name for path in result.iterdir()) == [*names, "curvature.png", "curvature.svg"]
     assert done.rows["pieces"] == "1"
     assert done.rows["samples with a centre"] == "7 / 7"
-    assert done.rows["inflection circle"] == "1 m"
+    assert done.rows["diameter of the inflection circle"] == "1 m"
     assert done.rows["radius of the path of A"] == "∞"
     table = rows(result / "centrodes.csv")
     assert len(table) == 7
