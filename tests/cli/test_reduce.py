@@ -149,6 +149,10 @@ def test_nothing_to_reduce(centrode: Centrode) -> None:
     assert "neither masses nor loads" in done.err
 
 
-def test_a_run_says_where_loads_are(centrode: Centrode) -> None:
-    done = centrode("run", "six-bar-press", "--samples", 5, "--no-figures")
+def test_a_run_without_a_machine_says_where_loads_are(centrode: Centrode, tmp_path: Path) -> None:
+    press = ct.example("six-bar-press").model_copy(update={"machine": None})
+    file = tmp_path / "press.toml"
+    file.write_text(ct.mechanism_text(press), encoding="utf-8")
+    done = centrode("run", file, "--samples", 5, "--no-figures")
+    assert done.code == 0
     assert "centrode reduce" in done.out
