@@ -11,7 +11,7 @@ import numpy as np
 
 from centrode.dynamics.quadrature import Array
 
-KEPT = 8
+KEPT = 16
 """Former steps that the next one is made from."""
 
 

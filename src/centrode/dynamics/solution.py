@@ -23,7 +23,7 @@ from centrode.locale import _
 from centrode.model.machines import DRIVING_VARIABLES, Machine
 from centrode.model.mechanism import Mechanism
 
-MOST_ITERATIONS = 100
+MOST_ITERATIONS = 60
 SETTLED = 1e-13
 """Change of the resultant moment, over the greatest ones that it is the sum of, at which loads and speed agree."""
 
