@@ -55,6 +55,20 @@ def test_a_flywheel_is_printed(centrode: Centrode, compressor: Path) -> None:
     assert [path.name for path in compressor.iterdir()] == ["compressor.toml"]
 
 
+def test_files_of_others_in_the_folder_are_not_counted(centrode: Centrode, compressor: Path) -> None:
+    (compressor / "made").mkdir()
+    (compressor / "made" / "notes.txt").write_text("mine")
+    done = centrode("flywheel", "compressor.toml", "--out", "made", "--no-figures", "--samples", "5")
+    assert done.out.endswith("3 files in made: machine.csv, machine.nc, summary.json\n")
+    assert (compressor / "made" / "notes.txt").read_text() == "mine"
+
+
+def test_a_sphere_without_a_machine_has_none_to_leave_out(centrode: Centrode) -> None:
+    done = centrode("flywheel", "spherical-four-bar")
+    assert (done.code, done.out) == (2, "")
+    assert "steady motion on the sphere is not computed yet; describe a plane one" in done.err
+
+
 def test_the_mean_in_time(centrode: Centrode, compressor: Path) -> None:
     said = centrode("flywheel", "compressor.toml", "--mean", "time").rows
     found = ct.flywheel(ct.read_mechanism("compressor.toml"), "time")

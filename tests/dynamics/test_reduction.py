@@ -228,3 +228,11 @@ def test_samples_do_not_matter() -> None:
     for name in ("reduced_inertia", "reduced_moment"):
         size = float(abs(many[name]).max())
         assert np.allclose(few[name].values[rows], many[name].values[columns], rtol=0, atol=256 * EPS * size)
+
+
+def test_what_never_moves_never_turns_round() -> None:
+    """H moves along its line only, and the slider does not turn: neither foretells a jump."""
+    text = ct.example_text("six-bar-press").replace("while_moving = [1, 0]", "while_moving = [0, 1]")
+    load = '[[loads]]\nkind = "torque"\nlink = "slider"\nvalue = "-3*abs(v)"\n'
+    still = ct.parse_mechanism(text.replace("[machine]", f"{load}[machine]"))
+    assert Reducer.of(still).jumps(-TURN, TURN).size == 0

@@ -353,3 +353,40 @@ def test_samples_at_given_places() -> None:
         source.angular_velocity.sel(link="OA"), source.drive_speed_first_order, rtol=8 * EPS
     )
     assert ct.parse_mechanism(even.attrs["mechanism"]) == mechanism
+
+
+@pytest.mark.parametrize(
+    ("damping", "swing", "fluctuation"),
+    [(5.0, 1e-6, 1.9), (5.0, 1.0, 1.9), (50.0, 20.0, 0.05), (50.0, 20.0, 0.002), (200.0, 20.0, 0.005)],
+)
+def test_a_damped_crank_settles(damping: float, swing: float, fluctuation: float) -> None:
+    """J w w' = D - c w - S sin q, linear for small S: amplitude S / hypot(c, J w_m) of w, and its squares beyond."""
+    mechanism = crank(f"-{damping}*v - {swing}*sin(q)", fluctuation)
+    found = ct.flywheel(mechanism)
+    assert found.inertia is not None
+    carried = max(found.inertia, 0.0) + 2.0
+    amplitude = swing / math.hypot(damping, carried * 10.0)
+    linear = 2 * amplitude / 10.0
+    # J itself is known to 1e-13 of the whole energy, and the swing of that is the fluctuation
+    assert found.obtained == pytest.approx(linear, rel=linear**2 + 1e-11 / linear)
+
+
+def test_damping_may_make_a_flywheel_needless() -> None:
+    """With 5 w^2 the crank's own inertia keeps 0.0392, whatever the first round asks for; 0.05 is allowed."""
+    found = solution_of(crank("-5*v*abs(v) - 20*sin(q)", 0.05))
+    assert found.needed is not None
+    assert found.needed <= found.present
+    fluctuation = 2 * 20 / math.hypot(2 * 5 * 10, 2 * 10) / 10
+    assert found.speed.extremes().range / 10 == pytest.approx(fluctuation, rel=4 * fluctuation**2)
+
+
+def test_a_load_that_jumps_where_the_cycle_begins_repeats() -> None:
+    """sign(sin q) is 0 at q = 0 and not at 2 pi as rounded; the work swings by 20 pi."""
+    text = CRANK.format(load="-20 - 20*sign(sin(q))", fluctuation=0.01, speed=1)
+    found = ct.flywheel(ct.parse_mechanism(text.replace("start = 0.3", "start = 0")))
+    assert found.inertia == pytest.approx(20 * math.pi / (100 * 0.01) - 2, rel=1e-9)
+
+
+def test_a_driving_moment_without_a_value_is_refused() -> None:
+    with pytest.raises(ct.InputError, match="no finite value everywhere in the cycle"):
+        ct.flywheel(engine('fluctuation = 0.05\ndriving = "1/(v - v)"'))

@@ -50,16 +50,16 @@ def flywheel(
     """Print energies, inertia and sizes; write the steady motion where asked."""
     description = ct.load(mechanism)
     kind, way = cast("Mean", mean), cast("Method", method)
+    names: list[str] = []
     with about(mechanism):
         if out is None:
             found = ct.flywheel(description, kind)
         else:
-            found = _written(description, kind, way, out, samples, figures=not no_figures)
+            found, names = _written(description, kind, way, out, samples, figures=not no_figures)
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.flywheel_rows(description, found)))
     if out is not None:
-        names = sorted(path.name for path in out.iterdir())
         count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
             n=len(names), folder=out
         )
@@ -68,8 +68,8 @@ def flywheel(
 
 def _written(
     mechanism: Mechanism, mean: Mean, method: Method, out: Path, samples: int | None, *, figures: bool
-) -> ct.Flywheel:
-    """Compute and write into a folder."""
+) -> tuple[ct.Flywheel, list[str]]:
+    """Compute and write into a folder; also returns the names of the files."""
     with output.output_folder(out) as draft, Progress() as progress:
         progress.say(_("solving"))
         ct.flywheel(mechanism, mean)  # a fluctuation is needed here
@@ -78,7 +78,8 @@ def _written(
         scalars = {name: one.as_dict() for name, one in ct.flywheel_scalars(results.flywheel).items()}
         text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
         (draft / "summary.json").write_text(text, encoding="utf-8")
-    return results.flywheel
+        names = sorted(path.name for path in draft.iterdir())
+    return results.flywheel, names
 
 
 def write(

@@ -21,8 +21,8 @@ from centrode.locale import _
 PANELS_PER_TURN = 72
 TOLERANCES = (1e-13, 1e-13, 1e-8, 1e-13)
 """Of inertia, moment, the inertia's slope, which only locates extremes, and the drive's moment."""
-PROBES = 2 * np.pi * np.array([0.0, 0.137, 0.291, 0.454, 0.618, 0.773, 0.911])
-"""Places of the first turn that are looked at again in later turns."""
+PROBES = 2 * np.pi * np.array([0.0133, 0.137, 0.291, 0.454, 0.618, 0.773, 0.911])
+"""Places of the first turn that are looked at again in later turns; loads often jump at its beginning."""
 FEW_TURNS, MOST_TURNS = 4, 60
 SAME = 1e-7
 """Difference, over the greatest value, up to which two turns are the same: that of interpolated change points."""

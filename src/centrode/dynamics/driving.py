@@ -21,8 +21,10 @@ class Shape:
 
     def at(self, values: Array, speed: Array | float) -> Array:
         """Its values (n) at values and speeds of the drive; raises InputError where it has none."""
+        # one speed as an array too: plain numbers would raise where arrays have infinities
+        speeds = np.broadcast_to(np.asarray(speed, dtype=np.float64), values.shape)
         with np.errstate(all="ignore"):
-            found = self.formula(ARRAYS, q=values, v=speed)
+            found = self.formula(ARRAYS, q=values, v=speeds)
         found = np.broadcast_to(np.asarray(found, dtype=np.float64), values.shape)
         if not np.isfinite(found).all():
             raise InputError(

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.coordinates import Coordinate
-from centrode.dynamics.loads import Acting, Effort
+from centrode.dynamics.loads import REST, Acting, Effort
 from centrode.dynamics.states import State
 from centrode.kinematics.roots import bracketed_roots
 
@@ -52,9 +52,16 @@ def _turning_points(coordinate: Coordinate, at: StateAt, nodes: Array, state: St
     """Places at which a coordinate turns round."""
     function = _turning(coordinate)
     value, slope = (np.broadcast_to(x, (1, len(nodes)))[0] for x in function(state))
+    if _stands_still(value, state.scale):
+        return
     for low, high in _brackets(function, at, nodes, value, slope):
         yield bracketed_roots(functools.partial(_at_values, function, at), low, high)
     yield nodes[value == 0.0]
+
+
+def _stands_still(value: Array, scale: float) -> bool:
+    """Whether a coordinate never moves, but for rounding: then it does not turn round either."""
+    return bool(np.nanmax(np.abs(value), initial=0.0) <= REST * max(1.0, scale))
 
 
 def _passings(coordinate: Coordinate, levels: Array, at: StateAt, nodes: Array, state: State) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +13,7 @@ from centrode.dynamics.balance import MEANS, Balance, Mean, balance_of
 from centrode.dynamics.by_source import SpeedBySource, needed_by_source
 from centrode.dynamics.cycle import Cycle, Reduction, check_drive, cycle_of
 from centrode.dynamics.driving import Shape
+from centrode.dynamics.mixing import Mixing
 from centrode.dynamics.quadrature import Array
 from centrode.dynamics.reducing import reduction_of
 from centrode.dynamics.speeds import Speed, Tangents, tangents, with_fluctuation, with_inertia
@@ -20,9 +23,9 @@ from centrode.locale import _
 from centrode.model.machines import DRIVING_VARIABLES, Machine
 from centrode.model.mechanism import Mechanism
 
-MOST_ITERATIONS = 100
-SETTLED = 1e-14
-"""Change of the moments, over the greatest one, at which loads and speed agree."""
+MOST_ITERATIONS = 60
+SETTLED = 1e-13
+"""Change of the resultant moment, over the greatest ones that it is the sum of, at which loads and speed agree."""
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,9 @@ def in_other_mean(found: Solution, kind: Mean) -> Solution:
 def _machine(mechanism: Mechanism) -> Machine:
     if mechanism.space == "sphere":
         raise NotComputedYet(
-            "space", _("steady motion on the sphere is not computed yet"), _("leave out [machine]")
+            "space",
+            _("steady motion on the sphere is not computed yet"),
+            _("describe a plane one") if mechanism.machine is None else _("leave out [machine]"),
         )
     if mechanism.machine is None:
         raise InputError(
@@ -158,15 +163,24 @@ def _settled(
     cycle: Cycle, shape: Shape | None, machine: Machine, present: float, kind: Mean
 ) -> tuple[float | None, Speed, int]:
     """Inertia needed and speed at which loads, drive and speed agree, and after how many rounds they do."""
-    nodes = cycle.panels.nodes
-    speeds = np.full(len(nodes), machine.mean_speed)
-    for iteration in range(1, MOST_ITERATIONS + 1):
-        balance = balance_of(cycle, shape, speeds)
-        needed, speed = _speed(balance, machine, present, kind)
-        speeds = speed.at(nodes)
-        cycle = cycle.at_speed(speeds)
-        if _agrees(balance, balance_of(cycle, shape, speeds), nodes):
-            return needed, speed, iteration
+
+    def as_asked(balance: Balance) -> tuple[float | None, Speed]:
+        return _speed(balance, machine, present, kind)
+
+    def as_present(balance: Balance) -> tuple[float | None, Speed]:
+        return None, with_inertia(balance, machine.mean_speed, present, kind)
+
+    found = _iterated(cycle, shape, machine.mean_speed, as_asked)
+    if found is None and machine.fluctuation is not None:
+        # loads that damp may keep the speed more even than asked, whatever the inertia: then none is needed
+        with suppress(InputError):  # it stands still on the way to an answer
+            found = _iterated(cycle, shape, machine.mean_speed, as_present)
+        if found is not None:
+            speed = found[1]
+            needed = with_fluctuation(speed.balance, machine.mean_speed, machine.fluctuation, kind)[0].inertia
+            found = (needed, speed, found[2]) if needed <= present else None
+    if found is not None:
+        return found
     raise MotionError(
         "[machine]",
         _("loads that depend on the speed and the speed itself do not settle after {count} rounds").format(
@@ -174,6 +188,24 @@ def _settled(
         ),
         _("give more inertia, or a smaller fluctuation"),
     )
+
+
+def _iterated(
+    cycle: Cycle, shape: Shape | None, mean: float, speed_of: Callable[[Balance], tuple[float | None, Speed]]
+) -> tuple[float | None, Speed, int] | None:
+    """What `speed_of` finds when loads and drive are those of the speed it finds; None where they never are."""
+    nodes = cycle.panels.nodes
+    speeds, mixing = np.full(len(nodes), mean), Mixing()
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        balance = balance_of(cycle, shape, speeds)
+        needed, speed = speed_of(balance)
+        found = speed.at(nodes)
+        if _agrees(balance, balance_of(cycle.at_speed(found), shape, found), nodes):
+            return needed, speed, iteration
+        mixed = mixing.following(speeds, found)
+        speeds = mixed if mixed.min() > 0.0 else found
+        cycle = cycle.at_speed(speeds)
+    return None
 
 
 def _speed(balance: Balance, machine: Machine, present: float, kind: Mean) -> tuple[float | None, Speed]:
@@ -187,4 +219,5 @@ def _speed(balance: Balance, machine: Machine, present: float, kind: Mean) -> tu
 
 def _agrees(one: Balance, other: Balance, nodes: Array) -> bool:
     before, after = one.total.at(nodes), other.total.at(nodes)
-    return bool(np.max(np.abs(after - before)) <= SETTLED * np.max(np.abs(before), initial=1e-300))
+    size = sum(float(np.max(np.abs(part.at(nodes)))) for part in (one.cycle.moment, one.driving))
+    return bool(np.max(np.abs(after - before)) <= SETTLED * size)
