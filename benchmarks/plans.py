@@ -43,6 +43,10 @@ SIX: Mapping[str, tuple[str, ...]] = {
     "spherical-four-bar": (
         *DIMENSIONS["spherical-four-bar"], "frame.points.D.latitude", "frame.points.A.longitude",
     ),
+    "third-class-triad": (
+        "links.OA.length", "links.AB.length", "links.DC.length", "links.EF.length", "frame.points.D.x",
+        "frame.points.E.x",
+    ),
 }  # fmt: skip
 """Six of the dimensions by which a number is differentiated."""
 
