@@ -23,6 +23,14 @@ results_option = click.option(
 )
 """Where a command that always writes puts its files; `output.folder_of` names it."""
 
+written_option = click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Also write tables and pictures into this folder."),
+)
+"""Where a command that prints its results also writes them."""
+
 samples_option = click.option(
     "--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included.")
 )

@@ -11,7 +11,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option
+from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, written_option
 from centrode.cli.progress import Progress
 from centrode.cli.reached import is_moving, tell_absent
 from centrode.errors import InputError
@@ -44,12 +44,7 @@ MOST_ROWS = 300
     metavar=mark("LINK,LINK"),
     help=mark('Two links ("AC,frame"); all pairs if left out. As often as needed.'),
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Also write tables and pictures into this folder."),
-)
+@written_option
 @no_figures_option
 @dark_option
 def centres(

@@ -11,9 +11,9 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option
 from centrode.cli.progress import Progress
-from centrode.locale import _, mark, ngettext
+from centrode.locale import _, mark
 
 if TYPE_CHECKING:
     from centrode.dynamics.balance import Mean
@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     metavar=mark("DIR"),
     help=mark("Also write tables, pictures and numbers into this folder."),
 )
-@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@samples_option
+@no_figures_option
 def flywheel(
     mechanism: str, mean: str, method: str, out: Path | None, samples: int | None, no_figures: bool
 ) -> None:
@@ -60,10 +60,7 @@ def flywheel(
     click.echo()
     click.echo(output.table(ct.flywheel_rows(description, found)))
     if out is not None:
-        count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-            n=len(names), folder=out
-        )
-        click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+        click.echo("\n" + output.files_in(out, names))
 
 
 def _written(

@@ -10,7 +10,13 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument
+from centrode.cli.arguments import (
+    mechanism_argument,
+    no_figures_option,
+    samples_option,
+    stop_option,
+    written_option,
+)
 from centrode.cli.progress import Progress
 from centrode.errors import MotionError, Status
 from centrode.locale import _, mark, ngettext
@@ -23,21 +29,16 @@ MISSING = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 
 @click.command(help=mark("Reduce masses and loads to the drive, part by part."))
 @mechanism_argument
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Also write tables and pictures into this folder."),
-)
-@click.option("--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included."))
+@written_option
+@samples_option
 @click.option(
     "--from",
     "start",
     metavar=mark("A"),
     help=mark('First value of the drive ("0 deg"); a time ("0 s") where the drive is a law.'),
 )
-@click.option("--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time."))
-@click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
+@stop_option
+@no_figures_option
 def reduce(
     mechanism: str,
     out: Path | None,
@@ -65,10 +66,7 @@ def reduce(
     header, rows = ct.reduction_parts(found)
     click.echo("\n" + output.table(rows, header, right=(2, 3, 4)))
     if out is not None:
-        count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names)).format(
-            n=len(names), folder=out
-        )
-        click.echo(f"\n{output.paragraph(f'{count}:', names)}")
+        click.echo("\n" + output.files_in(out, names))
     _tell_failure(mechanism, found)
 
 

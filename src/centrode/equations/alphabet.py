@@ -97,11 +97,6 @@ class Alphabet:
         """A constant length, or nothing where it is zero."""
         return Sum.letter(self.letter(rank, name, kind, names, value, "m")) if value else ZERO
 
-    def replace_value(self, letter: Letter, value: float) -> None:
-        """Give a constant its number once it is known."""
-        old = self.meanings[letter]
-        self.meanings[letter] = Meaning(old.symbol, old.kind, old.names, float(value), old.unit, old.moves)
-
     @property
     def values(self) -> Mapping[Letter, float]:
         """Number of every letter; of what moves, that in the initial position."""

@@ -14,7 +14,6 @@ from centrode.equations.alphabet import (
     Alphabet,
     Vector,
     joined,
-    quarters_of,
 )
 from centrode.equations.draft import Draft, Unknown
 from centrode.equations.letters import Angle, Letter
@@ -242,10 +241,6 @@ class Board:
     def _apart_along(self, at: Vector, line: Line) -> Vector:
         (x, y), (ux, uy) = (line.through[0] - at[0], line.through[1] - at[1]), line.direction
         return x * ux + y * uy, ux * y - uy * x
-
-    def is_axis(self, line: Line) -> bool:
-        """Whether a line of the frame is horizontal or vertical."""
-        return quarters_of(line.direction) is not None
 
 
 def _clean(value: float, scale: float) -> float:

@@ -154,11 +154,6 @@ def _given(one: Drivenness, spelling: Spelling) -> list[Entry]:
     return [Relation((value, way)), Relation((rate, spelling.decimal(one.speed)))]
 
 
-def _law(one: Drivenness, spelling: Spelling) -> str:
-    value, rate = (spelling.math(spelling.letter(letter)) for letter in (one.letter, one.rate))
-    return _("{value} and {rate} by the law of drive {drive}").format(value=value, rate=rate, drive=one.drive)
-
-
 def _solved(solution: Solution, spelling: Spelling) -> list[Entry]:
     system = solution.system
     unknowns = tuple(spelling.letter(letter) for letter in system.unknowns)

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.errors import Status
-from centrode.present.shown import shown_as
-from centrode.present.tables import drive_units, field, unit_of
+from centrode.present.tables import drive_units, unit_of, write_columns
 
 if TYPE_CHECKING:
     import xarray
@@ -43,16 +40,7 @@ def write_reduction_csv(dataset: xarray.Dataset, path: Path, display: Display | 
     display : Display, optional
         Unit of the drive's angles or lengths; radians and metres if left out. Inertias and moments are SI.
     """
-    headers, columns = [], []
-    for header, unit, values in _columns(dataset):
-        factor, shown = shown_as(unit, display)
-        headers.append(f"{header} [{shown}]" if shown else header)
-        columns.append((values if factor == 1.0 else values * factor).values.tolist())
-    columns.append([Status(code).word for code in dataset["status"].values.tolist()])
-    with Path(path).open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*headers, "status"])
-        writer.writerows(map(field, row) for row in zip(*columns, strict=True))
+    write_columns(path, _columns(dataset), dataset["status"], display)
 
 
 def _columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.DataArray]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -151,3 +151,22 @@ def write_motion_netcdf(dataset: xarray.Dataset, path: Path) -> None:
     """
     empty = [name for name, size in dataset.sizes.items() if size == 0]
     dataset.drop_dims(empty).to_netcdf(path, engine="scipy")
+
+
+def write_columns(
+    path: str | Path,
+    columns: Iterable[tuple[str, str, xarray.DataArray]],
+    status: xarray.DataArray,
+    display: Display | None,
+) -> None:
+    """Write columns (header, SI unit, values) and the status as CSV, one row a sample; NaN is an empty field."""
+    headers, lists = [], []
+    for header, unit, values in columns:
+        factor, shown = shown_as(unit, display)
+        headers.append(f"{header} [{shown}]" if shown else header)
+        lists.append((values if factor == 1.0 else values * factor).values.tolist())
+    lists.append([Status(code).word for code in status.values.tolist()])
+    with Path(path).open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow([*headers, "status"])
+        writer.writerows(map(field, row) for row in zip(*lists, strict=True))
