@@ -34,7 +34,7 @@ class Transmission:
     group : its name
     kind : "RRR", "RRP", "RPR"
     least, least_at : the least acute angle [rad] (between lines: 0 to pi/2), and the drive's value there
-    extremes : (drive's value, angle [rad] between 0 and pi) of all its minima and maxima
+    extremes : (drive's value, angle [rad]) of its minima and maxima; two links: 0 to pi, otherwise acute
     """
 
     group: str
@@ -116,17 +116,24 @@ def transmissions_of(course: Course, groups: list[int], first: int = 0) -> list[
     """Extremes of the watched transmission angles, from number `first` on."""
     found = []
     for k, index in enumerate(groups, first):
-        extremes = [(float(at), _between(float(value))) for at, value in zip(*course.turned[k], strict=True)]
-        least, at = _least(course, k, index, extremes)
         group = course.tour.prepared.structure.groups[index]
+        fold = _between if group.kind == "RRR" else _acute  # two links have a sense each, a line has none
+        extremes = [(float(at), fold(float(value))) for at, value in zip(*course.turned[k], strict=True)]
+        least, at = _least(course, k, index, extremes)
         found.append(Transmission(course.watched[k].name, group.kind, least, at, tuple(extremes)))
     return found
 
 
 def _between(value: float) -> float:
-    """An angle between two lines, in [0, pi]."""
+    """An angle between two directions, in [0, pi]."""
     folded = abs(value) % (2.0 * pi)
     return min(folded, 2.0 * pi - folded)
+
+
+def _acute(value: float) -> float:
+    """An angle between two lines, in [0, pi/2]."""
+    between = _between(value)
+    return min(between, pi - between)
 
 
 def _least(course: Course, k: int, index: int, extremes: list[tuple[float, float]]) -> tuple[float, float]:
