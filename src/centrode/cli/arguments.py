@@ -35,6 +35,13 @@ samples_option = click.option(
     "--samples", type=int, metavar=mark("N"), help=mark("Number of samples, both ends included.")
 )
 
+start_option = click.option(
+    "--from",
+    "start",
+    metavar=mark("A"),
+    help=mark('First value of the drive ("0 deg"); a time ("0 s") where the drive is a law.'),
+)
+
 stop_option = click.option(
     "--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time.")
 )

@@ -16,6 +16,7 @@ from centrode.cli.arguments import (
     no_figures_option,
     results_option,
     samples_option,
+    start_option,
     stop_option,
 )
 from centrode.cli.progress import Progress
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     help=mark("The link that it rolls on; the frame if left out."),
 )
 @samples_option
-@click.option("--from", "start", metavar=mark("A"), help=mark("First value of the drive, or first time."))
+@start_option
 @stop_option
 @click.option(
     "--at",

@@ -14,6 +14,7 @@ from centrode.cli.arguments import (
     mechanism_argument,
     no_figures_option,
     samples_option,
+    start_option,
     stop_option,
     written_option,
 )
@@ -31,12 +32,7 @@ MISSING = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 @mechanism_argument
 @written_option
 @samples_option
-@click.option(
-    "--from",
-    "start",
-    metavar=mark("A"),
-    help=mark('First value of the drive ("0 deg"); a time ("0 s") where the drive is a law.'),
-)
+@start_option
 @stop_option
 @no_figures_option
 def reduce(

@@ -16,6 +16,7 @@ from centrode.cli.arguments import (
     no_figures_option,
     results_option,
     samples_option,
+    start_option,
     stop_option,
 )
 from centrode.cli.flywheel import write as write_machine
@@ -31,12 +32,7 @@ if TYPE_CHECKING:
 @mechanism_argument
 @results_option
 @samples_option
-@click.option(
-    "--from",
-    "start",
-    metavar=mark("A"),
-    help=mark('First value of the drive ("0 deg"); a time ("0 s") where the drive is a law.'),
-)
+@start_option
 @stop_option
 @no_figures_option
 def run(
