@@ -85,13 +85,13 @@ from .present import equations_markdown as equations_markdown
 from .present import equations_rows as equations_rows
 
 # Instant centres, centrodes, curvature
-from .analysis.centres import instant_centres as instant_centres
-from .analysis.cases import Case as Case
-from .analysis.kennedy import construct_centres as construct_centres
-from .analysis.construction import Construction as Construction
-from .analysis.kennedy import MOST_BODIES as MOST_BODIES
-from .analysis.centrodes import centrodes as centrodes
-from .analysis.curvature import curvature as curvature
+from .analysis.instant_centres.centres import instant_centres as instant_centres
+from .analysis.instant_centres.cases import Case as Case
+from .analysis.instant_centres.kennedy import construct_centres as construct_centres
+from .analysis.instant_centres.construction import Construction as Construction
+from .analysis.instant_centres.kennedy import MOST_BODIES as MOST_BODIES
+from .analysis.instant_centres.centrodes import centrodes as centrodes
+from .analysis.instant_centres.curvature import curvature as curvature
 from .study.centres import body_names as body_names
 from .study.centres import initial_place as initial_place
 from .study.centres import place_words as place_words

@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import centrode as ct
-from centrode.analysis.bodies import ROUNDED, bodies_of
+from centrode.analysis.instant_centres.bodies import ROUNDED, bodies_of
 from growing import KINDS, descriptions, grown, mechanism_of
 from growing_higher import grown_higher, higher_descriptions
 from mechanisms import EPS, conditioning, moved, point, solved_at

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from centrode.analysis.centres import bearing
+from centrode.analysis.instant_centres.centres import bearing
 from centrode.locale import _, ngettext
 from centrode.present.curves import write_title
 from centrode.present.drawing import draw_mechanism
@@ -26,8 +26,8 @@ from centrode.present.window import widened, within
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.analysis.bodies import Pair
-    from centrode.analysis.construction import Construction, Step
+    from centrode.analysis.instant_centres.bodies import Pair
+    from centrode.analysis.instant_centres.construction import Construction, Step
     from centrode.model.mechanism import Mechanism
 
 WIDTH, HEIGHT = 8.2, 5.75  # inches: A5 across

@@ -9,10 +9,10 @@ from typing import TypeAlias
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.bodies import Pair, sliders_of
-from centrode.analysis.cases import Case
-from centrode.analysis.centres import bearing
-from centrode.analysis.construction import Construction, Step
+from centrode.analysis.instant_centres.bodies import Pair, sliders_of
+from centrode.analysis.instant_centres.cases import Case
+from centrode.analysis.instant_centres.centres import bearing
+from centrode.analysis.instant_centres.construction import Construction, Step
 from centrode.errors import Status
 from centrode.kinematics.ready import ready
 from centrode.locale import _

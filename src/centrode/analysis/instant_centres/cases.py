@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.analysis.bodies import ROUNDED, Array, Bodies, Pair, Places
-from centrode.analysis.primary import joints_of, ordered, rolling_pairs
+from centrode.analysis.instant_centres.bodies import ROUNDED, Array, Bodies, Pair, Places
+from centrode.analysis.instant_centres.primary import joints_of, ordered, rolling_pairs
 from centrode.locale import _, mark
 
 Kinds: TypeAlias = npt.NDArray[np.int8]

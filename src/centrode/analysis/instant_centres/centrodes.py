@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.analysis.bodies import ROUNDED, Array, Places, bodies_of, vectors
-from centrode.analysis.centres import numbered
-from centrode.analysis.relative import Seen, seen_by
+from centrode.analysis.instant_centres.bodies import ROUNDED, Array, Places, bodies_of, vectors
+from centrode.analysis.instant_centres.centres import numbered
+from centrode.analysis.instant_centres.relative import Seen, seen_by
 from centrode.errors import Status
 from centrode.kinematics.dataset import named
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
-from centrode.analysis.bodies import Pair
-from centrode.analysis.primary import ordered
+from centrode.analysis.instant_centres.bodies import Pair
+from centrode.analysis.instant_centres.primary import ordered
 from centrode.errors import InputError
 from centrode.locale import _
 

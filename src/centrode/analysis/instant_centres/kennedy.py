@@ -14,11 +14,18 @@ from typing import TypeAlias
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.bodies import ROUNDED, Bodies, Pair, bodies_of, refuse_batch
-from centrode.analysis.centres import numbered, upward
-from centrode.analysis.construction import Construction, How, Step
-from centrode.analysis.primary import Gearing, Joint, gearings_of, joints_of, ordered, place_of
-from centrode.analysis.projective import (
+from centrode.analysis.instant_centres.bodies import ROUNDED, Bodies, Pair, bodies_of, refuse_batch
+from centrode.analysis.instant_centres.centres import numbered, upward
+from centrode.analysis.instant_centres.construction import Construction, How, Step
+from centrode.analysis.instant_centres.primary import (
+    Gearing,
+    Joint,
+    gearings_of,
+    joints_of,
+    ordered,
+    place_of,
+)
+from centrode.analysis.instant_centres.projective import (
     EPS,
     Spot,
     Triple,

@@ -8,8 +8,8 @@ from itertools import combinations
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.bodies import Array, Bodies, Pair, Places, bodies_of, vectors
-from centrode.analysis.cases import Case, Recogniser
+from centrode.analysis.instant_centres.bodies import Array, Bodies, Pair, Places, bodies_of, vectors
+from centrode.analysis.instant_centres.cases import Case, Recogniser
 from centrode.errors import InputError
 from centrode.kinematics.dataset import labels_of, named
 from centrode.kinematics.solve import GREATEST_RESULT

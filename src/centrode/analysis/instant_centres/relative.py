@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from centrode.analysis.bodies import Array, Bodies, Pair, Places
+from centrode.analysis.instant_centres.bodies import Array, Bodies, Pair, Places
 
 
 @dataclass(frozen=True)

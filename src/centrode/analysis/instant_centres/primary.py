@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from centrode.analysis.bodies import Bodies, Pair
+from centrode.analysis.instant_centres.bodies import Bodies, Pair
 from centrode.model.mechanism import FRAME, Guide, Mechanism, Rolling
 
 Kind: TypeAlias = Literal["hinge", "guide", "rolling"]

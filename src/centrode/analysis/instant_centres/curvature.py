@@ -10,8 +10,15 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.algebra.jets import Jet
-from centrode.analysis.bodies import ROUNDED, Array, described, refuse_batch, sliders_of, vectors
-from centrode.analysis.relative import Seen
+from centrode.analysis.instant_centres.bodies import (
+    ROUNDED,
+    Array,
+    described,
+    refuse_batch,
+    sliders_of,
+    vectors,
+)
+from centrode.analysis.instant_centres.relative import Seen
 from centrode.errors import InputError, NotComputedYet, Status
 from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
 from centrode.kinematics.dataset import coordinates_of, judgements_of, labels_of, named
