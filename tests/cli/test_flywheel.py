@@ -157,7 +157,7 @@ def test_a_run_that_locks_leaves_the_machine_out(centrode: Centrode, folder: Pat
 
 
 def test_friction_leaves_the_machine_out(centrode: Centrode, folder: Path) -> None:
-    (folder / "m.toml").write_text(GIVEN + '\n[[loads]]\nkind = "friction"\nguide = "B"\nvalue = 3\n')
+    (folder / "m.toml").write_text(GIVEN + '\n[[loads]]\nkind = "friction"\nguide = "B"\ncoefficient = 0.1\n')
     done = centrode("run", "m.toml", "--out", "r", "--no-figures")
     assert done.code == 0
     assert "note: the machine is left out: friction" in done.out

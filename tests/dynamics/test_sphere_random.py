@@ -155,11 +155,8 @@ def test_several_drives(seed: int) -> None:
     """Energy by the inertia matrix; Sum m a . r_k by matrix and Christoffel terms; generalised forces."""
     parts, clouds = burdened(grown(["turned link", "RRR"], seed), seed)
     parts["loads"] = [load for load in parts["loads"] if "q" not in str(load.get("vector"))]
-    parts["drives"][0] |= {"law": "0.3*sin(2*t)", "speed": None}
-    parts["drives"][1]["speed"] = 0.4
-    for drive in parts["drives"]:
-        if drive["speed"] is None:
-            del drive["speed"]
+    del parts["drives"][0]["speed"]
+    parts["drives"][0]["law"], parts["drives"][1]["speed"] = "0.3*sin(2*t)", 0.4
     mechanism = ct.Mechanism(**parts)
     times = np.linspace(0.0, 0.4, 5)
     data, reduced = ct.motion(mechanism, at=times), ct.reduce(mechanism, at=times)
