@@ -313,3 +313,56 @@ def test_rigid_bodies_with_multipliers(seed: int) -> None:
         found = bodies.accelerations(w, torques)["AB"] @ a
         size = 1 + abs(found) + np.max(abs(reduced.moment_parts[:, n])) / reduced.inertia[n]
         assert abs(found - second[n]) <= 2**14 * EPS * size
+
+
+def test_steady_motion_of_a_spherical_machine() -> None:
+    """J eps + J' w^2/2 is the moment of drive and loads at the real speed, friction included; a turn takes its work."""
+    text = ct.example_text("spherical-crank-rocker-rigid")
+    machine = ct.parse_mechanism(text + "\n[machine]\nmean_speed = 2.94\nfluctuation = 0.1\n")
+    steady = ct.steady_motion(machine, samples=37)
+    q, speed = steady.drive_value.isel(drive=0).to_numpy(), steady.drive_speed.to_numpy()
+    found = Reducer.of(machine).at(q, rate=speed)
+    carried = steady.attrs["inertia"] + found.inertia
+    left = carried * steady.drive_acceleration.to_numpy() + 0.5 * speed**2 * found.inertia_slope
+    right = found.moment + steady.driving_moment.to_numpy()
+    assert steady.attrs["inertia"] > 0
+    # loads and speed are made to agree up to this share of the moments
+    assert np.max(abs(left - right)) <= 1e-11 * np.max(abs(found.moment))
+    assert abs((speed.max() - speed.min()) / 2.94 - 0.1) <= 0.01
+
+
+@pytest.mark.parametrize(
+    ("crank", "coupler", "moment", "least", "greatest", "mean"),
+    [(pi / 12, pi / 4, 1.0, 2.478, 3.631, 2.940), (pi / 13, pi / 2 - pi / 13, 3.5, 5.062, 6.532, None)],
+)
+def test_steady_speeds_of_the_thesis(
+    crank: float, coupler: float, moment: float, least: float, greatest: float, mean: float | None
+) -> None:
+    """With w = J q'^2 the equation is linear by q, w' = 2 M - 2 F w/J, F the friction at unit speed.
+
+    A turn maps w on a w + b, which has one fixed point: the steady regime.
+    """
+    sums = [friction(*hinge, quadratic=0.1, form="plain sum") for hinge in HINGES]
+    reducer, count = Reducer.of(thesis(crank, coupler, loads=sums)), 2000
+    q = np.linspace(0.0, 2 * pi, 2 * count + 1)
+    found = reducer.at(q, rate=1.0)
+    assert (found.status == ct.Status.OK).all()
+    drop, step = -2.0 * found.moment / found.inertia, 2 * pi / count
+
+    def turned(first: float) -> Array:
+        w = [first]
+        for n in range(0, 2 * count, 2):
+            k1 = 2 * moment - drop[n] * w[-1]
+            k2 = 2 * moment - drop[n + 1] * (w[-1] + 0.5 * step * k1)
+            k3 = 2 * moment - drop[n + 1] * (w[-1] + 0.5 * step * k2)
+            k4 = 2 * moment - drop[n + 2] * (w[-1] + step * k3)
+            w.append(w[-1] + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4))
+        return np.array(w)
+
+    share = turned(1.0)[-1] - turned(0.0)[-1]
+    speed = np.sqrt(turned(turned(0.0)[-1] / (1 - share)) / found.inertia[::2])
+    half = 0.5e-3  # of the last digit given
+    assert abs(speed.min() - least) <= half
+    assert abs(speed.max() - greatest) <= half
+    if mean is not None:
+        assert abs(1 / np.mean(1 / speed[:-1]) - mean) <= half
