@@ -18,10 +18,10 @@ from centrode.dynamics.amounts import (
     StraightSpring,
     TorsionSpring,
 )
-from centrode.dynamics.coordinates import Component, Distance, HalfSquare, Slide, Travel
+from centrode.dynamics.coordinates import Component, Distance, HalfSquare, Slide
 from centrode.dynamics.efforts import REST, Acting, Effort, grows
 from centrode.dynamics.masses import Given, Mass, centre_of
-from centrode.dynamics.turning import turning_of
+from centrode.dynamics.turning import Travel, turning_of
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.model.loads import PLAIN_SUM, Load
