@@ -106,10 +106,10 @@ from .equations.integrated import integrate as integrate
 from .study.integrating import closed_motion as closed_motion
 from .study.integrating import integration_rows as integration_rows
 from .study.integrating import integration_failure as integration_failure
-from .study.variants import variants as variants
-from .study.variants import variant_rows as variant_rows
-from .study.variants import variants_summary as variants_summary
-from .study.describing import describe as describe
+from .study.variants.computing import variants as variants
+from .study.variants.computing import variant_rows as variant_rows
+from .study.variants.computing import variants_summary as variants_summary
+from .study.words.describing import describe as describe
 
 # Many mechanisms
 from .sweeps.sweeping import sweep as sweep
