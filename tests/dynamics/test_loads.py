@@ -232,8 +232,8 @@ def test_negative_masses_are_refused(key: str) -> None:
         crank(link={key: -1})
 
 
-def test_friction_is_not_computed_yet() -> None:
-    rubbing = crank({"kind": "friction", "link": "OA", "value": 3})
+def test_friction_by_a_coefficient_is_not_computed_yet() -> None:
+    rubbing = crank({"kind": "friction", "link": "OA", "coefficient": 0.1})
     with pytest.raises(ct.NotComputedYet, match="friction"):
         ct.reduce(rubbing)
 

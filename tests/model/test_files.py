@@ -168,7 +168,7 @@ def test_round_trip_of_random_mechanisms(data: st.DataObject) -> None:
         (
             "length = 3.5",
             'length = 1\nshape = "rods"',
-            '[links.AB] shape: expected one of "rod", "disc", got "rods"',
+            '[links.AB] shape: expected one of "rod", "disc", "ring", "arc", got "rods"',
         ),
         ("length = 3.5", "length = 1\nmass = -1", "[links.AB]: mass must not be negative, got -1"),
         ("[links.AB]", "[links.coupler]", "press.toml, [links.coupler]: points are missing"),

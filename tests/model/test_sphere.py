@@ -169,9 +169,16 @@ def test_values_by_path() -> None:
         ("pole = [0.1, 0.2]", "pole = [0.1, 0.2]\nthrough = [0, 0]", "through belongs to the plane"),
         ("pole = [0.1, 0.2]", 'pole = "placed"', "[[guides]] 1, pole: a pole cannot be placed; give its"),
         ("pole = [0.1, 0.2]", 'pole = "C"', "[[guides]] 1, pole: AB has no point"),
-        ("[frame.points]", "gravity = [0, -10]\n[frame.points]", "gravity: gravity belongs to the plane"),
-        ('"45 deg"', '"45 deg"\nshape = "rod"', "[links.BC] shape: shape belongs to the plane; give mass"),
-        ('"45 deg"', '"45 deg"\nradius = 1', "[links.BC] radius: radius belongs to the plane"),
+        (
+            "[frame.points]",
+            "gravity = [0, -10]\n[frame.points]",
+            "gravity: expected [x, y, z], got a list of 2 values",
+        ),
+        (
+            '"45 deg"',
+            '"45 deg"\nshape = "rod"',
+            "[links.BC] shape: rod belongs to the plane; write arc, disc or ring",
+        ),
         (
             "[[drives]]",
             '[assembly]\nsides = { C = "ahead" }\n[[drives]]',
@@ -180,7 +187,7 @@ def test_values_by_path() -> None:
         (
             "[[drives]]",
             '[[loads]]\nkind = "force"\npoint = "C"\nvector = [1, 0]\n[[drives]]',
-            "[[loads]] 1, vector: vector belongs to the plane",
+            "[[loads]] 1, vector: expected [x, y, z], got a list of 2 values",
         ),
         (
             'reference = ["A", "D"]',

@@ -24,14 +24,15 @@ SLACK = 1e-9
 class Situation:
     """What a load may depend on: time, the drive's value, the load's coordinate and its speed.
 
-    `forwards` is true where the coordinate grows in time. With several drives q has no value. `m` has the functions.
+    `sense` is 1 where the coordinate grows in time, -1 where it falls, 0 where nothing moves. With several drives q
+    has no value. `m` has the functions.
     """
 
     t: Number
     q: Number
     x: Number
     v: Number
-    forwards: Number
+    sense: Number
     m: Any
 
 
@@ -46,6 +47,14 @@ class Amount(Protocol):
     def levels(self) -> tuple[float, ...]:
         """Values of the coordinate at which it has a kink."""
 
+    @property
+    def jumps(self) -> bool:
+        """Whether it may jump where the coordinate turns round."""
+
+    @property
+    def sensed(self) -> bool:
+        """Whether it asks which way the coordinate goes."""
+
     def __call__(self, now: Situation) -> Number:
         """Its value."""
 
@@ -57,6 +66,8 @@ class Constant:
     value: Number
     uses: frozenset[str] = frozenset()
     levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
 
     def __call__(self, now: Situation) -> Number:
         return self.value
@@ -68,6 +79,7 @@ class Formula:
 
     formula: TextFormula
     levels: tuple[float, ...] = ()
+    sensed: bool = False
 
     @classmethod
     def of(cls, text: str, where: str) -> Formula:
@@ -78,6 +90,11 @@ class Formula:
     def uses(self) -> frozenset[str]:
         """Which of t, q, x, v it depends on."""
         return self.formula.used
+
+    @property
+    def jumps(self) -> bool:
+        """Where its speed changes sign it may."""
+        return "v" in self.formula.used
 
     def __call__(self, now: Situation) -> Number:
         with np.errstate(all="ignore"):
@@ -92,6 +109,8 @@ class TorsionSpring:
     free: float
     uses: frozenset[str] = frozenset("x")
     levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
 
     def __call__(self, now: Situation) -> Number:
         return -self.stiffness * (now.x - self.free)
@@ -105,6 +124,8 @@ class StraightSpring:
     free: float
     uses: frozenset[str] = frozenset("x")
     levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
 
     def __call__(self, now: Situation) -> Number:
         if self.free == 0.0:
@@ -120,9 +141,54 @@ class Damper:
     damping: float
     uses: frozenset[str] = frozenset("v")
     levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
 
     def __call__(self, now: Situation) -> Number:
         return -self.damping * now.v
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Against the motion: a constant or a formula (Coulomb), and parts that grow with the speed and its square."""
+
+    dry: Amount
+    viscous: Number = 0.0
+    quadratic: Number = 0.0
+    levels: tuple[float, ...] = ()
+
+    @property
+    def uses(self) -> frozenset[str]:
+        """Dry friction of a constant asks for the sense of the motion only."""
+        return self.dry.uses | frozenset("v" if self.viscous or self.quadratic else "")
+
+    @property
+    def jumps(self) -> bool:
+        """Dry friction changes its sense at once."""
+        return self.sensed
+
+    @property
+    def sensed(self) -> bool:
+        """Whether there is dry friction."""
+        return not (isinstance(self.dry, Constant) and self.dry.value == 0.0)
+
+    def __call__(self, now: Situation) -> Number:
+        found = -self.viscous * now.v - self.quadratic * now.v * now.m.abs(now.v)
+        return found - now.sense * self.dry(now) if self.sensed else found
+
+
+@dataclass(frozen=True)
+class Square:
+    """-a v^2: what the plain sum of the source takes for friction, whichever way the joint turns."""
+
+    quadratic: Number
+    uses: frozenset[str] = frozenset("v")
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+
+    def __call__(self, now: Situation) -> Number:
+        return -self.quadratic * now.v * now.v
 
 
 @dataclass(frozen=True)
@@ -134,8 +200,18 @@ class Diagram:
 
     @property
     def uses(self) -> frozenset[str]:
-        """The displacement, and the speed where the way back has a column of its own."""
-        return frozenset("xv" if len(self.rows[0]) > 2 else "x")
+        """The displacement alone: of the speed only the sense counts."""
+        return frozenset("x")
+
+    @property
+    def jumps(self) -> bool:
+        """From one column to the other."""
+        return len(self.rows[0]) > 2
+
+    @property
+    def sensed(self) -> bool:
+        """Whether the way back has a column of its own."""
+        return len(self.rows[0]) > 2
 
     @property
     def levels(self) -> tuple[float, ...]:
@@ -148,7 +224,9 @@ class Diagram:
         there = np.where(inside, np.interp(now.x, at, forces[0]), np.nan)
         if len(forces) == 1:
             return there
-        return np.where(now.forwards, there, np.where(inside, np.interp(now.x, at, forces[1]), np.nan))
+        return np.where(
+            np.asarray(now.sense) >= 0.0, there, np.where(inside, np.interp(now.x, at, forces[1]), np.nan)
+        )
 
     def _inside(self, x: Array) -> npt.NDArray[np.bool_]:
         """Where a displacement lies on the diagram; that of an absent position does not."""

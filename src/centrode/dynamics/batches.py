@@ -8,12 +8,13 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.dynamics.amounts import Diagram
 from centrode.dynamics.inertia import share
 from centrode.dynamics.reducer import Burden, Reducer
-from centrode.dynamics.states import Moving, State
+from centrode.dynamics.states import Moving, State, getters_of
 from centrode.errors import InputError
 from centrode.kinematics.compiled.deciding import Untraceable
 from centrode.kinematics.solve import Solved
@@ -46,7 +47,7 @@ def reduced_number(name: str, solved: Solved, values: Values) -> Array:
     given = {
         path: np.asarray(x).item() if expressed else np.asarray(x)[:, None] for path, x in values.items()
     }
-    burden = Burden.of(solved.ready.mechanism, given)
+    burden = Burden.of(solved.ready.mechanism, given, EXPRESSIONS if expressed else ARRAYS)
     state = _state_of_nodes(solved, burden) if expressed else State.of(solved, _moving(solved, burden))
     if name == "reduced_moment":
         total: Number = 0.0
@@ -59,7 +60,7 @@ def reduced_number(name: str, solved: Solved, values: Values) -> Array:
         box = np.empty((1, 1), dtype=object)
         box[0, 0] = total
         return box
-    known = np.where(np.isfinite(solved.angles[1].sum(axis=-1)), 0.0, np.nan)
+    known = np.where(state.exists, 0.0, np.nan)
     return np.asarray(np.broadcast_to(total, solved.status.shape) + known)
 
 
@@ -85,12 +86,6 @@ def state_of_nodes(solved: Solved, burden: Burden, moving: Moving) -> State:
     """The same with time, parameter and rate as they are given."""
     if any(isinstance(effort.amount, Diagram) for load in burden.loads for effort in load.efforts):
         raise Untraceable(mark("indicator diagrams"))
-    points, angles, slides = (x[:, 0, 0] for x in (solved.points, solved.angles, solved.slides))
-    getters = {
-        "point": lambda k: points[:, k // 2, k % 2],
-        "angle": lambda k: angles[:, k],
-        "slide": lambda k: slides[:, k],
-    }
     path, mechanism = solved.ready.kinematics.path, solved.ready.mechanism
     return State(
         mechanism,
@@ -100,6 +95,6 @@ def state_of_nodes(solved: Solved, burden: Burden, moving: Moving) -> State:
         moving.rate,
         0,
         path.scale,
-        getters,
+        getters_of(solved, lambda array: array[:, 0, 0]),
         m=NODE_JETS,
     )

@@ -7,9 +7,9 @@ from math import hypot
 from typing import Any, Protocol, TypeAlias
 
 from centrode.algebra.jets import Jet
-from centrode.dynamics.masses import Centre
+from centrode.dynamics.bodies import Centre, Radial
 from centrode.dynamics.states import Place, State
-from centrode.model.mechanism import FRAME, Vector
+from centrode.model.mechanism import FRAME
 
 Number: TypeAlias = Any
 
@@ -39,6 +39,53 @@ class Turn:
 
 
 @dataclass(frozen=True)
+class Spin:
+    """On the sphere: turning of a link against another about an axis, a hinge or a direction of the frame.
+
+    Attributes
+    ----------
+    axis : a point's name, or components in the frame's axes
+    joint : str or None
+        The link whose joint angle this is, where one is measured in this hinge; `sense` tells which way.
+    """
+
+    link: str
+    base: str
+    axis: str | tuple[float, ...]
+    joint: str | None = None
+    sense: float = 1.0
+
+    def value(self, state: State) -> Number:
+        if self.joint is None:
+            return float("nan")
+        return self.sense * state.angle(self.joint).value
+
+    def slope(self, state: State) -> Jet:
+        along = [x.lowered() for x in self._axis(state)]
+        pairs = zip(state.spin(self.link), state.spin(self.base), along, strict=True)
+        parts = [(own - other) * axis for own, other, axis in pairs]
+        return sum(parts[1:], parts[0])
+
+    def _axis(self, state: State) -> Place:
+        if isinstance(self.axis, str):
+            unit = 1.0 / state.mechanism.sphere_radius
+            return tuple(x * unit for x in state.point(self.axis))
+        size = hypot(*self.axis)
+        return tuple(Jet((x / size, 0.0, 0.0)) for x in self.axis)
+
+
+@dataclass(frozen=True)
+class Travel:
+    """How far the drive has gone, whichever way: what works along it resists the drive itself."""
+
+    def value(self, state: State) -> Number:
+        return float("nan")
+
+    def slope(self, state: State) -> Jet:
+        return Jet((state.m.base.sign(state.rate), 0.0))
+
+
+@dataclass(frozen=True)
 class Slide:
     """Displacement along a guide."""
 
@@ -65,8 +112,7 @@ class Distance:
         return self._length(state).slope()
 
     def _length(self, state: State) -> Jet:
-        (x, y), (u, v) = state.point(self.first), state.point(self.second)
-        length: Jet = state.m.sqrt((u - x) * (u - x) + (v - y) * (v - y))
+        length: Jet = state.m.sqrt(_squared(state, self.first, self.second))
         return length
 
 
@@ -84,33 +130,42 @@ class HalfSquare:
         return self._half(state).slope()
 
     def _half(self, state: State) -> Jet:
-        (x, y), (u, v) = state.point(self.first), state.point(self.second)
-        return ((u - x) * (u - x) + (v - y) * (v - y)) * 0.5
+        return _squared(state, self.first, self.second) * 0.5
+
+
+def _squared(state: State, first: str, second: str) -> Jet:
+    """Squared straight distance of two points [m^2], on the sphere too."""
+    parts = [(v - u) * (v - u) for u, v in zip(state.point(first), state.point(second), strict=True)]
+    return sum(parts[1:], parts[0])
 
 
 @dataclass(frozen=True)
 class Component:
     """Component of a point's place, or of a link's centre of mass, along a direction fixed in a link or the frame."""
 
-    at: str | Centre
-    direction: Vector
+    at: str | Centre | Radial
+    direction: tuple[float, ...]
     axes: str = FRAME
 
     def value(self, state: State) -> Number:
-        (x, y), (u, v) = self._place(state), self._direction(state)
-        return (u * x + v * y).value
+        parts = [u * x for u, x in zip(self._direction(state), self._place(state), strict=True)]
+        return sum(parts[1:], parts[0]).value
 
     def slope(self, state: State) -> Jet:
-        (x, y), (u, v) = self._place(state), self._direction(state)
-        return u.lowered() * x.slope() + v.lowered() * y.slope()
+        pairs = zip(self._direction(state), self._place(state), strict=True)
+        parts = [u.lowered() * x.slope() for u, x in pairs]
+        return sum(parts[1:], parts[0])
 
     def _place(self, state: State) -> Place:
         return state.point(self.at) if isinstance(self.at, str) else state.centre(self.at)
 
     def _direction(self, state: State) -> Place:
         size = hypot(*self.direction)
-        x, y = self.direction[0] / size, self.direction[1] / size
+        unit = tuple(x / size for x in self.direction)
         if self.axes == FRAME:
-            return Jet((x, 0.0, 0.0)), Jet((y, 0.0, 0.0))
+            return tuple(Jet((x, 0.0, 0.0)) for x in unit)
+        if state.on_sphere:
+            return state.heading(self.axes, unit)  # type: ignore[arg-type]
+        x, y = unit
         cosine, sine = state.rotor(self.axes)
         return cosine * x - sine * y, sine * x + cosine * y

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.dynamics.masses import Mass
+from centrode.dynamics.bodies import About, Mass
 from centrode.dynamics.states import State
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -19,7 +19,16 @@ Number: TypeAlias = Any
 def coordinates_of(state: State, mass: Mass) -> list[tuple[Number, Jet]]:
     """Coordinates whose squared speeds make twice the kinetic energy of a link, each with its factor [kg or kg m^2]."""
     found = [(mass.mass, x) for x in state.centre(mass.centre)] if mass.weighs else []
-    return [*found, (mass.inertia, state.angle(mass.link))] if mass.resists else found
+    if not mass.resists:
+        return found
+    if not isinstance(mass.inertia, tuple):
+        return [*found, (mass.inertia, state.angle(mass.link))]
+    for part in mass.inertia:
+        if isinstance(part, About):
+            found.append((part.moment, state.turned_about(mass.link, part.direction)))
+        else:
+            found += [(part.moment, x) for x in state.heading(mass.link, part.direction)]
+    return found
 
 
 def shares(state: State, masses: Sequence[Mass], shape: tuple[int, ...]) -> tuple[Array, Array]:

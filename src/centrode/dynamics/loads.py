@@ -9,26 +9,31 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.dynamics.amounts import (
     Amount,
     Constant,
     Damper,
     Diagram,
     Formula,
+    Friction,
     Situation,
+    Square,
     StraightSpring,
     TorsionSpring,
 )
-from centrode.dynamics.coordinates import Component, Coordinate, Distance, HalfSquare, Slide, Turn
+from centrode.dynamics.coordinates import Component, Coordinate, Distance, HalfSquare, Slide, Travel
 from centrode.dynamics.masses import Given, Mass, centre_of
 from centrode.dynamics.states import State
+from centrode.dynamics.turning import turning_of
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.paths import JETS
 from centrode.locale import _
-from centrode.model.loads import Load
-from centrode.model.mechanism import FRAME, Mechanism, Vector
+from centrode.model.loads import PLAIN_SUM, Load
+from centrode.model.mechanism import FRAME, Mechanism
 
 Number: TypeAlias = Any
+Namespace: TypeAlias = Any
 
 REST = 64.0 * 2.0**-52
 """A speed counts as zero within this share of what rounding can make of it."""
@@ -36,19 +41,23 @@ REST = 64.0 * 2.0**-52
 
 @dataclass(frozen=True)
 class Effort:
-    """A load's amount along a coordinate; with a `gate` only where that coordinate grows in time."""
+    """A load's amount along a coordinate; with a `gate` only where that coordinate grows in time.
+
+    It `works` along another coordinate where the source of a formula has it so, against virtual work.
+    """
 
     coordinate: Coordinate
     amount: Amount
     gate: Coordinate | None = None
+    works: Coordinate | None = None
 
     def strength(self, state: State) -> Number:
         """The force [N] or moment [N m] itself."""
         slope = self.coordinate.slope(state).value
-        forwards = grows(self.coordinate, state) if isinstance(self.amount, Diagram) else True
         q = np.nan if len(state.mechanism.drives) > 1 else state.parameter
         x, v = self.coordinate.value(state), slope * state.rate
-        now = Situation(state.time, q, x, v, forwards, state.m.base)
+        sense = self._sense(state, v) if self.amount.sensed else 0.0
+        now = Situation(state.time, q, x, v, sense, state.m.base)
         amount = self.amount(now)
         if self.gate is None:
             return amount
@@ -61,16 +70,21 @@ class Effort:
     def switches(self) -> tuple[Coordinate, ...]:
         """Coordinates at whose turning points the amount may jump."""
         found = (self.gate,) if self.gate is not None else ()
-        return (*found, self.coordinate) if "v" in self.amount.uses and _may_jump(self.amount) else found
+        return (*found, self.coordinate) if self.amount.jumps else found
 
     @property
     def needs_law(self) -> bool:
         """Whether it depends on how the drive moves in time, and not only on the sense of that."""
-        return bool(self.amount.uses & {"t", "v"}) and not isinstance(self.amount, Diagram)
+        return bool(self.amount.uses & {"t", "v"})
 
+    def along(self, state: State) -> Number:
+        """Derivative by the parameter of what it works along."""
+        return (self.coordinate if self.works is None else self.works).slope(state).value
 
-def _may_jump(amount: Amount) -> bool:
-    return isinstance(amount, (Diagram, Formula))
+    def _sense(self, state: State, speed: Number) -> Number:
+        if state.m is not JETS:
+            return state.m.base.sign(speed)
+        return np.where(grows(self.coordinate, state), 1.0, -1.0) * (state.rate != 0.0)
 
 
 def grows(coordinate: Coordinate, state: State) -> Number:
@@ -122,10 +136,12 @@ class Acting:
     def along(self, state: State, strengths: Sequence[Number]) -> Number:
         """What efforts of these strengths do along the parameter of a state: the sum of strength times slope."""
         pairs = zip(self.efforts, strengths, strict=True)
-        return sum(strength * effort.coordinate.slope(state).value for effort, strength in pairs)
+        return sum(strength * effort.along(state) for effort, strength in pairs)
 
 
-def loads_of(mechanism: Mechanism, masses: Sequence[Mass], given: Given | None = None) -> tuple[Acting, ...]:
+def loads_of(
+    mechanism: Mechanism, masses: Sequence[Mass], given: Given | None = None, m: Namespace = ARRAYS
+) -> tuple[Acting, ...]:
     """Loads of the description, then the weights that gravity adds; each with a label of its own.
 
     Raises
@@ -133,11 +149,11 @@ def loads_of(mechanism: Mechanism, masses: Sequence[Mass], given: Given | None =
     InputError
         A weight without direction or amount.
     NotComputedYet
-        Friction.
+        Friction by a coefficient.
     """
     labels = _labels(mechanism.loads, mechanism, masses)
     described = [
-        Acting(label, tuple(_efforts(mechanism, load, masses, where, given)), where)
+        Acting(label, tuple(_efforts(mechanism, load, masses, where, given, m)), where)
         for label, load in zip(labels, mechanism.loads, strict=False)
         for where in [f"[[loads]] {label}"]
     ]
@@ -170,18 +186,23 @@ def _labels(loads: Sequence[Load], mechanism: Mechanism, masses: Iterable[Mass])
 
 
 def _efforts(
-    mechanism: Mechanism, load: Load, masses: Sequence[Mass], where: str, given: Given | None
+    mechanism: Mechanism,
+    load: Load,
+    masses: Sequence[Mass],
+    where: str,
+    given: Given | None,
+    m: Namespace,
 ) -> Iterable[Effort]:
     if load.kind == "friction":
-        raise NotComputedYet(where, _("friction is not computed yet"), _("take it out"))
+        return [_friction(mechanism, load, where)]
     if load.kind == "weight":
-        return [_given_weight(mechanism, load, masses, where, given)]
+        return [_given_weight(mechanism, load, masses, where, given, m)]
     if load.kind == "force":
         return _force(load, where)
     if load.kind == "torque":
-        assert load.link is not None
-        return [Effort(Turn(load.link, load.relative_to), _amount(load.value, where))]
-    return [_between(load)]
+        amount = _amount(load.value, where)
+        return [Effort(turning_of(mechanism, load, where, "x" in amount.uses), amount)]
+    return [_between(mechanism, load, where)]
 
 
 def _force(load: Load, where: str) -> list[Effort]:
@@ -193,10 +214,11 @@ def _force(load: Load, where: str) -> list[Effort]:
     point, axes = load.point, load.axes
     gate = None if load.while_moving is None else Component(point, load.while_moving, axes)
     if all(isinstance(value, float) for value in load.vector):
-        x, y = (float(value) for value in load.vector)
-        size = hypot(x, y)
-        return [Effort(Component(point, (x, y), axes), Constant(size), gate)] if size else []
-    units = ((1.0, 0.0), (0.0, 1.0))
+        vector = tuple(float(value) for value in load.vector)
+        size = hypot(*vector)
+        return [Effort(Component(point, vector, axes), Constant(size), gate)] if size else []
+    count = len(load.vector)
+    units = [tuple(float(i == k) for i in range(count)) for k in range(count)]
     return [
         Effort(Component(point, unit, axes), _amount(value, where), gate)
         for unit, value in zip(units, load.vector, strict=True)
@@ -204,10 +226,28 @@ def _force(load: Load, where: str) -> list[Effort]:
     ]
 
 
-def _between(load: Load) -> Effort:
+def _friction(mechanism: Mechanism, load: Load, where: str) -> Effort:
+    """Friction of a given size: dry, and parts that grow with the speed and its square."""
+    if load.coefficient is not None:
+        what = _("friction by a coefficient needs the reactions")
+        raise NotComputedYet(where, what, _("give value, viscous or quadratic in place of coefficient"))
+    dry = _amount(load.value, where)
+    if load.guide is not None:
+        amount = Friction(dry, load.viscous or 0.0, load.quadratic or 0.0)
+        return Effort(Slide(load.guide), amount)
+    turn = turning_of(mechanism, load, where, "x" in dry.uses)
+    if load.form == PLAIN_SUM:
+        if len(mechanism.drives) > 1:
+            what = _("the plain sum belongs to mechanisms with one drive")
+            raise InputError(where, what, _("take form out: virtual work serves any number of drives"))
+        return Effort(turn, Square(load.quadratic or 0.0), works=Travel())
+    return Effort(turn, Friction(dry, load.viscous or 0.0, load.quadratic or 0.0))
+
+
+def _between(mechanism: Mechanism, load: Load, where: str) -> Effort:
     """A spring or a damper, between two points or in a hinge."""
     if load.link is not None:
-        turn = Turn(load.link, load.relative_to)
+        turn = turning_of(mechanism, load, where, load.kind == "spring")
         if load.kind == "damper":
             return Effort(turn, Damper(load.damping or 0.0))
         return Effort(turn, TorsionSpring(load.stiffness or 0.0, load.free_angle or 0.0))
@@ -226,10 +266,11 @@ def _strength(mechanism: Mechanism) -> float:
     return hypot(*mechanism.gravity) if mechanism.gravity else 0.0
 
 
-def _down(mechanism: Mechanism, where: str) -> Vector:
+def _down(mechanism: Mechanism, where: str) -> tuple[float, ...]:
     if mechanism.gravity is None or not _strength(mechanism):
         what = _("a weight has no direction without gravity")
-        raise InputError(where, what, _("give gravity, such as gravity = [0, -9.81]"))
+        example = "[0, 0, -9.81]" if mechanism.space == "sphere" else "[0, -9.81]"
+        raise InputError(where, what, _("give gravity, such as gravity = {example}").format(example=example))
     return mechanism.gravity
 
 
@@ -238,7 +279,12 @@ def _weight(mechanism: Mechanism, mass: Mass, size: Number) -> Effort:
 
 
 def _given_weight(
-    mechanism: Mechanism, load: Load, masses: Sequence[Mass], where: str, given: Given | None
+    mechanism: Mechanism,
+    load: Load,
+    masses: Sequence[Mass],
+    where: str,
+    given: Given | None,
+    m: Namespace,
 ) -> Effort:
     """A weight of its own value, or of mass times gravity, at a link's centre or a point."""
     down = _down(mechanism, where)
@@ -250,7 +296,7 @@ def _given_weight(
     assert load.link is not None
     mass = next((mass for mass in masses if mass.link == load.link and mass.weighs), None)
     if load.value is not None:
-        at = centre_of(mechanism, load.link, given) if mass is None else mass.centre
+        at = centre_of(mechanism, load.link, given, m) if mass is None else mass.centre
         return Effort(Component(at, down, FRAME), _amount(load.value, where))
     if mass is None:
         what = _("link {link} has no mass").format(link=load.link)

@@ -2,84 +2,59 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from math import dist
 from typing import Any, TypeAlias
 
+from centrode.algebra.arrays import ARRAYS
+from centrode.dynamics.bodies import Centre, Given, Local, Mass, Number, Radial, is_none
+from centrode.dynamics.solids import Reader as SolidReader
+from centrode.dynamics.solids import solids_of
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.bodies import Link
 from centrode.model.mechanism import FRAME, Mechanism, Vector
 
+__all__ = ["Centre", "Given", "Mass", "centre_of", "masses_of", "massless_links"]
+
+Namespace: TypeAlias = Any
+
 STRAIGHT = 1e-9
 """Points of a rod may lie off its line by this share of its length: coordinates are given in decimals."""
 
 
-Number: TypeAlias = Any
-Local: TypeAlias = Mapping[str, tuple[Number, Number]]
-Given: TypeAlias = Mapping[str, Number]
-"""Numbers by their paths ("links.AB.mass") in place of the description's own."""
-
-
-@dataclass(frozen=True)
-class Centre:
-    """A centre of mass: a point of the link, and the way from there in the link's own axes [m]."""
-
-    link: str
-    base: str
-    along: Number
-    across: Number
-
-
-@dataclass(frozen=True)
-class Mass:
-    """Mass [kg], centre, and moment of inertia about it [kg m^2] of one link; numbers may be those of a batch."""
-
-    link: str
-    mass: Number
-    centre: Centre
-    inertia: Number
-
-    @property
-    def weighs(self) -> bool:
-        """Whether it has mass, and not only inertia."""
-        return not _is_none(self.mass)
-
-    @property
-    def resists(self) -> bool:
-        """Whether it has a moment of inertia."""
-        return not _is_none(self.inertia)
-
-
-def _is_none(value: Number) -> bool:
-    return isinstance(value, float) and value == 0.0
-
-
-def masses_of(mechanism: Mechanism, given: Given | None = None) -> tuple[Mass, ...]:
+def masses_of(mechanism: Mechanism, given: Given | None = None, m: Namespace = ARRAYS) -> tuple[Mass, ...]:
     """Links that have mass or inertia, in description order; the others are massless.
+
+    `m` has the functions of the numbers given.
 
     Raises
     ------
     InputError
         A mass whose centre, or whose inertia although its link turns, nothing tells.
     """
+    if mechanism.space == "sphere":
+        return solids_of(mechanism, given or {}, m)
     still = _links_that_do_not_turn(mechanism)
     found = []
     for name, link in mechanism.links.items():
         reader = _Reader(name, link, given or {})
         mass, inertia = reader.number("mass", link.mass or 0.0), reader.inertia(name in still)
-        if _is_none(mass) and _is_none(inertia):
+        if is_none(mass) and is_none(inertia):
             continue
         first = next(iter(link.coordinates))
-        centre = Centre(name, first, 0.0, 0.0) if _is_none(mass) else reader.centre()
+        centre = Centre(name, first, 0.0, 0.0) if is_none(mass) else reader.centre()
         found.append(Mass(name, mass, centre, inertia))
     return tuple(found)
 
 
-def centre_of(mechanism: Mechanism, link: str, given: Given | None = None) -> Centre:
-    """Centre of mass of a link: given, the only point, or the middle of a rod; InputError where nothing tells it."""
+def centre_of(
+    mechanism: Mechanism, link: str, given: Given | None = None, m: Namespace = ARRAYS
+) -> Centre | Radial:
+    """Centre of mass of a link: given, the only point, or by its shape; InputError where nothing tells it."""
+    if mechanism.space == "sphere":
+        return SolidReader(link, mechanism.links[link], mechanism.sphere_radius, given or {}, m).centre()
     return _Reader(link, mechanism.links[link], given or {}).centre()
 
 
@@ -157,20 +132,22 @@ class _Reader:
         """Central moment of inertia: given, by the shape, or none where it cannot matter."""
         link = self.link
         if link.inertia is not None:
+            assert not isinstance(link.inertia, tuple)
             return self.number("inertia", link.inertia)
         mass = self.number("mass", link.mass or 0.0)
         if link.shape is not None and link.mass is None:
             what = _("it has a shape, but no mass")
             raise InputError(self.where, what, _("give mass, or take shape out"))
-        if link.shape == "disc":
+        if link.shape in ("disc", "ring"):
             if link.radius is None:
-                raise InputError(self.where, _("a disc needs a radius"), _("give radius, or inertia"))
+                what = _("a {shape} needs a radius").format(shape=link.shape)
+                raise InputError(self.where, what, _("give radius, or inertia"))
             radius = self.number("radius", link.radius)
-            return mass * radius * radius / 2.0
+            return mass * radius * radius / (2.0 if link.shape == "disc" else 1.0)
         if link.shape == "rod":
             (x, y), (u, v) = (self.local[end] for end in self.ends())
             return mass * ((u - x) * (u - x) + (v - y) * (v - y)) / 12.0
-        if not _is_none(mass) and not still:
+        if not is_none(mass) and not still:
             what = _("it has a mass and turns, but no moment of inertia")
             raise InputError(self.where, what, _("give inertia (0 for a mass in one point), or shape"))
         return 0.0

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import copysign
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.dynamics.inertia import shares
 from centrode.dynamics.jumps import jumps_of
 from centrode.dynamics.loads import Acting, loads_of
 from centrode.dynamics.masses import Given, Mass, masses_of
 from centrode.dynamics.states import Moving, State
-from centrode.errors import InputError, NotComputedYet
+from centrode.errors import InputError
 from centrode.kinematics.branches import Event
 from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
@@ -23,6 +24,7 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Namespace: TypeAlias = Any
 
 
 @dataclass(frozen=True)
@@ -61,22 +63,18 @@ class Burden:
     loads: tuple[Acting, ...]
 
     @classmethod
-    def of(cls, mechanism: Mechanism, given: Given | None = None) -> Burden:
-        """What the description gives; `given` are numbers by their paths in place of its own.
+    def of(cls, mechanism: Mechanism, given: Given | None = None, m: Namespace = ARRAYS) -> Burden:
+        """What the description gives; `given` are numbers by their paths in place of its own, `m` has their functions.
 
         Raises
         ------
         InputError
             Neither masses nor loads, or some that are not complete.
         NotComputedYet
-            Friction, the sphere.
+            Friction by a coefficient.
         """
-        if mechanism.space == "sphere":
-            raise NotComputedYet(
-                "space", _("forces on the sphere are not computed yet"), _("describe a plane one")
-            )
-        masses = masses_of(mechanism, given)
-        loads = loads_of(mechanism, masses, given)
+        masses = masses_of(mechanism, given, m)
+        loads = loads_of(mechanism, masses, given, m)
         if not masses and not loads:
             what = _("there are neither masses nor loads to reduce")
             raise InputError("", what, _("give links a mass, or [[loads]]"))
@@ -238,7 +236,7 @@ def reduced(burden: Burden, state: State, status: npt.NDArray[np.int8]) -> Reduc
     inertia, slope = shares(state, burden.masses, (1, count))
     moments = np.empty((len(burden.loads), 1, count))
     # where derivatives exist: nothing is reduced at limits
-    known = np.isfinite(state.columns["angle"](0)[1])
+    known = state.exists
     for k, load in enumerate(burden.loads):
         moments[k] = load.moment(state, known)
     absent = np.where(known, 0.0, np.nan)

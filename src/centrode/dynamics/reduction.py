@@ -52,7 +52,7 @@ def reduce(
     InputError
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
-        Friction, the sphere.
+        Friction by a coefficient.
     """
     prepared = ready(mechanism)
     burden = Burden.of(mechanism)

@@ -123,7 +123,7 @@ def _inertia(directions: _Directions, burden: Burden) -> tuple[Array, Array]:
 def _forces(directions: _Directions, solved: Solved, burden: Burden) -> Array:
     """Generalised forces by load (n, loads, i): how great loads are the motion says, along what the directions."""
     state = State.of(solved, Moving(solved.span.time, solved.span.parameter, solved.span.rate))
-    known = np.isfinite(solved.angles[1].sum(axis=-1))
+    known = state.exists
     forces = np.empty((len(burden.loads), len(directions.units), directions.shape[-1]))
     for number, load in enumerate(burden.loads):
         strengths = load.strengths(state, known)
@@ -131,7 +131,7 @@ def _forces(directions: _Directions, solved: Solved, burden: Burden) -> Array:
             forces[number, i] = np.reshape(
                 np.broadcast_to(load.along(directions.along[i, i], strengths) / unit, directions.shape), -1
             )
-    absent = np.isnan(directions.along[0, 0].columns["angle"](0)[1])[0]
+    absent = ~directions.along[0, 0].exists[0]
     forces[..., absent] = np.nan
     return np.moveaxis(forces, -1, 0)
 

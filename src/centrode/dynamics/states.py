@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.dynamics.masses import Centre
+from centrode.dynamics.bodies import Centre, Radial, Vector3
+from centrode.geometry.sphere import Attitude, carried, cross, dot, unit_vector
 from centrode.kinematics.layout import Layout
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.sampling import Samples
@@ -19,7 +20,8 @@ from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import FRAME, Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
-Place: TypeAlias = tuple[Jet, Jet]
+Place: TypeAlias = tuple[Jet, ...]
+"""Coordinates along the axes of the space."""
 Getter: TypeAlias = Callable[[int], Array]
 
 
@@ -54,6 +56,7 @@ class State:
     columns: Mapping[str, Getter]
     m: JetFunctions = JETS
     known: dict[str, Place | Jet] = field(default_factory=dict)
+    attitudes: dict[str, Attitude] = field(default_factory=dict)
 
     @classmethod
     def of_samples(
@@ -65,44 +68,95 @@ class State:
             "point": lambda k: columns[:, k],
             "angle": lambda k: samples.angles[:, k],
             "slide": lambda k: columns[:, layout.first_slide + k],
+            "attitude": lambda k: columns[:, layout.first_attitude + k],
         }
+        scale = scale * length_unit(mechanism)
         return cls(mechanism, layout, moving.time, moving.parameter, moving.rate, side, scale, getters)
 
     @classmethod
     def of(cls, solved: Solved, moving: Moving, side: int = 0) -> State:
         """The state of a motion."""
-        points = solved.points
-        getters: dict[str, Getter] = {
-            "point": lambda k: points[..., k // 2, k % 2],
-            "angle": lambda k: solved.angles[..., k],
-            "slide": lambda k: solved.slides[..., k],
-        }
-        mechanism, scale = solved.ready.mechanism, solved.ready.kinematics.path.scale
+        mechanism = solved.ready.mechanism
+        getters = getters_of(solved, lambda array: array)
+        scale = solved.ready.kinematics.path.scale * length_unit(mechanism)
         return cls(mechanism, solved.layout, moving.time, moving.parameter, moving.rate, side, scale, getters)
+
+    @property
+    def on_sphere(self) -> bool:
+        """Whether places have three coordinates, and links axes in place of one angle."""
+        return self.mechanism.space == "sphere"
+
+    @property
+    def exists(self) -> npt.NDArray[np.bool_]:
+        """Where there are derivatives: nothing is reduced at limits."""
+        first = self.columns["attitude" if self.on_sphere else "angle"](0)[1]
+        return np.asarray(np.isfinite(first))
 
     def point(self, name: str) -> Place:
         """Coordinates of a point [m]."""
-        fixed = self.mechanism.frame.points
-        if name in fixed:
-            x, y = self.mechanism.frame.coordinates[name]
-            return _constant(x), _constant(y)
+        if name in self.mechanism.frame.points:
+            fixed = self.mechanism.frame.coordinates[name]
+            if self.on_sphere:
+                radius = self.mechanism.sphere_radius
+                return tuple(_constant(radius * float(x)) for x in unit_vector(self.m.base, fixed))
+            return tuple(_constant(x) for x in fixed)
         place = self.known.get(f"point {name}")
         if place is None:
-            k = 2 * self.layout.points.index(name)
-            place = _jet(self.columns["point"](k)), _jet(self.columns["point"](k + 1))
+            axes = self.layout.axes
+            first, unit = axes * self.layout.points.index(name), length_unit(self.mechanism)
+            place = tuple(_scaled(_jet(self.columns["point"](first + k)), unit) for k in range(axes))
             self.known[f"point {name}"] = place
         assert isinstance(place, tuple)
         return place
 
+    def attitude(self, link: str) -> Attitude:
+        """On the sphere: the axes of a link in those of the frame."""
+        found = self.attitudes.get(link)
+        if found is None:
+            first = 9 * self.layout.links.index(link)
+            jets = [_jet(self.columns["attitude"](first + k)) for k in range(9)]
+            found = Attitude(*((jets[k], jets[k + 1], jets[k + 2]) for k in (0, 3, 6)))
+            self.attitudes[link] = found
+        return found
+
+    def heading(self, link: str, direction: Vector3) -> Place:
+        """On the sphere: a direction of a link's own axes, or of the frame's, as it stands in the frame."""
+        if link == FRAME:
+            return tuple(_constant(float(x)) for x in direction)
+        x, y, z = carried(self.attitude(link), direction)
+        return x, y, z
+
+    def spin(self, link: str) -> Place:
+        """On the sphere: angular velocity of a link by the parameter, with its derivative; of first order."""
+        if link == FRAME:
+            return tuple(Jet((0.0, 0.0)) for _axis in range(3))
+        found = self.known.get(f"spin {link}")
+        if found is None:
+            # half the sum of a x a' over the axes
+            turns = [
+                cross(tuple(x.lowered() for x in axis), tuple(x.slope() for x in axis))
+                for axis in self.attitude(link)
+            ]
+            found = tuple((a + b + c) * 0.5 for a, b, c in zip(*turns, strict=True))
+            self.known[f"spin {link}"] = found
+        assert isinstance(found, tuple)
+        return found
+
+    def turned_about(self, link: str, direction: Vector3) -> Jet:
+        """On the sphere: the turning of a link about one of its own directions; it has derivatives, but no value."""
+        axis = tuple(x.lowered() for x in self.heading(link, direction))
+        along = dot(self.spin(link), axis)  # type: ignore[arg-type]
+        return Jet((0.0, along.coefficients[0], along.coefficients[1] * 0.5))
+
     def angle(self, link: str) -> Jet:
-        """Angle of a link or of the frame [rad]."""
+        """Angle of a link or of the frame [rad]; on the sphere that from its reference."""
         if link == FRAME:
             return _constant(0.0)
         return self._jet("angle", link, self.layout.angles)
 
     def slide(self, guide: str) -> Jet:
         """Displacement along a guide [m]."""
-        return self._jet("slide", guide, self.layout.guides)
+        return _scaled(self._jet("slide", guide, self.layout.guides), length_unit(self.mechanism))
 
     def rotor(self, link: str) -> Place:
         """Cosine and sine of a link's angle."""
@@ -114,8 +168,10 @@ class State:
         assert isinstance(rotor, tuple)
         return rotor
 
-    def centre(self, centre: Centre) -> Place:
-        """Centre of mass of a link."""
+    def centre(self, centre: Centre | Radial) -> Place:
+        """Centre of mass of a link [m]."""
+        if isinstance(centre, Radial):
+            return tuple(x * centre.distance for x in self.heading(centre.link, centre.direction))
         x, y = self.point(centre.base)
         along, across = centre.along, centre.across
         if isinstance(along, float) and isinstance(across, float) and along == across == 0.0:
@@ -139,6 +195,33 @@ class Moving:
     time: Array
     parameter: Array
     rate: Array
+
+
+def getters_of(solved: Solved, one: Callable[[Any], Any]) -> dict[str, Getter]:
+    """What gives the numbers of a motion, of its arrays seen through a function."""
+    axes = solved.layout.axes
+    points, angles, slides = one(solved.points), one(solved.angles), one(solved.slides)
+    attitudes = None if solved.attitudes is None else one(solved.attitudes)
+
+    def attitude(k: int) -> Array:
+        assert attitudes is not None
+        return np.asarray(attitudes[..., k // 9, k // 3 % 3, k % 3])
+
+    return {
+        "point": lambda k: points[..., k // axes, k % axes],
+        "angle": lambda k: angles[..., k],
+        "slide": lambda k: slides[..., k],
+        "attitude": attitude,
+    }
+
+
+def length_unit(mechanism: Mechanism) -> float:
+    """What a length of the description is [m]: on the sphere it is an arc, of a sphere of this radius."""
+    return mechanism.sphere_radius if mechanism.space == "sphere" else 1.0
+
+
+def _scaled(jet: Jet, unit: float) -> Jet:
+    return jet if unit == 1.0 else jet * unit
 
 
 def _jet(orders: Array) -> Jet:

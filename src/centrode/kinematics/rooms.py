@@ -13,7 +13,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.errors import Status
 from centrode.kinematics.layout import Layout
 from centrode.kinematics.sampling import ORDERS, Samples
-from centrode.kinematics.spins import spins_of
+from centrode.kinematics.spins import attitudes_of, spins_of
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import Positions
 
@@ -85,3 +85,8 @@ class Room:
     def spins(self) -> Array | None:
         """How links turn in space (2, lanes, n, links, 3); none in the plane."""
         return spins_of(self.layout, self.samples.columns)
+
+    @property
+    def attitudes(self) -> Array | None:
+        """Axes of the links (3, lanes, n, links, 3, 3); none in the plane."""
+        return attitudes_of(self.layout, self.samples.columns)

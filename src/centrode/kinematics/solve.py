@@ -47,7 +47,8 @@ class Solved:
     Arrays hold value, first and second derivative by the path's parameter first: `points` (3, lanes, n,
     points, axes), `angles` (3, lanes, n, angles) [rad], `slides` (3, lanes, n, guides); `status` and `residual`
     (lanes, n). `all_points` has the frame's points before the moving ones. `spins` (2, lanes, n, links, 3) are
-    rotation vectors [rad] by the parameter and their derivatives; none where angles say it all. `contacts`
+    rotation vectors [rad] by the parameter and their derivatives, `attitudes` (3, lanes, n, links, 3, 3) their axes in
+    those of the frame; neither where angles say it all. `contacts`
     (lanes, n, rolling wheels, axes) are the places where wheels touch their tracks.
     """
 
@@ -60,6 +61,7 @@ class Solved:
     angles: Array
     slides: Array
     spins: Array | None
+    attitudes: Array | None
     status: npt.NDArray[np.int8]
     residual: Array
     worst_constraint: Kept
@@ -117,6 +119,7 @@ def solve(
         room.turned,
         room.slides,
         room.spins,
+        room.attitudes,
         room.status,
         np.concatenate([part.residual for part in parts]),
         max(parts, key=lambda part: float(np.nanmax(part.residual, initial=0.0))).worst_constraint,

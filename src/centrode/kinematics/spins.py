@@ -12,6 +12,18 @@ from centrode.kinematics.layout import Layout
 Array: TypeAlias = npt.NDArray[np.float64]
 
 
+def attitudes_of(layout: Layout, columns: Array) -> Array | None:
+    """Axes of the links in those of the frame and their derivatives, (3, lanes, n, links, 3, 3); none in the plane.
+
+    The axis of a link stands before its components.
+    """
+    if layout.runs_on:
+        return None
+    taken = columns[:, layout.first_attitude : layout.first_slide]
+    axes = taken.reshape(len(columns), len(layout.links), 3, 3, *columns.shape[2:])
+    return np.moveaxis(axes, (4, 5), (1, 2))
+
+
 def spins_of(layout: Layout, columns: Array) -> Array | None:
     """Angular velocity and acceleration per unit of the parameter, (2, lanes, n, links, 3); none in the plane.
 

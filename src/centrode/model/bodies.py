@@ -14,12 +14,14 @@ from centrode.model.frozen import FrozenMap
 from centrode.model.names import read_name
 from centrode.model.part import Part
 from centrode.model.problems import Problem, Problems, shown
+from centrode.model.tensors import Inertia, read_inertia
 from centrode.model.values import (
     Angle,
     Name,
     NamedPositions,
     Placed,
     PositiveLength,
+    PositiveMetres,
     Spot,
     Vector,
     choice,
@@ -30,6 +32,10 @@ from centrode.model.values import (
     quantity,
     read_coordinates,
 )
+
+Shape = Literal["rod", "disc", "ring", "arc"]
+SHAPES = ("rod", "disc", "ring", "arc")
+RING_AND_POINT = "ring and point mass"
 
 
 def _read_points(value: object) -> tuple[str, ...] | Mapping[str, Vector]:
@@ -93,8 +99,13 @@ class Link(Part):
     angle : float [rad]
         In the initial position, absolute: from the first point to the second, or of the link's own x axis.
     mass [kg], centre (local (x, y) [m] or a point's name), inertia [kg m^2] about the centre
-    shape : "rod" or "disc"
-        Fills centre and inertia; a disc has a `radius` [m].
+        On the sphere three principal moments in the link's axes, or its tensor.
+    shape : "rod", "disc", "ring" or, on the sphere, "arc"
+        Fills centre and inertia; a disc and a ring have a `radius` [m].
+    centre_radius : float [m]
+        On the sphere: how far the centre of mass is from the centre of the sphere.
+    model : "ring and point mass"
+        On the sphere: the inertia is that about the axis through the centre alone, and the mass is there.
     reference : two points
         On the sphere: the arc the angle is measured from.
     """
@@ -104,9 +115,11 @@ class Link(Part):
     angle: Angle | None = None
     mass: Annotated[float, quantity("mass", not_negative)] | None = None
     centre: Spot | None = None
-    inertia: Annotated[float, quantity("inertia", not_negative)] | None = None
-    shape: Annotated[Literal["rod", "disc"], choice("rod", "disc")] | None = None
-    radius: PositiveLength | None = None
+    inertia: Annotated[Inertia, PlainValidator(read_inertia)] | None = None
+    shape: Annotated[Shape, choice(*SHAPES)] | None = None
+    radius: PositiveMetres | None = None
+    centre_radius: Annotated[float, PlainValidator(lambda value: not_negative(value, "length"))] | None = None
+    model: Annotated[Literal["ring and point mass"], choice(RING_AND_POINT)] | None = None
     reference: Annotated[tuple[Name, ...], listed(2)] | None = None
 
     @property

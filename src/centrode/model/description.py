@@ -27,19 +27,19 @@ from centrode.model.simulations import Simulation
 from centrode.model.values import (
     READING,
     Placed,
+    PositiveMetres,
     Reading,
     Text,
     Vector,
     choice,
     link_table,
     listed,
-    numbers,
+    read_axes,
 )
 
 
-def _read_gravity(value: object) -> Vector:
-    x, y = numbers(value, ("acceleration", "acceleration"), "[x, y]")
-    return x, y
+def _read_gravity(value: object) -> tuple[float, ...]:
+    return read_axes(value, "acceleration")
 
 
 def _filled(links: Mapping[str, Link]) -> Mapping[str, Link]:
@@ -59,7 +59,8 @@ class Description(Part):
 
     title: Text = ""
     space: Annotated[Literal["plane", "sphere"], choice("plane", "sphere")] = "plane"
-    gravity: Annotated[Vector, PlainValidator(_read_gravity)] | None = None
+    gravity: Annotated[tuple[float, ...], PlainValidator(_read_gravity)] | None = None
+    radius: PositiveMetres | None = None
     display: Display = Display()
     frame: Frame = Frame()
     links: Annotated[Mapping[str, Link], link_table, AfterValidator(_filled)]
@@ -81,6 +82,11 @@ class Description(Part):
             return handler(data)
         finally:
             READING.reset(token)
+
+    @property
+    def sphere_radius(self) -> float:
+        """Radius [m] of the sphere that masses and forces count on; 1 if it is not given."""
+        return 1.0 if self.radius is None else self.radius
 
     @property
     def link_names(self) -> tuple[str, ...]:

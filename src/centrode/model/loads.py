@@ -11,7 +11,7 @@ from pydantic import PlainValidator, ValidationInfo, field_validator
 from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.names import FRAME
+from centrode.model.names import FRAME, read_name
 from centrode.model.part import Part, missing_key, one_of
 from centrode.model.problems import Problem, shown
 from centrode.model.tables import Columns, read_rows
@@ -24,6 +24,7 @@ from centrode.model.values import (
     listed,
     not_negative,
     quantity,
+    read_heading,
     read_text,
     si,
 )
@@ -34,6 +35,12 @@ LOAD_VARIABLES = ("t", "q", "x", "v")
 Amount = float | str
 Kinds = Literal["force", "torque", "spring", "damper", "weight", "friction"]
 KINDS = ("force", "torque", "spring", "damper", "weight", "friction")
+
+Form = Literal["virtual work", "plain sum"]
+VIRTUAL_WORK: Form = "virtual work"
+PLAIN_SUM: Form = "plain sum"
+FORMS = (VIRTUAL_WORK, PLAIN_SUM)
+_FRICTION = ("value", "viscous", "quadratic", "coefficient")
 
 # a force in a point has a vector, one along a guide a value or a table
 _IN_POINT, _ALONG_GUIDE = ("vector", "axes", "while_moving"), ("value", "table")
@@ -54,15 +61,15 @@ _NEEDED: dict[str, tuple[str, ...]] = {
     "spring": ("stiffness",),
     "damper": ("damping",),
     "weight": (),
-    "friction": ("value",),
+    "friction": (),
 }
 _ALLOWED: dict[str, tuple[str, ...]] = {
     "force": ("vector", "value", "table", "axes", "while_moving"),
-    "torque": ("relative_to",),
-    "spring": ("free_length", "free_angle", "relative_to"),
-    "damper": ("relative_to",),
+    "torque": ("relative_to", "axis"),
+    "spring": ("free_length", "free_angle", "relative_to", "axis"),
+    "damper": ("relative_to", "axis"),
     "weight": ("value",),
-    "friction": ("relative_to",),
+    "friction": ("value", "viscous", "quadratic", "coefficient", "form", "relative_to", "axis"),
 }
 
 
@@ -82,10 +89,15 @@ def _amount(value: object, kind: str) -> Amount:
     return text if formula.used else si(text, kind)
 
 
-def _read_force(value: object) -> tuple[Amount, Amount]:
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise Problem(_("expected {form}, got {value}").format(form="[x, y]", value=shown(value)))
-    return _amount(value[0], "force"), _amount(value[1], "force")
+def _read_force(value: object) -> tuple[Amount, ...]:
+    count, form = (3, "[x, y, z]") if READING.get().space == "sphere" else (2, "[x, y]")
+    if not isinstance(value, list | tuple) or len(value) != count:
+        raise Problem(_("expected {form}, got {value}").format(form=form, value=shown(value)))
+    return tuple(_amount(entry, "force") for entry in value)
+
+
+def _read_axis(value: object) -> str | tuple[float, ...]:
+    return read_name(value) if isinstance(value, str) else read_heading(value)
 
 
 class Load(Part):
@@ -99,15 +111,23 @@ class Load(Part):
     point, link, guide, points : str, str, str, two names
         What it acts on: a force on a point or along a guide, a torque on a link, a spring or damper between two
         points or in a link's hinge, friction in a link's hinge or a guide, a weight in a link's centre or a point.
-    vector : (x, y) [N], each a number or a formula
+    vector : (x, y) [N], each a number or a formula; on the sphere (x, y, z)
     axes : "frame" or the link whose axes `vector` is given in
     value : float or formula [N m]; along a guide [N]; of a weight [N], where it is not mass times gravity
-        Friction: the moment in a hinge [N m] or the force in a guide [N], against the motion.
+        Dry friction: the moment in a hinge [N m] or the force in a guide [N], against the motion.
+    viscous, quadratic : float [N m s/rad, N m s^2/rad^2]; in a guide [N s/m, N s^2/m^2]
+        Friction that grows with the relative speed, and with its square.
+    coefficient : float
+        Friction that grows with the reaction.
+    form : "virtual work" or "plain sum"
+        The plain sum takes the moments of quadratic friction from the driving moment as they are, as a source does.
     table : rows of (displacement [m], force [N]) or (displacement, force forwards, force backwards)
         Indicator diagram of a force along a guide. In a file it may be the path of a CSV file beside it.
     stiffness [N/m or N m/rad], damping [N s/m or N m s/rad], free_length [m], free_angle [rad]
     relative_to : "frame" or the link against which a torque, spring, damper or friction works
-    while_moving : (x, y)
+    axis : a point's name, or (x, y, z) in the axes of the frame
+        On the sphere: about what it works, where the links do not share exactly one point.
+    while_moving : (x, y); on the sphere (x, y, z)
         The force acts only while its point moves this way.
     """
 
@@ -117,26 +137,37 @@ class Load(Part):
     link: Name | None = None
     guide: Name | None = None
     points: Annotated[tuple[Name, ...], listed(2)] | None = None
-    vector: Annotated[tuple[Amount, Amount], PlainValidator(_read_force)] | None = None
+    vector: Annotated[tuple[Amount, ...], PlainValidator(_read_force)] | None = None
     axes: Name = FRAME
     value: Amount | None = None
     table: tuple[tuple[float, ...], ...] | None = None
     stiffness: float | None = None
     damping: float | None = None
-    free_length: Annotated[float, quantity("length", not_negative)] | None = None
+    viscous: float | None = None
+    quadratic: float | None = None
+    coefficient: Annotated[float, quantity("ratio", not_negative)] | None = None
+    form: Annotated[Form, choice(*FORMS)] = VIRTUAL_WORK
+    free_length: Annotated[float, PlainValidator(lambda value: not_negative(value, "length"))] | None = None
     free_angle: Angle | None = None
     relative_to: Name = FRAME
+    axis: Annotated[str | tuple[float, ...], PlainValidator(_read_axis)] | None = None
     while_moving: Heading | None = None
 
-    @field_validator("value", "stiffness", "damping", mode="plain")
+    @field_validator("value", "stiffness", "damping", "viscous", "quadratic", mode="plain")
     @classmethod
     def _by_what_it_acts_on(cls, value: object, info: ValidationInfo) -> Amount | None:
         if value is None:
             return None
         straight = info.data.get("link") is None or info.data.get("kind") == "weight"
         if info.field_name == "value":
-            return _amount(value, "force" if straight else "torque")
-        return not_negative(value, f"{'' if straight else 'angular '}{info.field_name}")
+            amount = _amount(value, "force" if straight else "torque")
+            if info.data.get("kind") == "friction" and not isinstance(amount, str):
+                return not_negative(amount, "force" if straight else "torque")
+            return amount
+        kind = {"viscous": "damping", "quadratic": "quadratic damping"}.get(
+            info.field_name or "", info.field_name
+        )
+        return not_negative(value, f"{'' if straight else 'angular '}{kind}")
 
     @field_validator("table", mode="plain")
     @classmethod
@@ -178,6 +209,8 @@ class Load(Part):
             problems.append(Problem(_("a {kind} acts on one of: {keys}").format(kind=kind, keys=words)))
         elif kind == "force":
             problems += _of_force(cls, given, present)
+        elif kind == "friction":
+            problems += _of_friction(given, present)
         return problems
 
 
@@ -194,6 +227,20 @@ def _of_force(cls: type[Part], given: Mapping[str, Any], present: set[str]) -> l
         what = _("{key} belongs to a force in a point")
         repair = _("give value or table, or a point in place of the guide")
     return missing + [Problem(what.format(key=shown(key)), repair) for key in wrong]
+
+
+def _of_friction(given: Mapping[str, Any], present: set[str]) -> list[Problem]:
+    """Friction is as great as its keys say together; the plain sum is one of quadratic friction in hinges."""
+    amounts = [key for key in _FRICTION if key in present]
+    if not amounts:
+        return [Problem(_("one of {keys} is missing").format(keys=", ".join(_FRICTION)))]
+    if "coefficient" in amounts and len(amounts) > 1:
+        what = _("{names} are given together").format(names=", ".join(amounts))
+        return [Problem(what, _("keep the coefficient, or the others"))]
+    if given.get("form") == PLAIN_SUM and (amounts != ["quadratic"] or "link" not in present):
+        what = _("the plain sum belongs to quadratic friction in a hinge")
+        return [Problem(what, _("take form out, or give quadratic alone"))]
+    return []
 
 
 def _default(cls: type[Part], key: str, given: Mapping[str, Any]) -> bool:

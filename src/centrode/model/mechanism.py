@@ -53,7 +53,9 @@ class Mechanism(Description):
     ----------
     title : str
     space : "plane" or "sphere"
-    gravity : (x, y) [m/s^2] or None
+    gravity : (x, y) [m/s^2], on the sphere (x, y, z), or None
+    radius : float [m] or None
+        Of the sphere, for masses and forces.
     display : Display
     frame : Frame
     links : mapping of name to Link, in description order

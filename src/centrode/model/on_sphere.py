@@ -8,13 +8,13 @@ from itertools import pairwise
 from centrode.locale import _
 from centrode.model.bodies import Link
 from centrode.model.description import Description
-from centrode.model.known import points_on, two_known_points
+from centrode.model.known import known, points_on, two_known_points
 from centrode.model.names import FRAME
 from centrode.model.problems import Place, Problem, shown
 from centrode.model.sphere import makes_arc, unit_vector
 from centrode.model.values import Placed, Vector
 
-LOAD_KEYS = ("vector", "axes", "while_moving")
+SPHERE_LINK_KEYS = ("reference", "centre_radius", "model")
 
 
 def space_problems(mechanism: Description) -> Iterator[Problem]:
@@ -23,21 +23,45 @@ def space_problems(mechanism: Description) -> Iterator[Problem]:
         yield from _planar_keys(mechanism)
         yield from _angles(mechanism)
         return
+    yield from _spherical_keys(mechanism)
+
+
+def _spherical_keys(mechanism: Description) -> Iterator[Problem]:
+    """Keys that mean something on the sphere only."""
+    if mechanism.radius is not None:
+        yield _spherical("radius", _("take it out"), ("radius",))
     for name, link in mechanism.links.items():
-        if link.reference is not None:
-            what = _("{key} belongs to the sphere").format(key="reference")
-            repair = _("take it out; in the plane angles are measured from the x axis")
-            yield Problem(what, repair, ("links", name, "reference"))
+        for key in SPHERE_LINK_KEYS:
+            if getattr(link, key) is not None:
+                repair = _("take it out")
+                if key == "reference":
+                    repair = _("take it out; in the plane angles are measured from the x axis")
+                yield _spherical(key, repair, ("links", name, key))
+        if link.shape == "arc":
+            yield _spherical("arc", _("write rod, disc or ring"), ("links", name, "shape"))
+    for index, load in enumerate(mechanism.loads):
+        if load.axis is not None:
+            yield _spherical("axis", _("take it out"), ("loads", index, "axis"))
+
+
+def _spherical(key: str, repair: str, at: Place) -> Problem:
+    return Problem(_("{key} belongs to the sphere").format(key=key), repair, at)
 
 
 def _planar_keys(mechanism: Description) -> Iterator[Problem]:
     """Keys that mean something in the plane only."""
-    if mechanism.gravity is not None:
-        yield _planar("gravity", _("take it out; forces on the sphere are not computed yet"), ("gravity",))
     for name, link in mechanism.links.items():
-        for key in ("shape", "radius"):
-            if getattr(link, key) is not None:
-                yield _planar(key, _("give mass, centre and inertia"), ("links", name, key))
+        if link.shape == "rod":
+            yield _planar("rod", _("write arc, disc or ring"), ("links", name, "shape"))
+        if link.model is not None and link.shape is not None:
+            what = _("shape and model are given together")
+            yield Problem(what, _("keep one of them"), ("links", name))
+        if link.model is not None and isinstance(link.inertia, tuple):
+            what = _("a ring has one moment of inertia, about the axis through its centre")
+            yield Problem(what, _("give one number"), ("links", name, "inertia"))
+        if link.model is not None and link.centre_radius is not None:
+            what = _("the mass of a ring and point mass lies on the sphere")
+            yield Problem(what, _("take centre_radius out"), ("links", name, "centre_radius"))
     for index, guide in enumerate(mechanism.guides):
         if isinstance(guide.pole, Placed):
             what = _("a pole cannot be placed")
@@ -48,10 +72,8 @@ def _planar_keys(mechanism: Description) -> Iterator[Problem]:
             repair = _('write "left" or "right" of the arc between the two known points or poles')
             yield _planar(side, repair, ("assembly", "sides", name))
     for index, load in enumerate(mechanism.loads):
-        for key in LOAD_KEYS:
-            if getattr(load, key) not in (None, FRAME):
-                repair = _("take it out; forces on the sphere are not computed yet")
-                yield _planar(key, repair, ("loads", index, key))
+        if isinstance(load.axis, str):
+            yield from known(load.axis, mechanism.points, "point", ("loads", index, "axis"))
 
 
 def _planar(key: str, repair: str, at: Place) -> Problem:

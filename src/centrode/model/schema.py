@@ -7,10 +7,10 @@ from typing import Any
 from centrode.laws import SEGMENT_CURVES
 from centrode.model import limits, segments
 from centrode.model.asked import Assembly, Display, Study
-from centrode.model.bodies import Frame, Link
+from centrode.model.bodies import RING_AND_POINT, SHAPES, Frame, Link
 from centrode.model.description import Description
 from centrode.model.driving import Drive
-from centrode.model.loads import KINDS, Load
+from centrode.model.loads import FORMS, KINDS, Load
 from centrode.model.machines import SHAFTS, FlywheelShape, Machine, Shaft
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.part import Part
@@ -52,6 +52,9 @@ _TEXT: Schema = {"type": "string", "maxLength": limits.TEXT_LENGTH}
 _NAMES = _list(_NAME, 2, 2)
 _COORDINATES = _list(_quantity("length"), 2, 3)
 _PAIR = _list(_quantity("ratio"), 2, 2)
+_HEADING = _list(_quantity("ratio"), 2, 3)
+_MOMENTS = _list(_quantity("inertia"), 3, 3)
+_INERTIA: Schema = {"anyOf": [*_quantity("inertia")["anyOf"], _MOMENTS, _list(_MOMENTS, 3, 3)]}
 _PLACED: Schema = {
     "type": "object",
     "properties": {"placed": _COORDINATES},
@@ -77,9 +80,11 @@ PROPERTIES: dict[type[Part], Schema] = {
         "angle": _quantity("angle"),
         "mass": _quantity("mass"),
         "centre": {"anyOf": [_COORDINATES, _NAME]},
-        "inertia": _quantity("inertia"),
-        "shape": {"enum": ["rod", "disc"]},
+        "inertia": _INERTIA,
+        "shape": {"enum": list(SHAPES)},
         "radius": _above_zero("length"),
+        "centre_radius": _quantity("length"),
+        "model": {"enum": [RING_AND_POINT]},
         "reference": _NAMES,
     },
     Guide: {
@@ -136,7 +141,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "link": _NAME,
         "guide": _NAME,
         "points": _NAMES,
-        "vector": _list(_AMOUNT, 2, 2),
+        "vector": _list(_AMOUNT, 2, 3),
         "axes": _NAME,
         "value": _AMOUNT,
         "table": {"anyOf": [_TEXT, _list(_list(_AMOUNT, 2, 3), 2, limits.TABLE_ROWS)]},
@@ -145,7 +150,12 @@ PROPERTIES: dict[type[Part], Schema] = {
         "free_length": _quantity("length"),
         "free_angle": _quantity("angle"),
         "relative_to": _NAME,
-        "while_moving": _PAIR,
+        "while_moving": _HEADING,
+        "axis": {"anyOf": [_NAME, _HEADING]},
+        "viscous": _quantity("damping"),
+        "quadratic": _quantity("quadratic damping"),
+        "coefficient": _quantity("ratio"),
+        "form": {"enum": list(FORMS)},
     },
     Machine: {
         "mean_speed": _above_zero("angular speed"),
@@ -191,7 +201,8 @@ PROPERTIES: dict[type[Part], Schema] = {
     Description: {
         "title": _TEXT,
         "space": {"enum": ["plane", "sphere"]},
-        "gravity": _list(_quantity("acceleration"), 2, 2),
+        "gravity": _list(_quantity("acceleration"), 2, 3),
+        "radius": _above_zero("length"),
         "display": _ref(Display),
         "frame": _ref(Frame),
         "links": _table(_ref(Link), limits.LINKS),

@@ -47,6 +47,13 @@ KINDS = {
     "damping": Kind(mark("a damping"), "N*s/m", "2 N*s/mm"),
     "angular stiffness": Kind(mark("an angular stiffness"), "N*m/rad", "2 N*m/deg", ("N*m",)),
     "angular damping": Kind(mark("an angular damping"), "N*m*s/rad", "2 N*mm*s/rad", ("N*m*s",)),
+    "quadratic damping": Kind(mark("a friction by the square of the speed"), "N*s^2/m^2", "2 N*s^2/m^2"),
+    "angular quadratic damping": Kind(
+        mark("a friction by the square of the angular speed"),
+        "N*m*s^2/rad^2",
+        "2 N*mm*s^2/rad^2",
+        ("N*m*s^2",),
+    ),
     "ratio": Kind(mark("a number"), "", "-40/20"),
 }
 

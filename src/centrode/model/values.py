@@ -123,6 +123,13 @@ def read_coordinates(value: object) -> Vector:
     return math.atan2(y, x), math.atan2(z, math.hypot(x, y))
 
 
+def read_axes(value: object, kind: str) -> tuple[float, ...]:
+    """Components along the axes of the space, in the plane [x, y], on the sphere [x, y, z]."""
+    if READING.get().space == "sphere":
+        return numbers(value, (kind,) * 3, "[x, y, z]")
+    return numbers(value, (kind,) * 2, "[x, y]")
+
+
 def read_position(value: object) -> Vector | Placed:
     """Coordinates, "placed", or { placed = [x, y] } as a resolved one is written back."""
     if isinstance(value, Placed):
@@ -145,6 +152,14 @@ def read_through(value: object) -> Vector | str | Placed:
 def read_spot(value: object) -> Vector | str:
     """Coordinates, or the name of a point."""
     return read_name(value) if isinstance(value, str) else read_coordinates(value)
+
+
+def read_heading(value: object) -> tuple[float, ...]:
+    """Plain numbers along the axes of the space that give a direction."""
+    found = read_axes(value, "ratio")
+    if not math.hypot(*found) or not math.isfinite(math.hypot(*found)):
+        raise Problem(_("a direction is not zero, got {value}").format(value=list(found)))
+    return found
 
 
 def read_vector(value: object) -> Vector:
@@ -249,7 +264,9 @@ Position = Annotated[Vector | Placed, PlainValidator(read_position)]
 Through = Annotated[Vector | str | Placed, PlainValidator(read_through)]
 Spot = Annotated[Vector | str, PlainValidator(read_spot)]
 Direction = Annotated[Vector | float, PlainValidator(read_direction)]
-Heading = Annotated[Vector, PlainValidator(read_vector)]
+Heading = Annotated[tuple[float, ...], PlainValidator(read_heading)]
+PositiveMetres = Annotated[float, PlainValidator(lambda value: positive(value, "length"))]
+"""A length in metres on the sphere too."""
 PositiveLength = Annotated[float, quantity("length", positive)]
 Angle = Annotated[float, quantity("angle")]
 PlaceOfMotion = Annotated[float, PlainValidator(lambda value: si(value, READING.get().place))]

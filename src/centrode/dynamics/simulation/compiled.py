@@ -21,11 +21,12 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.scans import Scan
 from centrode.dynamics.batches import state_of_nodes
 from centrode.dynamics.inertia import share
+from centrode.dynamics.reducer import Burden
 from centrode.dynamics.simulation.course import STATES, Course, Ending
-from centrode.dynamics.simulation.fixed import course_of
 from centrode.dynamics.simulation.driving import Driving
+from centrode.dynamics.simulation.fixed import course_of
 from centrode.dynamics.simulation.rows import Rows
-from centrode.dynamics.simulation.sorts import SORTS
+from centrode.dynamics.simulation.sorts import SORTS, sorted_efforts
 from centrode.dynamics.states import Moving
 from centrode.kinematics.compiled.deciding import Untraceable
 from centrode.kinematics.compiled.traced import traced
@@ -113,14 +114,16 @@ def _rates(rows: Rows, driving: Driving) -> Graph:
     if found.steps:
         raise Untraceable(mark("groups of higher class"))
     time, value, rate = (variable(name) for name in (TIME, PARAMETER, RATE))
-    state = state_of_nodes(found.solved, reducer.burden, Moving(time, value, rate))  # type: ignore[arg-type]
+    mechanism = reducer.ready.mechanism
+    burden = Burden.of(mechanism, None, EXPRESSIONS)
+    state = state_of_nodes(found.solved, burden, Moving(time, value, rate))  # type: ignore[arg-type]
     inertia: Number = rows.added
     slope: Number = 0.0
-    for mass in reducer.burden.masses:
+    for mass in burden.masses:
         inertia, slope = (a + b for a, b in zip((inertia, slope), share(state, mass), strict=True))
     moments: dict[str, Number] = dict.fromkeys(SORTS, 0.0)
-    for one in rows.efforts:
-        along = one.effort.coordinate.slope(state).value
+    for one in sorted_efforts(mechanism, burden.loads):
+        along = one.effort.along(state)
         moments[one.sort] = moments[one.sort] + one.effort.strength(state) * along
     driven = driving.over(EXPRESSIONS, time, value, rate)
     total = moments["stored"] + moments["friction"] + moments["other"] + driven

@@ -16,14 +16,14 @@ from centrode.dynamics.amounts import Situation
 from centrode.dynamics.quadrature import NODES
 from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.rows import (
-    ALONG,
     BACKWARDS,
-    COORDINATE,
+    EACH,
     FORMULAS,
     FORWARDS,
     GATE,
     INERTIA,
     SLOPE,
+    SPEED,
 )
 from centrode.dynamics.simulation.sorts import FRICTION, OTHER, SORTS, STORED, of_time
 from centrode.dynamics.simulation.tracks import Tracks
@@ -68,6 +68,7 @@ class Leg:
     grown : (rows)
         What coordinates have grown by in the periods before.
     gates : for each formula whether it acts
+    senses : for each formula whether its coordinate grows (+1.0) or falls (-1.0)
     """
 
     low: float
@@ -78,6 +79,7 @@ class Leg:
     shift: float
     grown: Array | None
     gates: tuple[bool, ...] = ()
+    senses: tuple[float, ...] = ()
 
     def rows(self, value: float) -> Array:
         """All rows at a value; beyond the ends those at the end."""
@@ -126,11 +128,12 @@ class Field:
         edges = [float(x) for x in stretch.edges]
         leg = Leg(ends[k] - shift, ends[k + 1] - shift, sense, edges, stretch.powers, shift, grown)
         middle = leg.rows(0.5 * (leg.low + leg.high))
+        formulas = tracks.rows.formulas
+        grows = [middle[FORMULAS + EACH * j :] * sense >= 0.0 for j in range(len(formulas))]
         gates = tuple(
-            one.effort.gate is None or bool(middle[FORMULAS + 3 * j + GATE] * sense >= 0.0)
-            for j, one in enumerate(tracks.rows.formulas)
+            bool(up[GATE]) or one.effort.gate is None for up, one in zip(grows, formulas, strict=True)
         )
-        return replace(leg, gates=gates)
+        return replace(leg, gates=gates, senses=tuple(1.0 if up[SPEED] else -1.0 for up in grows))
 
     def leg_at(self, value: float, sense: float) -> Leg:
         """The same, remembered as long as values stay on it."""
@@ -147,9 +150,10 @@ class Field:
         for j, one in enumerate(self.tracks.rows.formulas):
             if not leg.gates[j]:
                 continue
-            x, along = float(rows[FORMULAS + 3 * j + COORDINATE]), float(rows[FORMULAS + 3 * j + ALONG])
-            speed = along * rate
-            now = Situation(t, value, x, speed, speed >= 0.0, SCALARS)
+            x, slope, along = rows[FORMULAS + EACH * j : FORMULAS + EACH * j + GATE].tolist()
+            if one.effort.works is not None:
+                along *= leg.sense  # it resists the drive, whichever way
+            now = Situation(t, value, x, slope * rate, leg.senses[j], SCALARS)
             try:
                 moments[one.sort] += float(one.effort.amount(now)) * along
             except (ArithmeticError, ValueError):

@@ -23,8 +23,10 @@ Known: TypeAlias = npt.NDArray[np.bool_]
 INERTIA, SLOPE, FORWARDS, BACKWARDS = 0, 1, 2, 2 + len(SORTS)
 FORMULAS = BACKWARDS + len(SORTS)
 """Rows: J, J', moments of placed loads by sort for either sense of the value, then three for each formula."""
-COORDINATE, ALONG, GATE = 0, 1, 2
-"""Rows of a formula: its coordinate, the derivative of that, and that of the coordinate that lets it act."""
+COORDINATE, SPEED, ALONG, GATE = 0, 1, 2, 3
+EACH = 4
+"""Rows of a formula: its coordinate and the derivative of that; that of what it works along, where the drive's value
+grows, and of the coordinate that lets it act."""
 FLOOR = 1e-3
 """Functions below this share of the greatest of their kind need be no more exact than that share."""
 
@@ -46,7 +48,7 @@ class Rows:
     @cached_property
     def efforts(self) -> tuple[Sorted, ...]:
         """All efforts of loads."""
-        return sorted_efforts(self.reducer)
+        return sorted_efforts(self.reducer.ready.mechanism, self.reducer.burden.loads)
 
     @cached_property
     def formulas(self) -> tuple[Sorted, ...]:
@@ -61,7 +63,7 @@ class Rows:
     @property
     def count(self) -> int:
         """How many rows there are."""
-        return FORMULAS + 3 * len(self.formulas)
+        return FORMULAS + EACH * len(self.formulas)
 
     def at(self, values: Array) -> Array:
         """All rows (rows, n); NaN where the motion or its derivatives do not exist."""
@@ -74,10 +76,12 @@ class Rows:
         inertia, slope = shares(state, self.reducer.burden.masses, (1, len(values)))
         found[INERTIA], found[SLOPE] = inertia.sum(axis=0)[0] + self.added, slope.sum(axis=0)[0]
         for j, one in enumerate(self.formulas):
-            row, gate = FORMULAS + 3 * j, one.effort.gate
-            found[row + COORDINATE] = one.effort.coordinate.value(state)
-            found[row + ALONG] = one.effort.coordinate.slope(state).value
-            found[row + GATE] = 1.0 if gate is None else gate.slope(state).value
+            row, effort = FORMULAS + EACH * j, one.effort
+            # some turnings on the sphere have no value, and nothing that asks for it
+            found[row + COORDINATE] = effort.coordinate.value(state) if "x" in effort.amount.uses else 0.0
+            found[row + SPEED] = effort.coordinate.slope(state).value
+            found[row + ALONG] = effort.along(state)
+            found[row + GATE] = 1.0 if effort.gate is None else effort.gate.slope(state).value
         found[:, ~known] = np.nan
         return found
 
@@ -86,9 +90,7 @@ class Rows:
         ones = np.ones(len(values))
         state, status = self.reducer.state(values, Moving(0.0 * ones, values, sense * ones))
         reached = np.isin(status, (Status.OK, Status.SINGULAR))
-        return state, reached & np.isfinite(
-            np.broadcast_to(state.columns["angle"](0)[1], (1, len(values)))[0]
-        )
+        return state, reached & np.broadcast_to(state.exists, (1, len(values)))[0]
 
     def scales(self, peaks: Array) -> Array:
         """What counts as the greatest value of each row, where one may be nothing but rounding beside others."""
@@ -96,9 +98,8 @@ class Rows:
         found[SLOPE] = max(peaks[SLOPE], peaks[INERTIA])
         moments = slice(FORWARDS, FORMULAS)
         found[moments] = np.maximum(peaks[moments], FLOOR * np.max(peaks[moments]))
-        for row in range(FORMULAS, self.count, 3):
-            along = max(1.0, self.reducer.ready.kinematics.path.scale)
-            found[row : row + 3] = np.maximum(peaks[row : row + 3], FLOOR * along)
+        along = FLOOR * max(1.0, self.reducer.ready.kinematics.path.scale)
+        found[FORMULAS:] = np.maximum(peaks[FORMULAS:], along)
         return np.where(found > 0.0, found, 1.0)
 
     def energy(self, values: Array) -> Array:
@@ -121,6 +122,4 @@ def _moment(one: Sorted, state: State, known: Known) -> Array:
             raise one.effort.amount.refusal(float(x[at]))
         what = _("it has no finite value at {value:.6g}").format(value=float(state.parameter[at]))
         raise InputError(f"[[loads]] {one.label}", what, _("correct it"))
-    return np.asarray(strength * one.effort.coordinate.slope(state).value).reshape(-1)[
-        : len(known)
-    ] + np.zeros(len(known))
+    return np.asarray(strength * one.effort.along(state)).reshape(-1)[: len(known)] + np.zeros(len(known))

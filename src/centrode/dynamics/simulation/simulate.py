@@ -135,7 +135,9 @@ def _times(setting: Setting, course: Course, at: npt.ArrayLike | None) -> Array:
         times = np.asarray(at, dtype=np.float64)
         if times.ndim != 1 or not len(times) or not np.isfinite(times).all() or (np.diff(times) <= 0.0).any():
             raise InputError("at", _("it needs growing finite times, one or more, in one dimension"))
-        return times[(times >= 0.0) & (times <= course.last)]
+        if times[0] < 0.0:
+            raise InputError("at", _("times count from the start of the simulation, at 0 s"))
+        return times[times <= course.last * (1.0 + 1e-12)].clip(max=course.last)
     settings = setting.settings
     if settings.scheme == "runge-kutta-4":
         assert settings.duration is not None

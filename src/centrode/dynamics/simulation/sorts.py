@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.amounts import Constant, Diagram, Formula, StraightSpring, TorsionSpring
-from centrode.dynamics.loads import Effort
-from centrode.dynamics.reducer import Reducer
+from centrode.dynamics.amounts import Constant, Diagram, StraightSpring, TorsionSpring
+from centrode.dynamics.loads import Acting, Effort
 from centrode.dynamics.states import State
+from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -37,8 +38,10 @@ class Sorted:
     @property
     def one_sided(self) -> bool:
         """Whether it may be another one for the other sense of motion."""
-        amount = self.effort.amount
-        return self.effort.gate is not None or bool(amount.uses & {"v"})
+        effort = self.effort
+        return (
+            effort.gate is not None or effort.works is not None or effort.amount.jumps or effort.amount.sensed
+        )
 
     def energy(self, state: State) -> Number:
         """Potential energy [J] that belongs to its coordinate; of stored efforts alone."""
@@ -51,10 +54,9 @@ class Sorted:
         return -amount.value * x
 
 
-def sorted_efforts(reducer: Reducer) -> tuple[Sorted, ...]:
+def sorted_efforts(mechanism: Mechanism, loads: Sequence[Acting]) -> tuple[Sorted, ...]:
     """The efforts of a mechanism's loads, in the order of the loads."""
-    kinds = [load.kind for load in reducer.ready.mechanism.loads]
-    loads = reducer.burden.loads
+    kinds: list[str] = [load.kind for load in mechanism.loads]
     kinds += ["weight"] * (
         len(loads) - len(kinds)
     )  # those that gravity makes stand behind the described ones
@@ -81,4 +83,4 @@ def formulas_of(efforts: tuple[Sorted, ...]) -> tuple[Sorted, ...]:
 
 def of_time(efforts: tuple[Sorted, ...]) -> bool:
     """Whether a load depends on time."""
-    return any(isinstance(one.effort.amount, Formula) and "t" in one.effort.amount.uses for one in efforts)
+    return any("t" in one.effort.amount.uses for one in efforts)

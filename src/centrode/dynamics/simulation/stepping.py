@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -137,9 +138,9 @@ class Stepper:
     def _loose(self, t: float, value: float) -> float | None:
         """When it breaks loose; the first of evenly spaced instants tells, bisection finds the time."""
         times = np.linspace(t, self.until.time, REST_SCANS)
-        for before, after in zip(times[:-1], times[1:], strict=True):
-            if self.field.leaving(float(after), value) != 0.0:
-                low, high = float(before), float(after)
+        for before, after in pairwise(times.tolist()):
+            if self.field.leaving(after, value) != 0.0:
+                low, high = before, after
                 while high - low > 1e-14 * self.until.time and low < 0.5 * (low + high) < high:
                     middle = 0.5 * (low + high)
                     if self.field.leaving(middle, value) == 0.0:

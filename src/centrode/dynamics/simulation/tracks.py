@@ -16,7 +16,7 @@ import numpy.typing as npt
 from numpy.polynomial import legendre
 
 from centrode.dynamics.quadrature import NODES, resolved
-from centrode.dynamics.simulation.rows import COORDINATE, FORMULAS, INERTIA, SLOPE, Rows
+from centrode.dynamics.simulation.rows import COORDINATE, EACH, FORMULAS, INERTIA, SLOPE, Rows
 from centrode.errors import InputError
 from centrode.locale import _
 
@@ -92,7 +92,7 @@ class Tracks:
         return found
 
     def place(self, value: float, upwards: bool) -> tuple[int, int]:
-        """Number of the stretch on which a value lies, and how many periods before; an edge belongs to what lies ahead."""
+        """Number of the stretch on which a value lies, and of periods before; an edge belongs to what lies ahead."""
         share = (value - self.first) / self.length
         number = floor(share) if upwards else ceil(share) - 1
         if not self.period:
@@ -118,7 +118,7 @@ class Tracks:
         for count in range(1, MOST_PERIOD + 1):
             apart = rows[:, count:] - rows[:, :-count]
             grown = np.zeros(self.rows.count)
-            grown[FORMULAS + COORDINATE :: 3] = apart[FORMULAS + COORDINATE :: 3, 0, 0]
+            grown[FORMULAS + COORDINATE :: EACH] = apart[FORMULAS + COORDINATE :: EACH, 0, 0]
             if np.all(np.abs(apart - grown[:, None, None]) <= SAME * scale[:, None, None]):
                 self._grown = np.where(np.abs(grown) > SAME * scale, grown, 0.0)
                 return tau * count

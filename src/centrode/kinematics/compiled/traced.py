@@ -40,7 +40,7 @@ from centrode.kinematics.residuals import UnitLength, each_residual
 from centrode.kinematics.sampling import ORDERS
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import Span
-from centrode.kinematics.spins import spins_of
+from centrode.kinematics.spins import attitudes_of, spins_of
 from centrode.structure.positions import Positions
 from centrode.structure.wheels import Contact, contact_point
 
@@ -183,6 +183,7 @@ def _solved(parts: _Parts, span: Span, varied: Varied) -> Solved:
         kinematics, layout, parts.columns[0], parts.angles[0], boxed([parameter])[0], EXPRESSIONS
     )
     points = parts.columns[:, : layout.first_attitude]
+    columns = parts.columns.reshape(ORDERS, layout.width, 1, 1)
     worst = _worst(kinematics, at, varied.scale)
     wheels = [c for c in kinematics.structure.constraints if isinstance(c, Contact)]
     contacts = [x for c in wheels for x in contact_point(c, EXPRESSIONS, kinematics.numbers, at)]
@@ -197,7 +198,8 @@ def _solved(parts: _Parts, span: Span, varied: Varied) -> Solved:
         points.reshape(ORDERS, 1, 1, -1, layout.axes),
         parts.angles.reshape(ORDERS, 1, 1, -1),
         parts.columns[:, layout.first_slide : layout.first_rotor].reshape(ORDERS, 1, 1, -1),
-        spins_of(layout, parts.columns.reshape(ORDERS, layout.width, 1, 1)),
+        spins_of(layout, columns),
+        attitudes_of(layout, columns),
         np.full((1, 1), Status.OK, dtype=np.int8),
         boxed([worst]).reshape(1, 1),
         UnitLength(""),

@@ -24,9 +24,9 @@ from centrode.kinematics.solve import Solved
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
 
-ORDERED = frozenset({"all_points", "angles", "slides", "spins"})
+ORDERED = frozenset({"all_points", "angles", "slides", "spins", "attitudes"})
 """Arrays with the derivatives in front."""
-ROOMS = ("all_points", "angles", "slides", "spins", "contacts", "residual")
+ROOMS = ("all_points", "angles", "slides", "spins", "attitudes", "contacts", "residual")
 SINES, RESIDUAL, JUDGED = "sines", "residual", "judged"
 LAST_BITS = (RESIDUAL, JUDGED)
 """Of what is written: what may hang on the last bit of a residual, though no decision does."""
@@ -165,6 +165,7 @@ def solved_of(plan: Solved, found: Mapping[str, Array], status: npt.NDArray[np.i
         angles=found["angles"],
         slides=found["slides"],
         spins=found.get("spins"),
+        attitudes=found.get("attitudes"),
         status=status,
         residual=found["residual"],
         contacts=found["contacts"],

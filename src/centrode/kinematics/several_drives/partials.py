@@ -26,7 +26,7 @@ from centrode.kinematics.paths import JETS, unit_of
 from centrode.kinematics.places import start_of
 from centrode.kinematics.sampling import ORDERS, Judging, fill_columns, fill_number
 from centrode.kinematics.solve import Solved, fit_for
-from centrode.kinematics.spins import spins_of
+from centrode.kinematics.spins import attitudes_of, spins_of
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -135,4 +135,5 @@ def _solved(solved: Solved, columns: Array, angles: Array, absent: Mask) -> Solv
         angles=np.moveaxis(angles, 1, 3),
         slides=np.moveaxis(columns[:, layout.first_slide : layout.first_rotor], 1, 3),
         spins=spins_of(layout, columns),
+        attitudes=attitudes_of(layout, columns),
     )

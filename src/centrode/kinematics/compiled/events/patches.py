@@ -85,8 +85,8 @@ class Patches:
             "contacts": contacts,
             "residual": residual,
         }
-        if room.spins is not None:
-            arrays["spins"] = room.spins
+        if room.spins is not None and room.attitudes is not None:
+            arrays["spins"], arrays["attitudes"] = room.spins, room.attitudes
         return arrays, room.status[:, 0], broken
 
     def _fill_angles(self, samples: Samples, lanes: Lanes, parameter: Array) -> None:
