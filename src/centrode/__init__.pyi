@@ -83,6 +83,9 @@ from .model.simulations import Motor as Motor
 from .dynamics.simulation.simulate import simulate as simulate
 from .dynamics.simulation.regime import steady_regime as steady_regime
 from .dynamics.simulation.regime import Regime as Regime
+from .study.simulating import simulation_rows as simulation_rows
+from .study.simulating import regime_rows as regime_rows
+from .present import simulation_figures as simulation_figures
 
 # Equations in symbols
 from .equations.derivation import equations as equations

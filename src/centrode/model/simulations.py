@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from pydantic import PlainValidator, ValidationInfo, field_validator
@@ -11,6 +12,7 @@ from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
+from centrode.model.driving import Drive
 from centrode.model.part import Part
 from centrode.model.problems import KEY, Problem, shown
 from centrode.model.values import READING, PlaceOfMotion, choice, positive, quantity, read_text, si
@@ -105,13 +107,18 @@ class Motor(Part):
     @property
     def law(self) -> str:
         """Its moment on the drive [N m] as a formula of the drive's speed v [rad/s]."""
-        ratio = repr(self.ratio)
-        slip = f"(1 - {ratio}*v/{self.idle_speed!r})"
+        times = "" if self.ratio == 1.0 else f"{_spelt(self.ratio)}*"
+        slip = f"(1 - {times}v/{_spelt(self.idle_speed)})"
         if self.kind == "linear":
-            return f"{ratio}*{self.starting_moment!r}*{slip}"
+            return f"{times}{_spelt(self.starting_moment)}*{slip}"
         # Kloss: 2 M / (s/k + k/s), written without a pole at s = 0
-        least = repr(self.breakdown_slip)
-        return f"{ratio}*2*{self.breakdown_moment!r}*{least}*{slip}/({slip}^2 + {least}^2)"
+        most = _spelt(self.breakdown_slip)
+        return f"{times}2*{_spelt(self.breakdown_moment)}*{most}*{slip}/({slip}^2 + {most}^2)"
+
+
+def _spelt(value: float | None) -> str:
+    """A number as a formula has it: the shortest digits that read back as the same number."""
+    return repr(value).removesuffix(".0")
 
 
 class Simulation(Part):
@@ -164,6 +171,16 @@ class Simulation(Part):
         if given.get("driving") is not None and given.get("motor") is not None:
             found.append(Problem(_("driving and motor are given together"), _("keep one of them")))
         return found
+
+    @classmethod
+    def for_drives(cls, drives: Sequence[Drive], **values: Any) -> Simulation:
+        """Settings whose numbers with units are read as those of a description with these drives."""
+        kind = drives[0].kind if drives else "angle"
+        token = READING.set(replace(READING.get(), drive_kind=kind, several_drives=len(drives) > 1))
+        try:
+            return cls(**values)
+        finally:
+            READING.reset(token)
 
     @property
     def law(self) -> str:
