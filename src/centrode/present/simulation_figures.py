@@ -41,7 +41,7 @@ def simulation_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[st
     """
     with house_style():
         time = _over(dataset, dataset["time"].to_numpy(), _time_label(), "s")
-        sheets = {
+        sheets: dict[str, tuple[str, list[tuple[str, ...]], Abscissa]] = {
             "simulation-speed": (
                 _("Speed of the drive and what moves it"),
                 [("drive_speed",), ("drive_acceleration",), ("driving_moment", "moment_of_loads")],

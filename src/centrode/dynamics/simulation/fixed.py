@@ -27,9 +27,10 @@ def fixed_steps(
     """The course by equal steps: no step ends at a jump or a standstill, as with any fixed-step scheme."""
     step = duration / steps
     found = np.empty((STATES, steps + 1))
-    y = found[:, 0] = np.array([value, rate, *[0.0] * (STATES - 2)])
-    done, ended = 0, "duration"
-    low, high = -np.inf, np.inf
+    y: States = np.array([value, rate, *[0.0] * (STATES - 2)])
+    found[:, 0] = y
+    done = 0
+    ended: Ending = "duration"
     try:
         for k in range(steps):
             y = _step(field, k * step, y, step)
@@ -45,7 +46,7 @@ def fixed_steps(
         if not done:
             raise
         ended = "interrupted"
-    return course_of(found[:, : done + 1], step, ended, 4 * steps)  # type: ignore[arg-type]
+    return course_of(found[:, : done + 1], step, ended, 4 * steps)
 
 
 def course_of(found: States, step: float, ended: Ending, evaluations: int) -> Course:

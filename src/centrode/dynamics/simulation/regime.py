@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, tau
+from math import floor, inf, tau
 
 import numpy as np
 
@@ -25,6 +25,8 @@ TOLERANCE = 1e-11
 """Relative one of the integration from period to period."""
 SETTLED = 1e-9
 """Change of the speed over a period, relative, at which it has come back."""
+NEUTRAL = 1e-5
+"""A multiplier as near to 1 says that any speed comes back, but for the rounding of its differences."""
 MOST_MAPS = 60
 MOST_STEPS = 60_000
 RUN_IN = 2
@@ -99,6 +101,8 @@ def regime_of(setting: Setting) -> Regime:
     course = maps.course(found)
     slightly = found * (1.0 + 1e-5)
     multiplier = (maps(slightly) - maps(found)) / (slightly - found)
+    if abs(found - speed) > 0.01 * speed and abs(multiplier - 1.0) < NEUTRAL:
+        raise _unsettled(speed, found)  # it went so far that rounding hides how it grows
     return _regime(setting, course, found, multiplier, maps)
 
 
@@ -201,10 +205,14 @@ def _fixed_point(maps: Callable[[float], float], speed: float) -> float:
         if not 0.2 * here < ahead < 5.0 * here:
             ahead = back
         before, missed_before, here = here, missed, ahead
-    raise MotionError(
+    raise _unsettled(speed, here)
+
+
+def _unsettled(first: float, last: float) -> MotionError:
+    return MotionError(
         "[simulation]",
-        _("the speed does not settle: it goes from {first:.6g} to {last:.6g} rad/s over a period").format(
-            first=here, last=here + (missed if np.isfinite(missed) else 0.0)
+        _("the speed does not settle: it goes from {first:.6g} to {last:.6g} rad/s, and on").format(
+            first=first, last=last
         ),
         _("let drive or loads depend on the speed, or give another start"),
     )
@@ -219,7 +227,7 @@ def _regime(setting: Setting, course: Course, speed: float, multiplier: float, m
     sense, period = setting.rows.sense, maps.period
     least, greatest = (_extreme(course, sense, sign) for sign in (-1.0, 1.0))
     ended = course.at(np.array([course.last]))[0][:, 0]
-    time = course.last - course.first
+    time = float(course.last - course.first)
     values = [float(course.at(np.array([t]))[0][VALUE, 0]) for t, _speed in (least, greatest)]
     return Regime(
         round(period / tau),
@@ -243,7 +251,7 @@ def _regime(setting: Setting, course: Course, speed: float, multiplier: float, m
 def _in_turn(value: float, start: float, period: float, sense: float) -> float:
     """A value within one period from the start."""
     turned = sense * (value - start)
-    return start + sense * (turned - period * np.floor(turned / period))
+    return start + sense * (turned - period * floor(turned / period))
 
 
 def _extreme(course: Course, sense: float, sign: float) -> tuple[float, float]:

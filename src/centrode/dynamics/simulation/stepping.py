@@ -137,8 +137,8 @@ class Stepper:
 
     def _loose(self, t: float, value: float) -> float | None:
         """When it breaks loose; the first of evenly spaced instants tells, bisection finds the time."""
-        times = np.linspace(t, self.until.time, REST_SCANS)
-        for before, after in pairwise(times.tolist()):
+        times: list[float] = np.linspace(t, self.until.time, REST_SCANS).tolist()
+        for before, after in pairwise(times):
             if self.field.leaving(after, value) != 0.0:
                 low, high = before, after
                 while high - low > 1e-14 * self.until.time and low < 0.5 * (low + high) < high:

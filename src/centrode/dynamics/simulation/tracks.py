@@ -33,6 +33,9 @@ MOST_PERIOD = 4
 SAME = 1e-9
 LEAST_INERTIA = 1e-9
 """Inertia, over the greatest one, below which the motion is not carried."""
+LOW = 0.05
+"""Share of the greatest inertia below which its minima are looked at."""
+ROUNDS, PARTS = 6, 12
 CHECKED = (-0.97, -0.31, 0.53)
 """Places within each panel, from -1 to 1, at which the series are compared with the reduction itself."""
 _POWERS = np.stack(
@@ -145,15 +148,29 @@ class Tracks:
 
     def _check_inertia(self, places: Array, inertia: Array) -> None:
         """Refuse, with an InputError, a place at which nothing carries the motion."""
-        least = int(np.argmin(inertia))
-        if not inertia[least] > LEAST_INERTIA * float(np.max(inertia)):
+        greatest = float(np.max(inertia))
+        inner = inertia[1:-1]
+        dips = 1 + np.flatnonzero((inner <= inertia[:-2]) & (inner <= inertia[2:]) & (inner < LOW * greatest))
+        found = [self._least_inertia(places[k - 1], places[k + 1]) for k in dips]
+        at, least = min(found, key=lambda one: one[1], default=(self.first, greatest))
+        if not least > LEAST_INERTIA * greatest:
+            what = _(
+                "nothing carries the motion where the drive is at {value:.6g}: the inertia is zero there"
+            )
             raise InputError(
                 "[links]",
-                _(
-                    "nothing carries the motion where the drive is at {value:.6g}: the inertia is zero there"
-                ).format(value=float(places[least])),
+                what.format(value=at),
                 _("give the driven link an inertia, or [[machine.shafts]]"),
             )
+
+    def _least_inertia(self, low: float, high: float) -> tuple[float, float]:
+        """Place and value of the least inertia between two places, by cutting ever finer."""
+        for _round in range(ROUNDS):
+            places = np.linspace(low, high, PARTS + 1)
+            inertia = self.rows.at(places)[INERTIA]
+            best = int(np.argmin(inertia))
+            low, high = float(places[max(best - 1, 0)]), float(places[min(best + 1, PARTS)])
+        return float(places[best]), float(inertia[best])
 
     def _look_for_limits(self, low: float, high: float) -> None:
         """Learn where the motion ends: at limits, and where it has no derivatives for another reason."""
