@@ -47,10 +47,15 @@ def burdened(parts: Parts, seed: int) -> Parts:
         {"kind": "damper", "points": pair, "damping": 3.0},
         {"kind": "spring", "link": some(links), "stiffness": 2.0, "free_angle": 0.4},
         {"kind": "damper", "link": links[0], "damping": 0.8, "relative_to": some(other)},
+        {"kind": "friction", "link": links[0], "relative_to": some(other), "value": 0.6, "quadratic": 0.1},
         {"kind": "weight", "point": some(moving), "value": 6.0},
         *[
-            {"kind": "force", "guide": guide["name"], "value": "1.5 - 0.5*x + 0.2*v"}
+            load
             for guide in parts["guides"][:1]
+            for load in (
+                {"kind": "force", "guide": guide["name"], "value": "1.5 - 0.5*x + 0.2*v"},
+                {"kind": "friction", "guide": guide["name"], "value": 1.1, "viscous": 0.3},
+            )
         ],
     ]
     parts["gravity"] = list(GRAVITY)
@@ -101,6 +106,8 @@ def _power(load: Any, data: xr.Dataset) -> Array:
         return dot(load.value * unit, point(data, load.point, "velocity"))
     if load.guide is not None:
         x, v = slide(data, load.guide), slide(data, load.guide, "slide_velocity")
+        if load.kind == "friction":
+            return np.asarray(-1.1 * abs(v) - 0.3 * v**2)
         return np.asarray((1.5 - 0.5 * x + 0.2 * v) * v)
     if load.kind == "force":
         return _power_of_force(load, data)
@@ -113,6 +120,7 @@ def _power(load: Any, data: xr.Dataset) -> Array:
         "torque": 0.2 * x - 0.1 * v,
         "spring": -2.0 * (x - 0.4),
         "damper": -0.8 * v,
+        "friction": -0.6 * np.sign(v) - 0.1 * v * abs(v),
     }[load.kind]
     return np.asarray(moment * v)
 

@@ -63,10 +63,14 @@ def test_files_of_others_in_the_folder_are_not_counted(centrode: Centrode, compr
     assert (compressor / "made" / "notes.txt").read_text() == "mine"
 
 
-def test_a_sphere_without_a_machine_has_none_to_leave_out(centrode: Centrode) -> None:
+def test_a_spherical_machine(centrode: Centrode, folder: Path) -> None:
+    machine = "\n[machine]\nmean_speed = 2.94\nfluctuation = 0.05\n"
+    (folder / "s.toml").write_text(ct.example_text("spherical-crank-rocker-rigid") + machine)
+    said = centrode("flywheel", "s.toml").rows
+    assert said["work of the loads"].startswith("-11.7352 J a cycle")
     done = centrode("flywheel", "spherical-four-bar")
     assert (done.code, done.out) == (2, "")
-    assert "steady motion on the sphere is not computed yet; describe a plane one" in done.err
+    assert "[machine]: it is missing" in done.err
 
 
 def test_the_mean_in_time(centrode: Centrode, compressor: Path) -> None:
@@ -157,7 +161,7 @@ def test_a_run_that_locks_leaves_the_machine_out(centrode: Centrode, folder: Pat
 
 
 def test_friction_leaves_the_machine_out(centrode: Centrode, folder: Path) -> None:
-    (folder / "m.toml").write_text(GIVEN + '\n[[loads]]\nkind = "friction"\nguide = "B"\nvalue = 3\n')
+    (folder / "m.toml").write_text(GIVEN + '\n[[loads]]\nkind = "friction"\nguide = "B"\ncoefficient = 0.1\n')
     done = centrode("run", "m.toml", "--out", "r", "--no-figures")
     assert done.code == 0
     assert "note: the machine is left out: friction" in done.out
@@ -230,7 +234,7 @@ def test_machines_of_nothing_and_of_too_much(centrode: Centrode, folder: Path) -
         + "[machine]\nmean_speed = 1\nfluctuation = 0.1\n",
         "steady motion needs a drive that turns": ct.mechanism_text(ct.example("elliptic-trammel"))
         + "[machine]\nmean_speed = 1\nfluctuation = 0.1\n",
-        "steady motion on the sphere is not computed yet": ct.mechanism_text(ct.example("spherical-four-bar"))
+        "neither masses nor loads to reduce": ct.mechanism_text(ct.example("spherical-four-bar"))
         + "[machine]\nmean_speed = 1\nfluctuation = 0.1\n",
     }
     for message, text in cases.items():

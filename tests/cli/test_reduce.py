@@ -126,9 +126,9 @@ def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
         ),
         (("[study]", '[[loads]]\nkind = "torque"\nlink = "OA"\nvalue = "w"\n[study]'), (), "unknown name"),
         (
-            ("[study]", '[[loads]]\nkind = "friction"\nlink = "OA"\nvalue = 1\n[study]'),
+            ("[study]", '[[loads]]\nkind = "friction"\nlink = "OA"\ncoefficient = 0.1\n[study]'),
             (),
-            "not computed yet",
+            "friction by a coefficient needs the reactions",
         ),
     ],
 )
@@ -156,3 +156,24 @@ def test_a_run_without_a_machine_says_where_loads_are(centrode: Centrode, tmp_pa
     done = centrode("run", file, "--samples", 5, "--no-figures")
     assert done.code == 0
     assert "centrode reduce" in done.out
+
+
+def test_the_sphere(centrode: Centrode, folder: Path) -> None:
+    """The thesis's crank-rocker: parts by link and load, tables and figures."""
+    done = centrode("reduce", "spherical-crank-rocker-rigid", "--out", "result", "--samples", "37")
+    assert done.code == 0, done
+    assert "links with mass        AB, BC, DC" in done.out
+    assert "friction B" in done.out
+    assert (folder / "result" / "reduction.csv").read_text().splitlines()[0].count("friction") == 4
+    assert (folder / "result" / "reduced-inertia.png").is_file()
+
+
+def test_a_tensor_of_no_body_ends_with_2(centrode: Centrode, folder: Path) -> None:
+    text = ct.example_text("spherical-crank-rocker-rigid").replace(
+        'shape = "arc"', "inertia = [1, 1, 3]\ncentre = 'C'"
+    )
+    (folder / "s.toml").write_text(text)
+    for command in ("check", "reduce", "run"):
+        done = centrode(command, "s.toml")
+        assert done.code == 2
+        assert "no body has the principal moments 1, 1, 3" in done.err

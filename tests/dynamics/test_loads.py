@@ -63,6 +63,9 @@ def close(found: Any, exact: Any, size: float) -> None:
         ({"kind": "force", "point": "A", "vector": ["1", "t*q"]},
          lambda q: 0.8 * (-np.sin(q) + q / 2 * q * np.cos(q))),
         ({"kind": "torque", "link": "OA", "value": "3 - 0.5*v**2 + x"}, lambda q: 1.0 + q),
+        ({"kind": "friction", "link": "OA", "value": 3}, lambda q: -3 + 0 * q),
+        ({"kind": "friction", "link": "OA", "viscous": 3}, lambda q: -6 + 0 * q),
+        ({"kind": "friction", "link": "OA", "value": "2 + q**2", "quadratic": 3}, lambda q: -14 - q**2),
         ({"kind": "spring", "link": "OA", "stiffness": 4, "free_angle": 0.5}, lambda q: -4 * (q - 0.5)),
         ({"kind": "damper", "link": "OA", "damping": 1.5}, lambda q: -3.0 + 0 * q),
         ({"kind": "weight", "point": "A", "value": 7}, lambda q: -7 * 0.8 * np.cos(q)),
@@ -230,6 +233,60 @@ def test_wrong_loads_are_refused(load: dict[str, Any], reason: str) -> None:
 def test_negative_masses_are_refused(key: str) -> None:
     with pytest.raises(ct.InputError, match=f"{key} must not be negative"):
         crank(link={key: -1})
+
+
+def test_friction_in_a_guide() -> None:
+    """Dry friction always takes away, whichever way the block goes; its moment has a kink where the block turns."""
+    rubbing = slider({"kind": "friction", "guide": "H", "value": 7, "viscous": 2, "quadratic": 5})
+    reducer = Reducer.of(rubbing)
+    for rate in (2.0, -1.5):
+        slope = -0.5 * np.sin(VALUES)
+        power = -7 * abs(slope * rate) - 2 * (slope * rate) ** 2 - 5 * abs(slope * rate) ** 3
+        close(rate * reducer.at(VALUES, rate=rate).moment, power, 10)
+    close(reducer.jumps(-1.0, 7.0), [0.0, math.pi, 2 * math.pi], 8)
+    turning = reducer.jumps(1.0, 4.0)
+    for side in (-1, 0, 1):
+        close(reducer.at(turning, side=side).moment, 0.0, 10)
+
+
+def test_dry_friction_needs_a_sense_but_no_speed() -> None:
+    swing = ct.Mechanism(
+        frame=FRAME,
+        links={"OA": CRANK},
+        drives=[{"link": "OA", "law": "0.8*sin(t)"}],
+        loads=[{"kind": "friction", "link": "OA", "value": 2}],
+        study={"to": 3},
+    )
+    close(ct.reduce(swing, samples=7).reduced_moment, -2 * np.sign(np.cos(np.linspace(0, 3, 7))), 2)
+    reducer = Reducer.of(swing)
+    close(reducer.at([0.1]).moment, -2.0, 2)
+    close(reducer.at([0.1], rate=-1).moment, 2.0, 2)
+    assert reducer.at([0.1], rate=0.0).moment == 0.0  # nothing slides
+
+
+def test_the_plain_sum_takes_squares_from_the_drive() -> None:
+    """As a source does for a hinge of the plane as well: -a v^2, whatever the hinge's own coefficient."""
+    four = ct.example("crank-rocker")
+    link, drive = list(four.links)[-1], four.drives[0].link
+    loads = [
+        {"kind": "friction", "link": link, "quadratic": 0.3, "form": form}
+        for form in ("plain sum", "virtual work")
+    ]
+    found = Reducer.of(
+        ct.Mechanism(
+            frame=four.frame,
+            links=four.links,
+            drives=four.drives,
+            assembly=four.assembly,
+            guides=four.guides,
+            loads=loads,
+        )
+    ).at(VALUES, rate=2.0)
+    motion = ct.motion(four, at=VALUES)
+    slope = motion.angular_velocity_coefficient.sel(link=link).to_numpy()
+    assert drive != link
+    close(found.moment_parts[0], -0.3 * 4 * slope**2, 10)
+    close(found.moment_parts[1], -0.3 * 4 * abs(slope) ** 3, 10)
 
 
 def test_friction_by_a_coefficient_is_not_computed_yet() -> None:

@@ -47,6 +47,48 @@ def test_the_press_over_masses_and_lengths(executor: str) -> None:
             assert swept[name].attrs["units"] == one[name].attrs["units"]
 
 
+SPHERICAL = {
+    "links.AB.length": [0.26, 0.3, 0.2],
+    "links.BC.mass": [1.0, 0.5, 2.0],
+    "links.DC.radius": [0.02, 0.05, 0.01],
+    "links.DC.centre.longitude": [0.3, 0.1, 0.2],
+    "links.DC.centre_radius": [0.4, 0.2, 0.3],
+    "links.BC.length": [0.9, 1.0, 0.8],
+}
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
+def test_the_sphere(executor: str) -> None:
+    """Arcs and discs follow their dimensions, tensors stay; loads of every kind that machine code knows."""
+    rocker = ct.Mechanism(
+        space="sphere",
+        radius=0.5,
+        gravity=[0.1, 2.0, -9.81],
+        frame={"points": {"A": [1, 0, 0], "D": [0, 1, 0], "Z": [0, 0, 1]}},
+        links={
+            "AB": {"length": 0.26, "reference": ["A", "D"], "mass": 2, "centre": "B", "inertia": [0.1, 0.2, 0.15]},
+            "BC": {"length": 0.9, "mass": 1, "shape": "arc"},
+            "DC": {"length": 1.5, "reference": ["D", "Z"], "mass": 3, "shape": "disc", "radius": 0.02,
+                   "centre": [0.3, 0.1], "centre_radius": 0.4},
+        },
+        drives=[{"link": "AB", "start": 0.1, "speed": 2}],
+        assembly={"sides": {"C": "left"}},
+        loads=[
+            {"kind": "friction", "link": "BC", "relative_to": "DC", "value": 0.3, "viscous": 0.2, "quadratic": 0.1},
+            {"kind": "friction", "link": "DC", "quadratic": 0.1, "form": "plain sum"},
+            {"kind": "force", "point": "C", "vector": ["x", "-v", 2], "axes": "BC"},
+            {"kind": "spring", "points": ["A", "C"], "stiffness": 20},
+            {"kind": "spring", "link": "DC", "stiffness": 2},
+        ],
+    )  # fmt: skip
+    swept = ct.sweep(rocker, SPHERICAL, OUTPUTS, samples=13, executor=executor)
+    assert swept.attrs["executor"] == executor
+    for k, one in enumerate(one_by_one(rocker, SPHERICAL, 13)):
+        for name in OUTPUTS:
+            size = float(abs(one[name]).max())
+            assert float(abs(swept[name][k] - one[name]).max()) <= 256 * EPS * size
+
+
 @pytest.mark.parametrize("executor", EXECUTORS)
 def test_rods_and_discs_follow_their_dimensions(executor: str) -> None:
     bar = ct.Mechanism(

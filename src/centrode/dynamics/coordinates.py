@@ -39,53 +39,6 @@ class Turn:
 
 
 @dataclass(frozen=True)
-class Spin:
-    """On the sphere: turning of a link against another about an axis, a hinge or a direction of the frame.
-
-    Attributes
-    ----------
-    axis : a point's name, or components in the frame's axes
-    joint : str or None
-        The link whose joint angle this is, where one is measured in this hinge; `sense` tells which way.
-    """
-
-    link: str
-    base: str
-    axis: str | tuple[float, ...]
-    joint: str | None = None
-    sense: float = 1.0
-
-    def value(self, state: State) -> Number:
-        if self.joint is None:
-            return float("nan")
-        return self.sense * state.angle(self.joint).value
-
-    def slope(self, state: State) -> Jet:
-        along = [x.lowered() for x in self._axis(state)]
-        pairs = zip(state.spin(self.link), state.spin(self.base), along, strict=True)
-        parts = [(own - other) * axis for own, other, axis in pairs]
-        return sum(parts[1:], parts[0])
-
-    def _axis(self, state: State) -> Place:
-        if isinstance(self.axis, str):
-            unit = 1.0 / state.mechanism.sphere_radius
-            return tuple(x * unit for x in state.point(self.axis))
-        size = hypot(*self.axis)
-        return tuple(Jet((x / size, 0.0, 0.0)) for x in self.axis)
-
-
-@dataclass(frozen=True)
-class Travel:
-    """How far the drive has gone, whichever way: what works along it resists the drive itself."""
-
-    def value(self, state: State) -> Number:
-        return float("nan")
-
-    def slope(self, state: State) -> Jet:
-        return Jet((state.m.base.sign(state.rate), 0.0))
-
-
-@dataclass(frozen=True)
 class Slide:
     """Displacement along a guide."""
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.bodies import About
 from centrode.dynamics.inertia import coordinates_of as speeds_of
 from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import Moving, State
@@ -38,6 +39,7 @@ def reduced_to_several(solved: Solved, burden: Burden) -> xr.Dataset:
     phi_ij phi_k, Q_i = sum F . r_i. Raises InputError for a load whose formula names the drive's value.
     """
     _refuse_drive_in_formulas(burden)
+    _refuse_rings(burden)
     _check_size(solved, burden)
     found = partials(solved)
     directions = _Directions.of(found, solved)
@@ -65,6 +67,13 @@ def _refuse_drive_in_formulas(burden: Burden) -> None:
         if any("q" in effort.amount.uses for effort in load.efforts):
             what = _("its formula names q, and there are several drives")
             raise InputError(load.where, what, _("write it with t, x and v"))
+
+
+def _refuse_rings(burden: Burden) -> None:
+    for mass in burden.masses:
+        if isinstance(mass.inertia, tuple) and any(isinstance(part, About) for part in mass.inertia):
+            what = _("a ring and point mass belongs to mechanisms with one drive")
+            raise InputError(f"[links.{mass.link}] model", what, _("give the link's tensor of inertia"))
 
 
 def _check_size(solved: Solved, burden: Burden) -> None:

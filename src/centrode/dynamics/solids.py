@@ -74,8 +74,9 @@ class Reader:
         """Where the mass is."""
         if self.link.shape == "arc":
             return self._middle()
-        own = self.link.centre_radius
-        return Radial(self.name, self._direction(), self.sphere_radius if own is None else float(own))
+        given = self.link.centre_radius
+        distance = self.sphere_radius if given is None else self.number("centre_radius", given)
+        return Radial(self.name, self._direction(), distance)
 
     def _direction(self) -> Vector3:
         """Direction of the centre of mass in the link's own axes."""

@@ -17,7 +17,7 @@ from centrode.dynamics.mixing import Mixing
 from centrode.dynamics.quadrature import Array
 from centrode.dynamics.reducing import reduction_of
 from centrode.dynamics.speeds import Speed, Tangents, tangents, with_fluctuation, with_inertia
-from centrode.errors import InputError, MotionError, NotComputedYet
+from centrode.errors import InputError, MotionError
 from centrode.kinematics.ready import Ready, ready
 from centrode.locale import _
 from centrode.model.machines import DRIVING_VARIABLES, Machine
@@ -127,12 +127,6 @@ def in_other_mean(found: Solution, kind: Mean) -> Solution:
 
 
 def _machine(mechanism: Mechanism) -> Machine:
-    if mechanism.space == "sphere":
-        raise NotComputedYet(
-            "space",
-            _("steady motion on the sphere is not computed yet"),
-            _("describe a plane one") if mechanism.machine is None else _("leave out [machine]"),
-        )
     if mechanism.machine is None:
         raise InputError(
             "[machine]", _("it is missing"), _('give mean_speed = "65 rpm" and fluctuation = 0.05')

@@ -71,6 +71,8 @@ def kind_at(mechanism: Mechanism, path: str) -> str:
             if angular
             else {"start": "length"}.get(key, key)
         )
+    if words[0] == "links" and key in ("radius", "centre_radius"):
+        return "length"
     if key in ("length", "radius"):
         return "arc" if on_sphere else "length"
     coordinates = {"x": "length", "y": "length", "longitude": "angle", "latitude": "angle"}
@@ -120,7 +122,7 @@ def _unknown(path: str, word: str, known: list[str]) -> InputError:
 
 
 _NUMBERS = {
-    "links": ("length", "angle", "mass", "inertia", "radius"),
+    "links": ("length", "angle", "mass", "inertia", "radius", "centre_radius"),
     "guides": ("direction", "angle", "radius"),
     "gears": ("ratio",),
     "rolling": ("radius",),

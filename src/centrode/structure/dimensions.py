@@ -160,7 +160,8 @@ def dimensions_of(
 
 def _paths_of_masses(mechanism: Mechanism) -> set[str]:
     """Paths of numbers that a motion does not depend on."""
-    keys = ("mass", "inertia", "radius", "centre.x", "centre.y")
+    axes = SPHERE.coordinates if mechanism.space == SPHERE.name else ("x", "y")
+    keys = ("mass", "inertia", "radius", "centre_radius", *(f"centre.{axis}" for axis in axes))
     return {f"links.{name}.{key}" for name in mechanism.links for key in keys}
 
 

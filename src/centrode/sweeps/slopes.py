@@ -165,7 +165,7 @@ def by(name: str, path: str) -> str:
 def _of_a_mass(path: str) -> bool:
     """Whether a path is that of a mass, which no dimension of the plan is."""
     room, *_name, last = path.split(".")
-    return room == "links" and (last in ("mass", "inertia", "radius") or ".centre." in path)
+    return room == "links" and (last in ("mass", "inertia", "radius", "centre_radius") or ".centre." in path)
 
 
 def _through(path: str, varied: Varied) -> Through:

@@ -19,6 +19,8 @@ from centrode.sweeps import limits
 Array: TypeAlias = npt.NDArray[np.float64]
 
 _ALONG = frozenset({"x", "y", "length", "radius"})
+_METRES = frozenset({"radius", "centre_radius"})
+"""Of links: lengths on the sphere too."""
 _MASSES = frozenset({"mass", "inertia"})
 _ANGLES = frozenset({"direction", "angle", "longitude", "latitude"})
 
@@ -29,7 +31,9 @@ def kind_of(mechanism: Mechanism, path: str) -> str:
         value_at(mechanism, path)
     except InputError as error:
         raise InputError("vary", error.what, error.repair) from None
-    word = path.rpartition(".")[2]
+    room, word = path.partition(".")[0], path.rpartition(".")[2]
+    if word in _METRES and room == "links":
+        return "length"
     if word in _ALONG:
         return "length" if mechanism.space == "plane" else "arc"
     if word in _MASSES:
