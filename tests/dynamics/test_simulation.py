@@ -11,6 +11,7 @@ import scipy.optimize
 import scipy.special
 
 import centrode as ct
+from centrode.dynamics.reducer import Reducer
 from simulated import crank_rocker, pendulum, rotor, sledge, spherical
 
 TIGHT = 1e-12
@@ -241,6 +242,39 @@ def test_the_sphere_against_its_closed_forms() -> None:
         rates, (0, 6), [0.0, 0.0], "DOP853", found.time.values, rtol=1e-11, atol=1e-11
     )
     assert found.drive_speed.values == pytest.approx(other.y[1], abs=1e-8)
+
+
+PLAIN = """
+[[loads]]
+kind = "friction"
+link = "DB"
+viscous = 0.3
+quadratic = 0.2
+[[loads]]
+kind = "spring"
+link = "DB"
+stiffness = 2
+free_angle = 1.5
+"""
+
+
+@pytest.mark.parametrize("mechanism", [crank_rocker(PLAIN), ct.example("spherical-crank-rocker-rigid")])
+def test_another_integration_of_the_reduction(mechanism: ct.Mechanism) -> None:
+    """The reduction asked at every instant, in place of its series and formulas; smooth loads, no events."""
+    reducer = Reducer.of(mechanism)
+
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        at = reducer.at([y[0]], [y[1]], time=[t])
+        moment = at.moment[0] + 1.5 - 0.3 * y[1] + math.sin(4 * t)
+        return [y[1], float((moment - 0.5 * at.inertia_slope[0] * y[1] ** 2) / at.inertia[0])]
+
+    start = reducer.ready.kinematics.path.initial
+    other = scipy.integrate.solve_ivp(rates, (0, 0.6), [start, 2.0], "DOP853", rtol=1e-10, atol=1e-11)
+    settings = ct.Simulation(driving="1.5 - 0.3*v + sin(4*t)", speed=2, duration=0.6, tolerance=TIGHT)
+    found = ct.simulate(mechanism, settings)
+    reach = grown(1e-10, other.nfev)
+    assert float(found.drive_value[-1, 0]) == pytest.approx(other.y[0, -1], abs=reach)
+    assert float(found.drive_speed[-1]) == pytest.approx(other.y[1, -1], abs=reach)
 
 
 def test_coulomb_friction_stops_a_sledge() -> None:

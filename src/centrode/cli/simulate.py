@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-import numpy as np
 
 import centrode as ct
 from centrode.cli import output
@@ -116,7 +115,7 @@ def _regime(
     angular = description.drives[0].kind == "angle"
     if not angular or found.attrs["ended"] not in ("duration", "turns"):
         return []
-    if not float(np.max(found["turned"].to_numpy())) >= tau:
+    if not float(found["turned"].to_numpy().max()) >= tau:
         return []
     try:
         return ct.regime_rows(description, ct.steady_regime(description, settings))

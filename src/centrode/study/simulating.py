@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     import xarray
 
 Rows: TypeAlias = list[tuple[str, str]]
+NOTHING = 1e-6
+"""A multiplier below this is rounding of the map's differences."""
 SHOWN = 8
 """Occasions that are told one by one."""
 
@@ -53,6 +55,8 @@ def regime_rows(mechanism: Mechanism, regime: Regime) -> Rows:
         speed=regime.greatest_speed, value=value_text(regime.greatest_at, "rad", mechanism.display)
     )
     dies = _("{share:.3g} of a deviation is left after a period").format(share=regime.multiplier)
+    if abs(regime.multiplier) < NOTHING:
+        dies = _("nothing of a deviation is left after a period")
     if regime.multiplier > 1.0 - 1e-4:
         dies = _("a deviation of the speed does not die away")
     return [
