@@ -5,7 +5,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 DEMO := slider-between-cranks
-WITHOUT_EXTRAS := tests/algebra tests/sweeps tests/kinematics/test_many.py tests/cli/test_sweep.py
+WITHOUT_EXTRAS := tests/algebra tests/sweeps tests/kinematics/test_many.py tests/cli/test_sweep.py \
+	tests/dynamics/test_simulation_schemes.py
 
 # A stamp is newer than pyproject.toml when what it stands for is installed.
 BASE := $(VENV)/.stamp-base

@@ -77,6 +77,16 @@ from .study.machines import flywheel_rows as flywheel_rows
 from .study.machines import flywheel_scalars as flywheel_scalars
 from .present import machine_figures as machine_figures
 
+# Motion under loads and a drive
+from .model.simulations import Simulation as Simulation
+from .model.simulations import Motor as Motor
+from .dynamics.simulation.simulate import simulate as simulate
+from .dynamics.simulation.regime import steady_regime as steady_regime
+from .dynamics.simulation.regime import Regime as Regime
+from .study.simulating import simulation_rows as simulation_rows
+from .study.simulating import regime_rows as regime_rows
+from .present import simulation_figures as simulation_figures
+
 # Equations in symbols
 from .equations.derivation import equations as equations
 from .present import equations_text as equations_text

@@ -57,7 +57,10 @@ def test_every_variable_of_a_motion_is_named() -> None:
     transmission = ("transmission_angle", "pressure_angle")
     integrated = ("drift", "angle_difference", "position_difference")
     known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
-    known |= set(reduced) | set(steady)
+    simulated = ["inertia", "moment_of_friction", "power_of_drive", "power_of_loads", "work_of_friction"]
+    simulated += ["work_of_other_loads", "kinetic_energy", "potential_energy", "energy_residual"]
+    simulated += [f"occasion_{name}" for name in ("time", "value", "kind")]
+    known |= set(reduced) | set(steady) | set(simulated)
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

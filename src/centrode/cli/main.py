@@ -32,6 +32,7 @@ from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
 from centrode.cli.schema import schema
+from centrode.cli.simulate import simulate
 from centrode.cli.sweep import sweep
 from centrode.cli.translation import language_option, translated, wished_language, with_language
 from centrode.cli.variants import variants
@@ -50,6 +51,7 @@ COMMANDS: tuple[click.Command, ...] = (
     limits,
     region,
     flywheel,
+    simulate,
     centres,
     centrodes,
     diagrams,

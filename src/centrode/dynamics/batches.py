@@ -77,10 +77,15 @@ def _moving(solved: Solved, burden: Burden) -> Moving:
 
 def _state_of_nodes(solved: Solved, burden: Burden) -> State:
     """The state at the one sample of a traced motion."""
-    if any(isinstance(effort.amount, Diagram) for load in burden.loads for effort in load.efforts):
-        raise Untraceable(mark("indicator diagrams"))
     boxes = _moving(solved, burden)
     moving = Moving(*(np.asarray(x).ravel()[0] for x in (boxes.time, boxes.parameter, boxes.rate)))
+    return state_of_nodes(solved, burden, moving)
+
+
+def state_of_nodes(solved: Solved, burden: Burden, moving: Moving) -> State:
+    """The same with time, parameter and rate as they are given."""
+    if any(isinstance(effort.amount, Diagram) for load in burden.loads for effort in load.efforts):
+        raise Untraceable(mark("indicator diagrams"))
     path, mechanism = solved.ready.kinematics.path, solved.ready.mechanism
     return State(
         mechanism,

@@ -16,6 +16,7 @@ from centrode.dynamics.loads import Acting, loads_of
 from centrode.dynamics.masses import Given, Mass, masses_of
 from centrode.dynamics.states import Moving, State
 from centrode.errors import InputError
+from centrode.kinematics.branches import Event
 from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.spans import is_uniform
@@ -193,6 +194,19 @@ class Reducer:
             values,
             np.broadcast_to(np.asarray(speed, dtype=np.float64), values.shape),
         )
+
+    def state(self, values: Array, moving: Moving, side: int = 0) -> tuple[State, npt.NDArray[np.int8]]:
+        """Positions with their derivatives at values of the drive, and their statuses (n)."""
+        return self._state(values, moving, side)
+
+    def reach(self, first: float, last: float) -> tuple[float, float]:
+        """Nearest limits on both sides of the initial position; infinite where none lies between two values."""
+        return self._along(np.array([first, last])).continuation.branches.reach(0)
+
+    def events(self, first: float, last: float) -> list[Event]:
+        """Limits and change points between two values of the drive."""
+        found = self._along(np.array([first, last])).continuation.branches.events
+        return [event for event in found if first <= event.at <= last]
 
     def _along(self, values: Array) -> Places:
         """Places on a stretch of the path with all these values, whose events are known."""

@@ -23,6 +23,7 @@ from centrode.model.names import FRAME, two_points
 from centrode.model.pairs import Gear, Guide, Rolling
 from centrode.model.part import Part
 from centrode.model.problems import nearest, shown
+from centrode.model.simulations import Simulation
 from centrode.model.values import (
     READING,
     Placed,
@@ -70,6 +71,7 @@ class Description(Part):
     assembly: Assembly = Assembly()
     loads: Annotated[tuple[Load, ...], listed(limits.LOADS)] = ()
     machine: Machine | None = None
+    simulation: Simulation | None = None
     study: Study = Study()
 
     @model_validator(mode="wrap")

@@ -17,6 +17,7 @@ from centrode.model.names import FRAME
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.placing import resolved
 from centrode.model.problems import Problems
+from centrode.model.simulations import Simulation
 from centrode.model.values import Placed, Vector
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "Mechanism",
     "Placed",
     "Rolling",
+    "Simulation",
     "Study",
     "Track",
     "Vector",
@@ -60,6 +62,7 @@ class Mechanism(Description):
     guides, gears, rolling, drives, loads : tuples
     assembly : Assembly
     machine : Machine or None
+    simulation : Simulation or None
     study : Study
 
     Raises

@@ -15,6 +15,7 @@ from centrode.model.machines import SHAFTS, FlywheelShape, Machine, Shaft
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.part import Part
 from centrode.model.segments import Segment
+from centrode.model.simulations import MOST_STEPS, SCHEMES, Motor, Simulation
 from centrode.model.units import KINDS as QUANTITIES
 
 Schema = dict[str, Any]
@@ -171,6 +172,26 @@ PROPERTIES: dict[type[Part], Schema] = {
         "inner": _quantity("ratio"),
         "rim_speed": _above_zero("speed"),
     },
+    Motor: {
+        "kind": {"enum": ["linear", "asynchronous"]},
+        "idle_speed": _above_zero("angular speed"),
+        "starting_moment": _above_zero("torque"),
+        "breakdown_moment": _above_zero("torque"),
+        "breakdown_slip": _above_zero("ratio"),
+        "ratio": _above_zero("ratio"),
+    },
+    Simulation: {
+        "start": _AMOUNT,
+        "speed": _AMOUNT,
+        "driving": {**_TEXT, "description": "a formula in t [s], q and v"},
+        "motor": _ref(Motor),
+        "duration": _above_zero("time"),
+        "turns": _above_zero("ratio"),
+        "scheme": {"enum": list(SCHEMES)},
+        "steps": {"type": "integer", "minimum": 1, "maximum": MOST_STEPS},
+        "tolerance": _above_zero("ratio"),
+        "samples": {"type": "integer", "minimum": 2, "maximum": limits.SAMPLES},
+    },
     Study: {
         "samples": {"type": "integer", "minimum": 1, "maximum": limits.SAMPLES},
         "instants": _list(_AMOUNT, 0, limits.INSTANTS),
@@ -192,6 +213,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "assembly": _ref(Assembly),
         "loads": _list(_ref(Load), 0, limits.LOADS),
         "machine": _ref(Machine),
+        "simulation": _ref(Simulation),
         "study": _ref(Study),
     },
 }

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
+    from centrode.present.simulation_figures import simulation_figures
     from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
@@ -60,6 +61,7 @@ __all__ = [
     "region_figure",
     "save_figures",
     "scene_of",
+    "simulation_figures",
     "sweep_csv",
     "write_centres_csv",
     "write_centrodes_csv",
@@ -97,6 +99,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "saving": ["save_figures"],
+        "simulation_figures": ["simulation_figures"],
         "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],

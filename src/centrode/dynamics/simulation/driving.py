@@ -1,0 +1,46 @@
+"""What drives: a formula of time, value and speed of the drive, over numbers, arrays and expressions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from centrode.algebra.text import SCALARS, TextFormula, compile_formula
+from centrode.model.simulations import DRIVING_LAW_VARIABLES, Simulation
+
+Number: TypeAlias = Any
+NAN = float("nan")
+
+
+@dataclass(frozen=True)
+class Driving:
+    """Moment [N m or N] of a drive; `sense` is +1.0 or -1.0, that of the drive, in which the formula counts."""
+
+    formula: TextFormula
+    sense: float
+
+    @classmethod
+    def of(cls, settings: Simulation, sense: float) -> Driving:
+        """The drive that a simulation asks for."""
+        return cls(compile_formula(settings.law, DRIVING_LAW_VARIABLES, "[simulation] driving"), sense)
+
+    @property
+    def of_time(self) -> bool:
+        """Whether it depends on time."""
+        return "t" in self.formula.used
+
+    @property
+    def of_speed(self) -> bool:
+        """Whether it depends on the speed."""
+        return "v" in self.formula.used
+
+    def over(self, m: Any, t: Number, q: Number, rate: Number) -> Number:
+        """Generalised force at a rate of the drive's value, over any algebra."""
+        return self.sense * self.formula(m, t=t, q=q, v=self.sense * rate)
+
+    def at(self, t: float, q: float, rate: float) -> float:
+        """The same of plain numbers; NaN where the formula has no value."""
+        try:
+            return float(self.over(SCALARS, t, q, rate))
+        except (ArithmeticError, ValueError):
+            return NAN

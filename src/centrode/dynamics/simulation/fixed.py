@@ -1,0 +1,93 @@
+"""The classical Runge-Kutta scheme of fourth order with equal steps, as the source integrates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from centrode.dynamics.simulation.course import STATES, VALUE, Course, Ending, Occasion, Piece
+from centrode.dynamics.simulation.course import Array as States
+from centrode.dynamics.simulation.field import Field
+from centrode.errors import MotionError
+from centrode.locale import _
+
+TOLD = 256
+"""Steps after which it is told how far it is."""
+
+
+def fixed_steps(
+    field: Field,
+    value: float,
+    rate: float,
+    duration: float,
+    steps: int,
+    tell: Callable[[float], None] | None = None,
+) -> Course:
+    """The course by equal steps: no step ends at a jump or a standstill, as with any fixed-step scheme."""
+    step = duration / steps
+    found = np.empty((STATES, steps + 1))
+    y: States = np.array([value, rate, *[0.0] * (STATES - 2)])
+    found[:, 0] = y
+    done = 0
+    ended: Ending = "duration"
+    try:
+        for k in range(steps):
+            y = _step(field, k * step, y, step)
+            low, high = field.tracks.low, field.tracks.high
+            if not np.isfinite(y).all() or not low <= y[VALUE] <= high:
+                ended = "limit"
+                break
+            done = k + 1
+            found[:, done] = y
+            if tell is not None and done % TOLD == 0:
+                tell(done / steps)
+    except KeyboardInterrupt:
+        if not done:
+            raise
+        ended = "interrupted"
+    return course_of(found[:, : done + 1], step, ended, 4 * steps)
+
+
+def course_of(found: States, step: float, ended: Ending, evaluations: int) -> Course:
+    """States (STATES, steps + 1) at even times as a course; between two steps the nearer one."""
+    count = found.shape[1] - 1
+    if ended == "limit" and count == 0:
+        raise MotionError(
+            "[simulation]",
+            _("the first step leads beyond a limit"),
+            _("ask for more steps, or another start"),
+        )
+
+    def at(times: States) -> States:
+        return np.asarray(found[:, np.clip(np.rint(times / step).astype(np.intp), 0, count)])
+
+    occasions = [Occasion("limit", count * step, float(found[VALUE, -1]))] if ended == "limit" else []
+    piece = Piece(0.0, count * step, at, 1.0)
+    return Course([piece], occasions, ended, evaluations, "runge-kutta-4")
+
+
+def even_times(course: Course, step: float, samples: int) -> States:
+    """Times of steps, as evenly spaced as may be."""
+    count = round(course.last / step)
+    return np.unique(np.rint(np.linspace(0, count, samples))) * step
+
+
+def _step(field: Field, t: float, y: States, step: float) -> States:
+    k1 = _rates(field, t, y)
+    k2 = _rates(field, t + 0.5 * step, y + 0.5 * step * k1)
+    k3 = _rates(field, t + 0.5 * step, y + 0.5 * step * k2)
+    k4 = _rates(field, t + step, y + step * k3)
+    return np.asarray(y + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
+
+
+def _rates(field: Field, t: float, y: States) -> States:
+    value, rate = float(y[0]), float(y[1])
+    tracks = field.tracks
+    if not np.isfinite(value) or not tracks.low <= value <= tracks.high:
+        return np.full(STATES, np.nan)
+    sense = 1.0 if rate > 0.0 else -1.0 if rate < 0.0 else tracks.rows.sense
+    forces = field.forces(field.leg_at(value, sense), t, value, rate)
+    return np.array(
+        [rate, forces.acceleration(rate), forces.driving * rate, forces.friction * rate, forces.other * rate]
+    )

@@ -1,0 +1,371 @@
+"""Adaptive integration with events: legs between jumps of the loads, standstills, limits, sticking.
+
+A step that leaves its leg, or in which the drive stops, is done again to where that happens, so that none of its
+stages sees beyond. Schemes: DOP853 (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 1993) and
+Radau IIA of order 5 (Hairer, Wanner, II, 1996), both of SciPy; the first gives way to the second where the steps are
+held back by stability (the product of step and damping rate stays at the edge of the stable region).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import scipy.integrate
+import scipy.optimize
+
+from centrode.dynamics.simulation.course import STATES, VALUE, Course, Ending, Occasion, Piece
+from centrode.dynamics.simulation.field import CREEP, Field, Forces, Leg
+from centrode.dynamics.simulation.rows import INERTIA
+from centrode.errors import MotionError
+from centrode.locale import _
+
+Array: TypeAlias = npt.NDArray[np.float64]
+State: TypeAlias = Array
+
+MOST_STEPS = 300_000
+EDGE = 3.0
+"""Step times damping rate from which a step counts as held back by stability."""
+HELD_BACK = 15
+"""Steps so held back after which the stiff scheme takes over."""
+REST_SCANS = 2000
+"""Instants at which a mechanism at rest is asked whether it breaks loose, where something depends on time."""
+AT_END = 1e-9
+"""Distance from a limit, in units of the drive, that counts as there."""
+
+
+@dataclass(frozen=True)
+class Until:
+    """When to end: at a time [s], or at a distance of the drive's value from the start."""
+
+    time: float
+    way: float | None
+
+
+class Stepper:
+    """One run of a field from a start."""
+
+    def __init__(
+        self,
+        field: Field,
+        until: Until,
+        tolerance: float,
+        stiff: bool = False,
+        tell: Callable[[float], None] | None = None,
+        most: int = MOST_STEPS,
+    ) -> None:
+        self.field = field
+        self.until = until
+        self.tolerance = tolerance
+        self.stiff = stiff
+        self.tell = tell
+        self.course = Course(scheme="stiff" if stiff else "adaptive")
+        self.most = most
+        self.fastest = 0.0
+        self.steps = self.held_back = 0
+
+    def run(self, value: float, rate: float) -> Course:
+        """The course from a value and a rate at time zero; what is done is kept when it is interrupted."""
+        state = np.array([value, rate, *[0.0] * (STATES - 2)])
+        self.start = value
+        try:
+            self.course.ended = self._run(0.0, state)
+        except KeyboardInterrupt:
+            if not self.course.pieces:
+                raise
+            self.course.ended = "interrupted"
+        return self.course
+
+    def _run(self, t: float, state: State) -> Ending:
+        while True:
+            if self._way_done(state):
+                return "turns"
+            if not t < self.until.time:
+                return "duration"
+            if state[1] == 0.0:
+                sense = self.field.leaving(t, float(state[VALUE]))
+                if sense == 0.0:
+                    later = self._rest(t, state)
+                    if later is None:
+                        return "standstill"
+                    t = later
+                    continue
+            else:
+                sense = 1.0 if state[1] > 0.0 else -1.0
+            leg = self.field.leg(float(state[VALUE]), sense)
+            if self._at_limit(float(state[VALUE]), sense):
+                self._note("limit", t, state)
+                return "limit"
+            t, state = self._pass(leg, t, state)
+
+    def _at_limit(self, value: float, sense: float) -> bool:
+        tracks = self.field.tracks
+        near = AT_END * tracks.unit
+        return value >= tracks.high - near if sense > 0.0 else value <= tracks.low + near
+
+    def _way_done(self, state: State) -> bool:
+        way = self.until.way
+        return way is not None and abs(float(state[VALUE]) - self.start) >= way * (1.0 - 1e-12)
+
+    def _note(self, kind: str, t: float, state: State) -> None:
+        self.course.occasions.append(Occasion(kind, t, float(state[VALUE])))
+
+    # at rest
+
+    def _rest(self, t: float, state: State) -> float | None:
+        """Until when it rests; None where nothing will ever move it, or not before the end."""
+        value = float(state[VALUE])
+        later = self._loose(t, value) if self.field.of_time else None
+        held = state.copy()
+        if later is None:
+            self._note("standstill", t, state)
+            self._keep(t, self.until.time if np.isfinite(self.until.time) else t, held)
+            return None
+        self._note("sticks", t, state)
+        self._keep(t, later, held)
+        self._note("breaks loose", later, state)
+        return later
+
+    def _keep(self, first: float, last: float, held: State) -> None:
+        self.course.pieces.append(
+            Piece(first, last, lambda times: np.repeat(held[:, None], len(times), axis=1), 0.0)
+        )
+
+    def _loose(self, t: float, value: float) -> float | None:
+        """When it breaks loose; the first of evenly spaced instants tells, bisection finds the time."""
+        times: list[float] = np.linspace(t, self.until.time, REST_SCANS).tolist()
+        for before, after in pairwise(times):
+            if self.field.leaving(after, value) != 0.0:
+                low, high = before, after
+                while high - low > 1e-14 * self.until.time and low < 0.5 * (low + high) < high:
+                    middle = 0.5 * (low + high)
+                    if self.field.leaving(middle, value) == 0.0:
+                        low = middle
+                    else:
+                        high = middle
+                return high
+        return None
+
+    # in motion
+
+    def _pass(self, leg: Leg, t: float, state: State) -> tuple[float, State]:
+        """Go on to the end of a leg, a standstill, or the end of the run."""
+        begun, y = state.copy(), state - state * _RELATIVE
+        turning = self.field.turns_count
+        low, high = leg.low - begun[VALUE], leg.high - begun[VALUE]
+        if self.until.way is not None:
+            rest = self.until.way - leg.sense * (begun[VALUE] - self.start)
+            low, high = (max(low, -rest), high) if leg.sense < 0.0 else (low, min(high, rest))
+        rates = self._rates(leg, begun)
+        solver = self._solver(rates, t, y, begun, leg)
+        while True:
+            if not t < self.until.time:
+                return self.until.time, y + begun * _RELATIVE
+            before, y_before = solver.t, solver.y.copy()
+            message = solver.step()
+            self._count(leg, begun, solver, message)
+            dense = solver.dense_output()
+            event = _first_event(dense, before, solver, low, high, leg.sense if turning else 0.0)
+            if event is None:
+                self._add(before, solver.t, dense, begun, leg.sense)
+                t, y = solver.t, solver.y
+                if solver.status == "finished":
+                    return t, y + begun * _RELATIVE
+                if self.stiff and not isinstance(solver, scipy.integrate.Radau):
+                    solver = self._solver(rates, t, y, begun, leg)
+                continue
+            when, component, target = event
+            t, y = self._exactly(rates, before, y_before, when, begun, leg)
+            t, y = _arrived(rates, t, y, component, target)
+            ended = y + begun * _RELATIVE
+            if component == VALUE:
+                ended[VALUE] = min(max(ended[VALUE], leg.low), leg.high)
+                edge = leg.high if leg.sense * (target + begun[VALUE] - leg.low) > 0.0 else leg.low
+                if abs(target + begun[VALUE] - edge) <= 1e-12 * max(1.0, abs(edge)):
+                    ended[VALUE] = edge
+            else:
+                ended[1] = 0.0
+                self._note("turns back", t, ended)
+            if not self.course.pieces or self.course.pieces[-1].last < t:
+                self._close(t, ended, leg.sense)
+            return t, ended
+
+    def _exactly(
+        self, rates: Callable[[float, State], State], t: float, y: State, when: float, begun: State, leg: Leg
+    ) -> tuple[float, State]:
+        """From the beginning of a step to a time within it, without looking beyond."""
+        if not when > t:
+            return t, y
+        solver = self._solver(rates, t, y, begun, leg, when)
+        while solver.status == "running":
+            before = solver.t
+            message = solver.step()
+            self._count(leg, begun, solver, message)
+            self._add(before, solver.t, solver.dense_output(), begun, leg.sense)
+        return solver.t, solver.y
+
+    def _rates(self, leg: Leg, begun: State) -> Callable[[float, State], State]:
+        """Derivatives of the states on a leg; value and works count from its beginning."""
+        field, course, first = self.field, self.course, float(begun[VALUE])
+
+        def rates(t: float, y: State) -> State:
+            rate = float(y[1])
+            forces = field.forces(leg, t, first + float(y[0]), rate or leg.sense * CREEP)
+            course.evaluations += 1
+            return np.array(
+                [
+                    rate,
+                    forces.acceleration(rate),
+                    forces.driving * rate,
+                    forces.friction * rate,
+                    forces.other * rate,
+                ]
+            )
+
+        return rates
+
+    def _solver(
+        self,
+        rates: Callable[[float, State], State],
+        t: float,
+        y: State,
+        begun: State,
+        leg: Leg,
+        end: float | None = None,
+    ) -> Any:
+        forces = rates(t, y)
+        if not np.isfinite(forces).all():
+            raise self._without_value(t, float(begun[VALUE] + y[0]))
+        unit = self.field.tracks.unit
+        self.fastest = max(self.fastest, abs(float(y[1])), float(np.sqrt(0.02 * abs(forces[1]) * unit)))
+        inertia = float(leg.rows(float(begun[VALUE] + y[0]))[INERTIA])
+        energy = max(1e-300, inertia * self.fastest**2)
+        scale = np.array([unit, self.fastest or 1.0, energy, energy, energy])
+        kind = scipy.integrate.Radau if self.stiff else scipy.integrate.DOP853
+        limit = self.until.time if end is None else end
+        return kind(rates, t, y, limit, rtol=max(self.tolerance, 3e-14), atol=self.tolerance * scale)
+
+    def _count(self, leg: Leg, begun: State, solver: Any, message: str | None) -> None:
+        self.steps += 1
+        value = float(begun[VALUE] + solver.y[0])
+        if solver.status == "failed" or not np.isfinite(solver.y).all():
+            raise (
+                self._without_value(solver.t, value)
+                if message is None
+                else MotionError(
+                    "[simulation]",
+                    _("no step is small enough at t = {time:.6g} s, drive at {value:.6g}").format(
+                        time=solver.t, value=value
+                    ),
+                    _('choose scheme = "stiff", or a greater tolerance'),
+                )
+            )
+        if self.steps > self.most:
+            raise MotionError(
+                "[simulation]",
+                _("{count} steps were taken up to t = {time:.6g} s").format(count=self.most, time=solver.t),
+                _('ask for a shorter time, or choose scheme = "stiff" or a greater tolerance'),
+            )
+        if self.tell is not None and self.steps % 20 == 0:
+            way = self.until.way
+            share = solver.t / self.until.time if np.isfinite(self.until.time) else 0.0
+            self.tell(share if way is None else max(share, abs(value - self.start) / way))
+        if not self.stiff:
+            self._watch(leg, solver, value)
+
+    def _watch(self, leg: Leg, solver: Any, value: float) -> None:
+        """Change to the stiff scheme where damping holds the steps back."""
+        rate = float(solver.y[1])
+        more = rate + 1e-6 * (abs(rate) or 1.0)
+
+        def slowed(speed: float) -> float:
+            forces: Forces = self.field.forces(leg, solver.t, value, speed)
+            return forces.acceleration(speed)
+
+        damping = abs(slowed(more) - slowed(rate)) / (more - rate)
+        held = damping * (solver.step_size or 0.0) > EDGE
+        self.held_back = self.held_back + 1 if held else 0
+        if self.held_back >= HELD_BACK:
+            self.stiff = True
+            self.course.scheme = "adaptive, then stiff"
+
+    def _add(self, first: float, last: float, dense: Any, begun: State, sense: float) -> None:
+        def at(times: Array) -> Array:
+            found: Array = dense(times) + (begun * _RELATIVE)[:, None]
+            return found
+
+        self.course.pieces.append(Piece(first, last, at, sense))
+
+    def _close(self, t: float, ended: State, sense: float) -> None:
+        """Bring the last piece to the very end of the leg."""
+        self.course.pieces.append(
+            Piece(t, t, lambda times: np.repeat(ended[:, None], len(times), axis=1), sense)
+        )
+
+    def _without_value(self, t: float, value: float) -> MotionError:
+        return MotionError(
+            "[simulation]",
+            _("drive or loads have no finite value at t = {time:.6g} s, drive at {value:.6g}").format(
+                time=t, value=value
+            ),
+            _("correct their formulas"),
+        )
+
+
+_RELATIVE = np.array([1.0, 0.0, 1.0, 1.0, 1.0])
+"""States that count from the beginning of a leg."""
+
+
+def _first_event(
+    dense: Any, before: float, solver: Any, low: float, high: float, sense: float
+) -> tuple[float, int, float] | None:
+    """The first time in a step at which the value leaves its range or the rate (where a sense counts) its sense."""
+    found: list[tuple[float, int, float]] = []
+    y = solver.y
+    targets = [(VALUE, high)] if y[VALUE] >= high else [(VALUE, low)] if y[VALUE] <= low else []
+    if sense and y[1] * sense <= 0.0:
+        targets.append((1, 0.0))
+    for component, target in targets:
+
+        def missed(t: float, component: int = component, target: float = target) -> float:
+            return float(dense(t)[component]) - target
+
+        start = missed(before)
+        if start == 0.0 or start * missed(solver.t) > 0.0:
+            when = solver.t if start * missed(solver.t) > 0.0 else _behind_start(missed, before, solver.t)
+        else:
+            when = float(scipy.optimize.brentq(missed, before, solver.t, xtol=1e-300, rtol=1e-15))
+        found.append((when, component, target))
+    return min(found, default=None)
+
+
+def _behind_start(missed: Callable[[float], float], first: float, last: float) -> float:
+    """Where a function that begins at zero comes back to it; the end where it does not."""
+    places = np.linspace(first, last, 65)[1:]
+    values = [missed(float(x)) for x in places]
+    for k in range(1, len(places)):
+        if values[k - 1] * values[k] <= 0.0:
+            return float(scipy.optimize.brentq(missed, places[k - 1], places[k], xtol=1e-300, rtol=1e-15))
+    return last
+
+
+def _arrived(
+    rates: Callable[[float, State], State], t: float, y: State, component: int, target: float
+) -> tuple[float, State]:
+    """From a place very near to an event to the event itself, by Taylor's polynomial."""
+    slopes = rates(t, y)
+    speed = float(slopes[component])
+    if speed == 0.0:
+        return t, y
+    step = (target - float(y[component])) / speed
+    moved = y + step * slopes
+    if component == VALUE:
+        moved[VALUE] = target
+    else:
+        moved[VALUE] += 0.5 * slopes[1] * step * step
+        moved[1] = target
+    return t + step, moved

@@ -1,0 +1,110 @@
+"""`centrode simulate`: what it prints and writes, and how it ends."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import centrode as ct
+from simulated import CRANK_ROCKER, ROTOR
+
+Centrode = Callable[..., Any]
+DISC = ROTOR.replace("LOADS", "").replace("SENSE", "1")
+
+
+def test_the_run_up(centrode: Centrode, folder: Path) -> None:
+    done = centrode(
+        "simulate",
+        "six-bar-press-run-up",
+        "--duration",
+        "6 s",
+        "--samples",
+        31,
+        "--out",
+        "result",
+        "--no-figures",
+    )
+    assert done.code == 0, done
+    assert done.err == ""
+    assert done.rows["driven by"] == "16200*(1 - v/7.911) N m"
+    assert done.rows["ended"] == "after 6 s"
+    assert done.rows["mean driving moment"] == "2263.03 N m"
+    assert sorted(path.name for path in (folder / "result").iterdir()) == ["simulation.csv", "simulation.nc"]
+    press = ct.example("six-bar-press-run-up")
+    assert press.simulation is not None
+    settings = press.simulation.model_copy(update={"duration": 6.0, "samples": 31})
+    expected = ct.simulate(press, settings)
+    with (folder / "result" / "simulation.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["kinetic_energy [J]"]) for row in rows] == expected.kinetic_energy.values.tolist()
+    with xr.open_dataset(folder / "result" / "simulation.nc", engine="scipy") as read:
+        assert read.drive_speed.values.tolist() == expected.drive_speed.values.tolist()
+        assert read.attrs["ended"] == "duration"
+
+
+def test_everything_on_the_command_line(centrode: Centrode, folder: Path) -> None:
+    (folder / "disc.toml").write_text(DISC, encoding="utf-8")
+    done = centrode(
+        "simulate", "disc.toml", "--driving", "3 - v", "--speed", "10 rpm", "--turns", 5, "--scheme", "stiff"
+    )
+    assert done.code == 0, done
+    assert done.rows["ended"].startswith("after the turns asked for")
+    assert done.rows["turned"].endswith("5 turns")
+    assert done.rows["least speed"].startswith("3 rad/s")
+    done = centrode(
+        "simulate", "disc.toml", "--driving", "3", "--duration", 1, "--scheme", "runge-kutta-4", "--steps", 50,
+        "--motion", "--out", "there", "--no-figures",
+    )  # fmt: skip
+    assert done.code == 0, done
+    assert done.rows["speed of the drive"] == "0 to 6 rad/s, 6 rad/s at the end"
+    header = (folder / "there" / "simulation.csv").read_text(encoding="utf-8").partition("\n")[0]
+    assert "velocity_A_x [m/s]" in header
+
+
+def test_it_says_where_it_stops(centrode: Centrode, folder: Path) -> None:
+    text = CRANK_ROCKER.replace("CRANK", "1").replace("LOADS", "")
+    (folder / "locks.toml").write_text(text, encoding="utf-8")
+    done = centrode("simulate", "locks.toml", "--driving", "200", "--duration", "20 s")
+    assert done.code == 3
+    assert "stops at a limit after" in done.err
+    assert "it comes to a limit" in done.rows
+
+
+def test_a_regime_that_is_not_there_is_told(centrode: Centrode, folder: Path) -> None:
+    (folder / "disc.toml").write_text(DISC, encoding="utf-8")
+    done = centrode("simulate", "disc.toml", "--driving", "3", "--duration", "5 s")
+    assert done.code == 0, done
+    assert done.rows["steady regime"].startswith("none is found: the speed does not settle")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["disc.toml"], "[simulation]: it is missing"),
+        (["disc.toml", "--driving", "3*w", "--duration", "1 s"], 'unknown name "w"'),
+        (["disc.toml", "--driving", "3"], "nothing says how long it runs"),
+        (["disc.toml", "--driving", "3", "--duration", "1 m"], "duration"),
+        (["disc.toml", "--driving", "3", "--duration", "-1 s"], "must be positive"),
+        (["disc.toml", "--driving", "3", "--duration", "1", "--samples", "1"], "samples"),
+        (["disc.toml", "--driving", "3", "--turns", "0"], "turns"),
+        (["disc.toml", "--driving", "3", "--turns", "1", "--scheme", "runge-kutta-4"], "fixed steps"),
+        (["disc.toml", "--driving", "3", "--duration", "1", "--steps", "0"], "steps"),
+        (["disc.toml", "--driving", "3", "--duration", "1", "--scheme", "euler"], "euler"),
+        (["crank-rocker", "--driving", "3", "--duration", "1"], "neither masses nor loads"),
+        (["two-link-arm", "--driving", "3", "--duration", "1"], "one drive"),
+        (["absent.toml", "--driving", "3", "--duration", "1"], "absent.toml"),
+        (["disc.toml", "--driving", "3", "--duration", "1", "--out", "disc.toml"], "not a folder"),
+    ],
+)
+def test_wrong_input(centrode: Centrode, folder: Path, arguments: list[str], said: str) -> None:
+    (folder / "disc.toml").write_text(DISC, encoding="utf-8")
+    done = centrode("simulate", *arguments)
+    assert done.code == 2, done
+    assert said in done.err
+    assert "Traceback" not in done.err
+    assert [path.name for path in folder.iterdir()] == ["disc.toml"]

@@ -1,0 +1,48 @@
+"""Figures of a simulation show its curves; turns lie one upon another."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import centrode as ct
+from simulated import pendulum, rotor
+
+
+def test_every_curve_is_the_datasets() -> None:
+    mechanism = rotor()
+    data = ct.simulate(mechanism, ct.Simulation(driving="3 - v", duration=4, samples=81))
+    figures = ct.simulation_figures(mechanism, data)
+    assert list(figures) == ["simulation-speed", "simulation-phase", "simulation-energies"]
+    shown = {
+        ("simulation-speed", 0): ["drive_speed"],
+        ("simulation-speed", 1): ["drive_acceleration"],
+        ("simulation-speed", 2): ["driving_moment", "moment_of_loads"],
+        ("simulation-energies", 0): ["kinetic_energy", "potential_energy"],
+        ("simulation-energies", 1): ["work_of_drive", "work_of_friction", "work_of_other_loads"],
+        ("simulation-energies", 2): ["energy_residual"],
+    }
+    for (name, panel), variables in shown.items():
+        lines = {line.get_label(): line for line in figures[name].axes[panel].get_lines()}
+        for variable in variables:
+            line = lines[ct.QUANTITIES[variable].title]
+            np.testing.assert_array_equal(line.get_ydata(), data[variable])
+            np.testing.assert_array_equal(line.get_xdata(), data["time"])
+
+
+def test_turns_lie_one_upon_another() -> None:
+    mechanism = rotor()
+    data = ct.simulate(mechanism, ct.Simulation(driving="3 - v", duration=8, samples=161))
+    line = ct.simulation_figures(mechanism, data)["simulation-phase"].axes[0].get_lines()[0]
+    places = np.asarray(line.get_xdata(), dtype=float)
+    known = places[np.isfinite(places)]
+    assert known.min() >= 0.0
+    assert known.max() < 2 * np.pi
+    # a gap at each new turn
+    assert np.isnan(np.asarray(line.get_ydata(), dtype=float)).sum() == int(data.turned[-1] / (2 * np.pi))
+
+
+def test_a_swing_is_one_curve() -> None:
+    mechanism = pendulum()
+    data = ct.simulate(mechanism, ct.Simulation(duration=3, samples=61))
+    line = ct.simulation_figures(mechanism, data)["simulation-phase"].axes[0].get_lines()[0]
+    np.testing.assert_array_equal(line.get_xdata(), data.drive_value[:, 0])
