@@ -55,7 +55,9 @@ def moment_about(actions: Iterable[Action], place: complex) -> float:
     return sum(action.about(place) for action in actions)
 
 
-def outer_actions(burden: Burden, state: State, rates: Rates, drawing: Drawing, bodies: Bodies) -> list[Action]:
+def outer_actions(
+    burden: Burden, state: State, rates: Rates, drawing: Drawing, bodies: Bodies
+) -> list[Action]:
     """Loads, weights and inertia on the moving bodies and the frame at the only sample of a state."""
     reader = Reader(burden, state, drawing, bodies)
     found = list(reader.loads())

@@ -84,9 +84,7 @@ def solve_dyad(dyad: Dyad, ledger: Ledger, words: Words) -> Found:
     ends = ((dyad.first, first), (dyad.second, second))
     forces = [(side.joint, side.joint.shares[side.body] * force) for side, force in ends]
     forces.append((dyad.inner, share * inner))
-    return Found(
-        tuple((joint, force, turning.get(id(joint), 0.0)) for joint, force in forces), tuple(chain)
-    )
+    return Found(tuple((joint, force, turning.get(id(joint), 0.0)) for joint, force in forces), tuple(chain))
 
 
 def _by_hinge(dyad: Dyad, ledger: Ledger, words: Words) -> tuple[complex, complex, list[Action]]:

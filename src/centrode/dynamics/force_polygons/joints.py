@@ -111,7 +111,10 @@ def _wheels(structure: Structure, drawing: Drawing) -> Iterator[Joint]:
 def _drive(drive: Drive, bodies: Bodies, drawing: Drawing) -> Joint:
     """Its moment on the driven link, positive as the angle grows; its force, positive as the way grows."""
     if drive.link is not None:
-        return Joint("drive", drive.id, {drive.relative_to: -1.0, drive.link: 1.0}, 0j, ((0j, 1.0),))
+        shares = {drive.relative_to: -1.0, drive.link: 1.0}
+        both = [point for point, names in bodies.at_point.items() if set(shares) <= set(names)]
+        at = drawing.point(both[0]) if both else 0j
+        return Joint("drive", drive.id, shares, at, ((0j, 1.0),))
     if drive.guide is not None:
         guide = bodies.mechanism.guide(drive.guide)
         along = _heading(drawing, guide.on, drawing.numbers.direction[guide.id])

@@ -87,7 +87,7 @@ class Ledger:
         """The same term by term: + 12.3 (G2) - 4 (MΦ2)."""
         terms = [(action.symbol, action.about(place)) for action in self.on(names)]
         return "".join(
-            f" {'−' if value < 0 else '+'} {abs(value):.5g} ({symbol})"
+            f" {'-' if value < 0 else '+'} {abs(value):.5g} ({symbol})"
             for symbol, value in terms
             if value != 0.0
         )

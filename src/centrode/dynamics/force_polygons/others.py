@@ -72,7 +72,7 @@ def _on_guide(body: str, guide: Joint, drive: Joint, ledger: Ledger, words: Word
     moment = -(ledger.moment([body], guide.place))
     hold = ledger.reaction(guide, body, guide.shares[body] * thrust, guide.shares[body] * moment)
     words.say(
-        _("{link} along guide {guide}: {equation}").format(
+        _("link {link} along guide {guide}: {equation}").format(
             link=ledger.bodies.number(body), guide=guide.name, equation=f"{push.symbol} = {size:.6g} N"
         )
     )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import TypeAlias
 
 from centrode.dynamics.force_polygons.actions import Action, Source
@@ -14,10 +15,12 @@ from centrode.model.problems import nearest
 
 ROUND = (1.0, 2.0, 2.5, 5.0, 10.0)
 """Scales of forces, times a power of ten."""
+PARTS = "ⁿᵗ"
+"""Marks of normal and tangential parts behind the name of a reaction."""
 PAPERS = {"A5": (210.0, 148.0), "A4": (297.0, 210.0), "A3": (420.0, 297.0)}
 """Sheets across [mm]."""
-DRAWN, ROOM, HEAD = 0.30, 0.38, 0.17
-"""Shares of a sheet's width for the group's drawing and for its polygon; of its height above and below them."""
+ROOM, HEAD = 0.38, 0.17
+"""Share of a sheet's width for a polygon, and of its height above and below it."""
 Size: TypeAlias = tuple[float, float]
 
 
@@ -66,6 +69,15 @@ class Polygon:
     scale: float
 
     @property
+    def sums(self) -> tuple[PolygonVector, ...]:
+        """Reactions that were found in two parts, normal and tangential, as wholes."""
+        return tuple(
+            replace(first, name=first.name[:-1], force=first.force + second.force)
+            for first, second in pairwise(self.vectors)
+            if first.name[-1] in PARTS and first.name[:-1] == second.name[:-1]
+        )
+
+    @property
     def gap(self) -> complex:
         """What is left open [N]: rounding."""
         return sum((vector.force for vector in self.vectors), 0j)
@@ -76,7 +88,7 @@ class Polygon:
 
     def vector(self, name: str) -> PolygonVector:
         """A vector by its name; KeyError where there is none."""
-        for one in (*self.vectors, *self.chords):
+        for one in (*self.vectors, *self.sums, *self.chords):
             if one.name == name:
                 return one
         raise KeyError(name)
@@ -132,7 +144,7 @@ def sheet_of(paper: str) -> Size:
     return PAPERS[paper]
 
 
-def rooms_of(paper: str) -> tuple[Size, Size]:
-    """Room [mm] of a group's drawing and of its polygon on a sheet."""
+def room_of(paper: str) -> Size:
+    """Room [mm] of a polygon on a sheet."""
     wide, high = sheet_of(paper)
-    return (DRAWN * wide, (1 - HEAD) * high), (ROOM * wide, (1 - HEAD) * high)
+    return ROOM * wide, (1 - HEAD) * high

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.graphic.board import Board, extent_of
+from centrode.analysis.graphic.board import Board
 from centrode.analysis.graphic.instant import drawing_of
 from centrode.analysis.graphic.stage import Drawing
 from centrode.dynamics.force_polygons.actions import Action, Rates, outer_actions
@@ -20,13 +19,12 @@ from centrode.dynamics.force_polygons.lever import Lever, lever_of
 from centrode.dynamics.force_polygons.others import solve_single, solve_together
 from centrode.dynamics.force_polygons.partition import Cell, cells_of
 from centrode.dynamics.force_polygons.polygon import (
-    Polygon,
     PolygonVector,
     polygon_of,
-    rooms_of,
-    round_scale,
+    room_of,
     vector_of,
 )
+from centrode.dynamics.force_polygons.result import ForcePolygons, GroupForces
 from centrode.dynamics.force_polygons.words import Words
 from centrode.dynamics.reducer import Burden, Reducer, reduced
 from centrode.dynamics.states import Moving, State
@@ -38,86 +36,6 @@ from centrode.kinematics.spans import is_uniform, span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import status_word
-
-
-@dataclass(frozen=True)
-class GroupForces:
-    """What was done for one group.
-
-    Attributes
-    ----------
-    bodies : its links and sliders
-    numbers : their numbers in the names of forces
-    kind : "RRR", ..., or "input", "single", "together"
-    actions : forces and moments known before, on its bodies
-    steps : equations in words
-    polygon : of the whole group; `link_polygons` : of each body
-    joints : names of its joints with kind and place
-    """
-
-    bodies: tuple[str, ...]
-    numbers: tuple[int, ...]
-    kind: str
-    actions: tuple[Action, ...]
-    reactions: tuple[Action, ...]
-    steps: tuple[str, ...]
-    polygon: Polygon
-    link_polygons: tuple[Polygon, ...]
-    joints: tuple[Joint, ...]
-
-
-@dataclass(frozen=True)
-class ForcePolygons:
-    """Forces of a mechanism at an instant, by hand.
-
-    Attributes
-    ----------
-    exact : the motion at the instant
-    speed : rate of each drive at which inertia and loads are taken [rad/s or m/s]; `speed_from` "machine" or "drive"
-    names : bodies by number
-    groups : in the order in which they were solved, the input link at the end
-    reactions : name -> force [N] as a complex number, R12 of body 1 on body 2
-    moments : name -> moment [N m] of guides and meshes
-    balancing : drive -> moment [N m] or force [N] that it must give, positive as its value grows
-    work : the same by virtual work, of one drive
-    levers : Zhukovsky's lever of each drive
-    outer : loads, weights and inertia
-    places : point -> place [m]
-    scale : metres that a millimetre of the groups' drawings stands for
-    """
-
-    mechanism: Mechanism
-    exact: xr.Dataset
-    speed: Mapping[str, float]
-    speed_from: str
-    names: tuple[str, ...]
-    groups: tuple[GroupForces, ...]
-    reactions: Mapping[str, complex]
-    moments: Mapping[str, float]
-    balancing: Mapping[str, float]
-    work: Mapping[str, float]
-    levers: tuple[Lever, ...]
-    outer: tuple[Action, ...]
-    places: Mapping[str, complex]
-    scale: float
-    paper: str
-
-    @property
-    def polygons(self) -> tuple[Polygon, ...]:
-        """Of every group, in the order in which they were solved."""
-        return tuple(group.polygon for group in self.groups)
-
-    @property
-    def steps(self) -> tuple[str, ...]:
-        """All steps in words."""
-        return tuple(line for group in self.groups for line in group.steps)
-
-    @property
-    def lever(self) -> Lever:
-        """The lever of the first drive; KeyError where it cannot be drawn."""
-        if not self.levers:
-            raise KeyError("lever")
-        return self.levers[0]
 
 
 def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForcePolygons:
@@ -139,7 +57,7 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
     MotionError
         The mechanism does not close there, or stands at a limit, a change point or a dead point.
     """
-    drawn, room = rooms_of(paper)
+    room = room_of(paper)
     burden = Burden.of(mechanism)
     prepared = ready(mechanism)
     solved = solve(prepared, span_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
@@ -154,7 +72,6 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
     cells = cells_of(prepared.structure, bodies, joints)
     groups = tuple(_group(cell, ledger, room) for cell in cells)
     drives = {joint.name: _driving(ledger, joint) for joint in joints if joint.kind == "drive"}
-    extent = max((_extent(group, drawing, bodies) for group in groups), default=0.0)
     return ForcePolygons(
         mechanism,
         exact,
@@ -169,7 +86,6 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
         _levers(prepared, drawing, bodies, outer),
         tuple(outer),
         {name: complex(*place) for name, place in drawing.at.points.items()},
-        round_scale(extent / (0.62 * min(drawn))),
         paper,
     )
 
@@ -214,7 +130,13 @@ def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces
     kind, found = _solved(cell, ledger, words)
     for joint, force, moment in found.forces:
         ledger.settle(joint, force, moment)
-    reactions = tuple(one for one in ledger.on(cell.bodies) if not any(one is other for other in before))
+    inner = [id(joint) for joint in cell.inner]
+    reactions = tuple(
+        ledger.reaction(joint, body, force, moment)
+        for joint, force, moment in found.forces
+        for body in cell.bodies
+        if body in joint.shares and id(joint) not in inner
+    )
     numbers = tuple(ledger.bodies.number(body) for body in cell.bodies)
     whole = polygon_of(cell.bodies, found.chain, _chords(cell, ledger, found), room)
     single = tuple(
@@ -290,27 +212,10 @@ def _by_work(burden: Burden, state: State, rates: Rates, prepared: Ready) -> dic
     return {drive: inertia * rates.second + 0.5 * slope * rates.first**2 - moment}
 
 
-def _levers(
-    prepared: Ready, drawing: Drawing, bodies: Bodies, outer: Sequence[Action]
-) -> tuple[Lever, ...]:
+def _levers(prepared: Ready, drawing: Drawing, bodies: Bodies, outer: Sequence[Action]) -> tuple[Lever, ...]:
     """A lever for each drive; none where the velocities of a group cannot be drawn by hand."""
     drives = prepared.mechanism.drives
     try:
         return tuple(lever_of(prepared.structure, drawing, bodies, outer, drive) for drive in drives)
     except InputError:
         return ()
-
-
-def _extent(group: GroupForces, drawing: Drawing, bodies: Bodies) -> float:
-    """The longer side of what a group's drawing shows."""
-    return extent_of(places_of(group, drawing, bodies))
-
-
-def places_of(group: GroupForces, drawing: Drawing, bodies: Bodies) -> list[complex]:
-    """Points of the group's links, and where its forces act."""
-    links = bodies.mechanism.links
-    points = {point for body in group.bodies if body in links for point in links[body].coordinates}
-    points |= {bodies.sliders[body].point for body in group.bodies if body in bodies.sliders}
-    points |= {bodies.pins[body] for body in group.bodies if body in bodies.pins}
-    found = [drawing.point(point) for point in points]
-    return [*found, *(one.place for one in group.reactions if one.force != 0)]

@@ -30,7 +30,7 @@ class Words:
     def about(self, body: str, joint: Joint, ledger: Ledger, equation: str) -> None:
         """An equation of moments of one link."""
         self.lines.append(
-            _("moments of {link} about {point}: {equation}").format(
+            _("moments of link {link} about {point}: {equation}").format(
                 link=self.link(body, ledger), point=joint_words(joint), equation=equation
             )
         )
@@ -83,7 +83,7 @@ class Words:
         known = names(ledger.actions[side.body])
         told = " + ".join([symbol, *known])
         self.lines.append(
-            _("{link} along guide {guide}: {equation}").format(
+            _("link {link} along guide {guide}: {equation}").format(
                 link=self.link(side.body, ledger),
                 guide=inner.name,
                 equation=f"{told} = 0, {symbol} = {part:.6g} N",
@@ -96,7 +96,7 @@ class Words:
         """Moments of the whole group about the second outer hinge."""
         symbol = ledger.symbol(dyad.first.joint, dyad.first.body)
         terms = ledger.told([dyad.first.body, dyad.second.body], dyad.second.joint.place)
-        held = f" {'−' if part * lever < 0 else '+'} {abs(part * lever):.5g} ({symbol}ᵗ)"
+        held = f" {'-' if part * lever < 0 else '+'} {abs(part * lever):.5g} ({symbol}ᵗ)"
         equation = f"{symbol}ⁿ·{reach:.5g}{held if part * lever else ''}{terms} = 0, {symbol}ⁿ = {left:.6g} N"
         self.lines.append(
             _("moments of the group {links} about {point}: {equation}").format(
@@ -114,7 +114,7 @@ class Words:
             )
             size = f"{size}, {beside}"
         self.lines.append(
-            _("moments of {link} about {point}: {equation}").format(
+            _("moments of link {link} about {point}: {equation}").format(
                 link=self.link(body, ledger), point=joint_words(joint), equation=size
             )
         )
