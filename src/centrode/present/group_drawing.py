@@ -141,7 +141,8 @@ def draw_forces(page: Page, view: View, found: ForcePolygons, group: GroupForces
     greatest = max((abs(one.force) for one in actions), default=0.0) * view.scale / factor
     for one in actions:
         if abs(one.moment) > TINY * greatest:
-            place = middle_of(found, one.body) if one.place == 0 else one.place
+            placed = one.source == "drive" or one.force != 0
+            place = one.place if placed else middle_of(found, one.body)
             name = one.symbol if one.force == 0 else f"M{one.symbol.removeprefix('R')}"
             moment_arc(page, at(place), one.moment, name, colour(one.body, one.source == "reaction"))
 

@@ -54,7 +54,9 @@ def group_title(group: GroupForces) -> str:
         return _("Input link {numbers}: {names}").format(numbers=numbers, names=names)
     if group.kind == "single":
         return _("Link {numbers} by itself: {names}").format(numbers=numbers, names=names)
-    kind = _("solved together") if group.kind == "together" else group.kind
+    kind = {"together": _("solved together"), "triad": _("triad, by an Assur point")}.get(
+        group.kind, group.kind
+    )
     return _("Group {numbers} ({kind}): {names}").format(numbers=numbers, kind=kind, names=names)
 
 

@@ -112,9 +112,9 @@ class Reader:
                     if before is not None:
                         force, moment = force + before.force, moment + before.moment
                     gathered[body, place] = Action(symbol, load.label, body, source, force, place, moment)
-            both = len(gathered) > 1
+            both = len([body for body, _place in gathered if body != FRAME]) > 1
             for (body, _place), action in gathered.items():
-                name = f"{symbol}({self.bodies.number(body)})" if both else symbol
+                name = f"{symbol}({self.bodies.number(body)})" if both or body == FRAME else symbol
                 yield Action(name, action.label, body, source, action.force, action.place, action.moment)
 
     def symbol(self, load: Acting, numbers: Counter[str]) -> tuple[Source, str]:

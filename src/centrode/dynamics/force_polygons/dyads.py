@@ -89,22 +89,22 @@ def solve_dyad(dyad: Dyad, ledger: Ledger, words: Words) -> Found:
 
 def _by_hinge(dyad: Dyad, ledger: Ledger, words: Words) -> tuple[complex, complex, list[Action]]:
     """RRR, RRP, PRP: the unknown parts of both outer reactions close the polygon of the group."""
-    parts = [_split(side, dyad.inner, ledger, words) for side in (dyad.first, dyad.second)]
+    parts = [split(side, dyad.inner, ledger, words) for side in (dyad.first, dyad.second)]
     (one, along), (other, beside) = parts
     known = dyad.first.known(ledger) + dyad.second.known(ledger) + one + other
     sine = across(along, beside)
     normal, thrust = -cross(known, beside) / sine * along, cross(known, along) / sine * beside
     words.polygon(dyad, ledger)
     chain = [
-        *_parts(dyad.first, ledger, normal, one, last=True),
-        *_forces(ledger, dyad.first.body),
-        *_forces(ledger, dyad.second.body),
-        *_parts(dyad.second, ledger, thrust, other, last=False),
+        *parts_of(dyad.first, ledger, normal, one, last=True),
+        *forces_on(ledger, dyad.first.body),
+        *forces_on(ledger, dyad.second.body),
+        *parts_of(dyad.second, ledger, thrust, other, last=False),
     ]
     return one + normal, other + thrust, chain
 
 
-def _split(side: Side, inner: Joint, ledger: Ledger, words: Words) -> tuple[complex, complex]:
+def split(side: Side, inner: Joint, ledger: Ledger, words: Words) -> tuple[complex, complex]:
     """The known part of an outer reaction and the unit vector of what is left of it."""
     if side.joint.letter == "P":
         return 0j, 1j * side.joint.along
@@ -144,20 +144,20 @@ def _by_guide(dyad: Dyad, ledger: Ledger, words: Words) -> tuple[complex, comple
         thrust = -(w1 + w2 + part * along + left)
         words.polygon(dyad, ledger)
     chain = [
-        *_parts(first, ledger, left, part * along, last=True),
-        *_forces(ledger, first.body),
-        *_forces(ledger, second.body),
+        *parts_of(first, ledger, left, part * along, last=True),
+        *forces_on(ledger, first.body),
+        *forces_on(ledger, second.body),
         ledger.reaction(second.joint, second.body, second.joint.shares[second.body] * thrust),
     ]
     return part * along + left, thrust, chain
 
 
-def _forces(ledger: Ledger, body: str) -> list[Action]:
+def forces_on(ledger: Ledger, body: str) -> list[Action]:
     """The known forces on a body that are more than moments."""
     return [action for action in ledger.actions[body] if action.force != 0]
 
 
-def _parts(side: Side, ledger: Ledger, normal: complex, tangential: complex, last: bool) -> list[Action]:
+def parts_of(side: Side, ledger: Ledger, normal: complex, tangential: complex, last: bool) -> list[Action]:
     """An outer reaction in its two parts, or whole where it has one; the normal part at the polygon's end."""
     share = side.joint.shares[side.body]
     if side.joint.letter == "P":

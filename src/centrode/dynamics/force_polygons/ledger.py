@@ -15,6 +15,8 @@ from centrode.locale import _
 SINGULAR = 16.0 * (2.0**-52) ** 0.5
 """Sines smaller than this are those of a dead point: there rounding of positions alone leaves the root of twice its
 own share, some 2e-8."""
+ROUNDED = 1e-14
+"""Moments smaller than this part of the greatest force times length are rounding of none, and are not told."""
 
 
 @dataclass
@@ -86,10 +88,11 @@ class Ledger:
     def told(self, names: Sequence[str], place: complex) -> str:
         """The same term by term: + 12.3 (G2) - 4 (MΦ2)."""
         terms = [(action.symbol, action.about(place)) for action in self.on(names)]
+        none = ROUNDED * self.scale * max((abs(action.force) for action in self.on(names)), default=0.0)
         return "".join(
             f" {'-' if value < 0 else '+'} {abs(value):.5g} ({symbol})"
             for symbol, value in terms
-            if value != 0.0
+            if abs(value) > none
         )
 
 

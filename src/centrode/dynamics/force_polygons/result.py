@@ -21,7 +21,7 @@ class GroupForces:
     Attributes
     ----------
     bodies : its links and sliders; `numbers` those in the names of forces
-    kind : "RRR", "RRP", "RPR", "PRP", "RPP", "input", "single" or "together"
+    kind : "RRR", "RRP", "RPR", "PRP", "RPP", "triad", "input", "single" or "together"
     actions : what acts on its bodies before it is solved: loads, weights, inertia, reactions of groups behind it
     reactions : of its outer joints and drives, on its bodies
     steps : what was done, in words

@@ -25,6 +25,7 @@ from centrode.dynamics.force_polygons.polygon import (
     vector_of,
 )
 from centrode.dynamics.force_polygons.result import ForcePolygons, GroupForces
+from centrode.dynamics.force_polygons.triads import solve_triad, triad_of
 from centrode.dynamics.force_polygons.words import Words
 from centrode.dynamics.reducer import Burden, Reducer, reduced
 from centrode.dynamics.states import Moving, State
@@ -130,6 +131,7 @@ def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces
     kind, found = _solved(cell, ledger, words)
     for joint, force, moment in found.forces:
         ledger.settle(joint, force, moment)
+    words.notes(cell.joints)
     inner = [id(joint) for joint in cell.inner]
     reactions = tuple(
         ledger.reaction(joint, body, force, moment)
@@ -157,6 +159,10 @@ def _solved(cell: Cell, ledger: Ledger, words: Words) -> tuple[str, Found]:
     if single is not None:
         driven = any(joint.kind == "drive" for joint in cell.joints)
         return "input" if driven else "single", single
+    triad = triad_of(cell)
+    by_point = None if triad is None else solve_triad(triad, ledger, words)
+    if by_point is not None:
+        return "triad", by_point
     return "together", solve_together(cell, ledger, words)
 
 

@@ -50,7 +50,7 @@ class Words:
             before = [f"{one}ⁿ", f"{one}ᵗ"] if first.joint.letter == "R" else [one]
             after = [f"{other}ᵗ", f"{other}ⁿ"] if second.joint.letter == "R" else [other]
             unknown = [
-                f"{symbol}ⁿ ∥ {joint_words(side.joint)}-{joint_words(dyad.inner)}"
+                f"{symbol}ⁿ ∥ {between(side.joint, dyad.inner)}"
                 if side.joint.letter == "R"
                 else f"{symbol} {square_to(side.joint)}"
                 for side, symbol in ((first, one), (second, other))
@@ -119,6 +119,21 @@ class Words:
             )
         )
 
+    def notes(self, joints: Sequence[Joint]) -> None:
+        """What a reader has to know of meshes, and of contacts that something else keeps."""
+        for joint in joints:
+            if joint.kind == "mesh":
+                text = _(
+                    "gear {gear}: moments alone; what forces between teeth add in the bearings is left out"
+                )
+                self.lines.append(text.format(gear=joint.name))
+            elif joint.kind == "rolling" and len(joint.bases) == 1:
+                text = _(
+                    "wheel {wheel} is kept at its track by other joints: its normal force is not determined"
+                    " and is taken as none"
+                )
+                self.lines.append(text.format(wheel=joint.name))
+
     def say(self, line: str) -> None:
         """Any other line."""
         self.lines.append(line)
@@ -131,6 +146,12 @@ class Words:
 def names(actions: Sequence[Action]) -> list[str]:
     """Symbols of what has a force."""
     return [action.symbol for action in actions if action.force != 0]
+
+
+def between(first: Joint, second: Joint) -> str:
+    """The line through two hinges: AB, with longer names parted."""
+    names = joint_words(first), joint_words(second)
+    return "".join(names) if max(map(len, names)) <= 2 else " – ".join(names)
 
 
 def square_to(joint: Joint) -> str:
