@@ -52,6 +52,11 @@ class Joint:
         return next(name for name in self.shares if name != body)
 
     @property
+    def has_force(self) -> bool:
+        """Whether it transfers forces, and not a moment alone."""
+        return any(force for force, _moment in self.bases)
+
+    @property
     def letter(self) -> str:
         """R of hinges and rolling contacts, P of guides, nothing of others."""
         if self.kind in ("hinge", "rolling") and len(self.bases) == 2:
@@ -67,10 +72,10 @@ def joints_of(structure: Structure, bodies: Bodies, drawing: Drawing) -> tuple[J
     found = [
         *_hinges(bodies, drawing),
         *_guides(bodies, drawing),
-        *_wheels(structure, drawing),
+        *_wheels(structure, bodies, drawing),
         *(_drive(drive, bodies, drawing) for drive in structure.mechanism.drives),
     ]
-    reactions = [joint for joint in found if joint.kind in ("hinge", "guide", "rolling")]
+    reactions = [joint for joint in found if joint.kind != "drive" and joint.has_force]
     pairs = Counter(frozenset(joint.bodies) for joint in reactions)
     return tuple(
         Joint(j.kind, j.name, j.shares, j.place, j.bases, j.along, pairs[frozenset(j.bodies)] < 2)
@@ -92,13 +97,11 @@ def _guides(bodies: Bodies, drawing: Drawing) -> Iterator[Joint]:
         yield Joint("guide", guide.id, shares, drawing.point(guide.point), bases, along)
 
 
-def _wheels(structure: Structure, drawing: Drawing) -> Iterator[Joint]:
+def _wheels(structure: Structure, bodies: Bodies, drawing: Drawing) -> Iterator[Joint]:
     redundant = {one.rolling for one in structure.redundant if isinstance(one, Contact)}
     for constraint in structure.constraints:
         if isinstance(constraint, GearRatio):
-            weights = constraint.weights(drawing.numbers)
-            shares = {link: float(weight) for link, weight in weights.items() if weight != 0.0}
-            yield Joint("mesh", constraint.gear, shares, 0j, ((0j, 1.0),))
+            yield _mesh(constraint, bodies, drawing)
         if isinstance(constraint, NoSlip):
             at = complex(*contact_point(constraint, PLAIN, drawing.numbers, drawing.at))
             apart = drawing.point(constraint.centre) - at
@@ -106,6 +109,28 @@ def _wheels(structure: Structure, drawing: Drawing) -> Iterator[Joint]:
             bases = XY if constraint.rolling not in redundant else ((across, 0.0),)
             shares = {constraint.on: -1.0, constraint.link: 1.0}
             yield Joint("rolling", constraint.rolling, shares, at, bases, across)
+
+
+def _mesh(gear: GearRatio, bodies: Bodies, drawing: Drawing) -> Joint:
+    """A force square to the line of centres at the pitch point; moments alone where nothing tells that point.
+
+    The radial part of a tooth's force, which presses the wheels apart, is left out.
+    """
+    weights = gear.weights(drawing.numbers)
+    ratio = float(drawing.numbers.gearing.ratio[gear.gear])
+    axes = [_axes(bodies, wheel, gear.carrier) for wheel in (gear.first, gear.second)]
+    if len(axes[0]) == len(axes[1]) == 1 and axes[0] != axes[1] and ratio != 1.0:
+        first, second = (drawing.point(names[0]) for names in axes)
+        pitch = (first - ratio * second) / (1.0 - ratio)
+        across = 1j * (pitch - second) / abs(pitch - second)
+        return Joint("mesh", gear.gear, {gear.first: -1.0, gear.second: 1.0}, pitch, ((across, 0.0),), across)
+    shares = {link: float(weight) for link, weight in weights.items() if weight != 0.0}
+    return Joint("mesh", gear.gear, shares, 0j, ((0j, 1.0),))
+
+
+def _axes(bodies: Bodies, wheel: str, carrier: str) -> list[str]:
+    """Points in which a wheel is hinged to its carrier."""
+    return [point for point, names in bodies.at_point.items() if wheel in names and carrier in names]
 
 
 def _drive(drive: Drive, bodies: Bodies, drawing: Drawing) -> Joint:

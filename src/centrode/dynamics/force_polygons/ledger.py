@@ -58,12 +58,11 @@ class Ledger:
     def reaction(self, joint: Joint, body: str, force: complex, moment: float = 0.0) -> Action:
         """The action of a joint on one of its bodies."""
         share = joint.shares[body]
-        source = "drive" if joint.kind == "drive" else "reaction"
         return Action(
             self.symbol(joint, body),
             joint.name,
             body,
-            "drive" if source == "drive" else "reaction",
+            "drive" if joint.kind == "drive" else "reaction",
             share * force,
             joint.place,
             share * moment,
@@ -73,9 +72,9 @@ class Ledger:
         """R12 of body 1 on body 2; Mb and Fb of a drive, Mz of a gear's mesh."""
         if joint.kind == "drive":
             several = len(self.bodies.mechanism.drives) > 1
-            name = ("Fb" if joint.bases[0][0] else "Mb") + (f"({joint.name})" if several else "")
+            name = ("Fb" if joint.has_force else "Mb") + (f"({joint.name})" if several else "")
             return name if joint.shares[body] > 0 else f"−{name}"
-        if joint.kind == "mesh":
+        if joint.kind == "mesh" and not joint.has_force:
             several = len(self.bodies.mechanism.gears) > 1
             return f"Mz{self.bodies.number(body)}" + (f"({joint.name})" if several else "")
         name = f"R{self.bodies.pair(joint.other(body), body)}"

@@ -29,7 +29,7 @@ def solve_single(cell: Cell, ledger: Ledger, words: Words) -> Found | None:
         return None
     if pivot.letter == "R":
         return _on_hinge(cell.bodies[0], pivot, other, ledger, words)
-    if other.kind == "drive" and other.bases[0][0]:
+    if abs(dot(other.bases[0][0], pivot.along)) > SINGULAR:
         return _on_guide(cell.bodies[0], pivot, other, ledger, words)
     return None
 
@@ -62,27 +62,27 @@ def _on_hinge(body: str, pivot: Joint, other: Joint, ledger: Ledger, words: Word
     return Found(((other, size * unit, size * turn), (pivot, pivot.shares[body] * force, 0.0)), tuple(chain))
 
 
-def _on_guide(body: str, guide: Joint, drive: Joint, ledger: Ledger, words: Words) -> Found:
-    """A driven slider: along the guide the drive holds it, square to it the guide."""
+def _on_guide(body: str, guide: Joint, other: Joint, ledger: Ledger, words: Words) -> Found:
+    """A slider: what pushes it along the guide is the other unknown, square to it the guide holds."""
     known, along = total(ledger.actions[body]), guide.along
-    share = drive.shares[body]
-    size = -dot(known, along) / (share * dot(drive.along, along))
-    push = ledger.reaction(drive, body, size * drive.along)
-    thrust = -cross(along, known) * 1j * along
-    moment = -(ledger.moment([body], guide.place))
-    hold = ledger.reaction(guide, body, guide.shares[body] * thrust, guide.shares[body] * moment)
+    unit = other.bases[0][0]
+    size = -dot(known, along) / (other.shares[body] * dot(unit, along))
+    push = ledger.reaction(other, body, size * unit)
+    thrust = -cross(along, known + push.force) * 1j * along
+    moment = -(ledger.moment([body], guide.place) + push.about(guide.place))
+    share = guide.shares[body]
+    hold = ledger.reaction(guide, body, share * thrust, share * moment)
     words.say(
         _("link {link} along guide {guide}: {equation}").format(
-            link=ledger.bodies.number(body), guide=guide.name, equation=f"{push.symbol} = {size:.6g} N"
+            link=ledger.bodies.number(body),
+            guide=guide.name,
+            equation=f"|{push.symbol}| = {abs(push.force):.6g} N",
         )
     )
-    words.closing(body, ledger, drive, hold)
+    words.closing(body, ledger, other, hold)
     words.guide_moment(guide, body, ledger, moment, thrust)
     chain = [action for action in [*ledger.actions[body], push, hold] if action.force != 0]
-    forces = (
-        (drive, size * drive.along, 0.0),
-        (guide, guide.shares[body] * thrust, guide.shares[body] * moment),
-    )
+    forces = ((other, size * unit, 0.0), (guide, share * thrust, share * moment))
     return Found(forces, tuple(chain))
 
 
@@ -152,12 +152,13 @@ def _solved(matrix: Array, right: Array) -> Array:
 
 def _tell(joint: Joint, force: complex, moment: float, cell: Cell, ledger: Ledger, words: Words) -> None:
     """One reaction that was found with others."""
-    body = next(name for name in cell.bodies if name in joint.shares)
+    bodies = [name for name in cell.bodies if name in joint.shares]
+    body = max(bodies, key=lambda name: joint.shares[name])
     action = ledger.reaction(joint, body, force, moment)
     parts = [f"|{action.symbol}| = {abs(action.force):.6g} N"] if action.force else []
     if joint.kind == "guide":
         parts.append(f"M{action.symbol.removeprefix('R')} = {action.moment:.6g} N m")
-    elif joint.kind in ("mesh", "drive") and not joint.bases[0][0]:
+    elif joint.kind in ("mesh", "drive") and not joint.has_force:
         parts = [f"{action.symbol} = {action.moment:.6g} N m"]
     if parts:
         words.say(f"{joint_words(joint)}: {', '.join(parts)}")

@@ -185,7 +185,7 @@ def _driving(ledger: Ledger, joint: Joint) -> float:
     """Moment or force of a drive, positive as its value grows."""
     number = next(k for k, one in enumerate(ledger.joints) if one is joint)
     force, moment = ledger.forces[number]
-    return moment if not joint.bases[0][0] else (force * joint.along.conjugate()).real
+    return moment if not joint.has_force else (force * joint.along.conjugate()).real
 
 
 def _reactions(ledger: Ledger) -> dict[str, complex]:
@@ -203,7 +203,7 @@ def _moments(ledger: Ledger) -> dict[str, float]:
             symbol = ledger.symbol(joint, body)
             if joint.kind == "guide":
                 found[f"M{symbol.removeprefix('R')}"] = share * moment
-            elif joint.kind == "mesh":
+            elif joint.kind == "mesh" and not joint.has_force:
                 found[symbol] = share * moment
     return found
 

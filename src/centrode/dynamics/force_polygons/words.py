@@ -122,17 +122,23 @@ class Words:
     def notes(self, joints: Sequence[Joint]) -> None:
         """What a reader has to know of meshes, and of contacts that something else keeps."""
         for joint in joints:
-            if joint.kind == "mesh":
+            if joint.kind == "mesh" and joint.has_force:
                 text = _(
-                    "gear {gear}: moments alone; what forces between teeth add in the bearings is left out"
+                    "gear {name}: the part of the teeth's force that presses the wheels apart is left out"
                 )
-                self.lines.append(text.format(gear=joint.name))
+            elif joint.kind == "mesh":
+                text = _(
+                    "gear {name}: moments alone, because nothing tells its pitch point; what forces between"
+                    " teeth add in the bearings is left out"
+                )
             elif joint.kind == "rolling" and len(joint.bases) == 1:
                 text = _(
-                    "wheel {wheel} is kept at its track by other joints: its normal force is not determined"
+                    "wheel {name} is kept at its track by other joints: its normal force is not determined"
                     " and is taken as none"
                 )
-                self.lines.append(text.format(wheel=joint.name))
+            else:
+                continue
+            self.lines.append(text.format(name=joint.name))
 
     def say(self, line: str) -> None:
         """Any other line."""
@@ -163,6 +169,8 @@ def joint_words(joint: Joint) -> str:
     """Where a joint is: the point of a hinge, a guide, a contact."""
     if joint.kind == "guide":
         return _("guide {guide}").format(guide=joint.name)
+    if joint.kind == "mesh":
+        return _("the teeth of {gear}").format(gear=joint.name)
     if joint.kind == "rolling":
         return _("the contact of {wheel}").format(wheel=joint.name)
     return joint.name
