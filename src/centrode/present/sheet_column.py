@@ -40,7 +40,7 @@ def write_column(page: Page, column: float, title: str, heads: Sequence[str], li
     wide, high = page.size
     letters = int((wide - column - 3.0) / LETTER)
     y = high - TOP - 1.0
-    for text in textwrap.wrap(title, letters):
+    for text in textwrap.wrap(title, int(0.8 * letters)):
         page.write(column, y, plain(text), size=7.5, va="top", weight="bold")
         y -= 1.1 * LINE
     for text in heads:
