@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from centrode.analysis.graphic.board import round_scale
 from centrode.locale import _
 from centrode.present import signs
-from centrode.present.diagram_drawing import flat
+from centrode.present.diagram_drawing import flat, typeset
 from centrode.present.force_signs import force_arrows, moment_arc
 from centrode.present.page import Page, View, new_page
 from centrode.present.scene import corners
@@ -75,7 +75,7 @@ def draw_outlines(page: Page, view: View, found: ForcePolygons, lever: Lever, fa
 
 def name_images(page: Page, view: View, lever: Lever, factor: float) -> None:
     """The pole and the images of the points; those that coincide share a name."""
-    named = [(view.mm(np.zeros(2)), ["p"])]
+    named = [(view.mm(np.zeros(2)), ["p_v"])]
     for name, image in lever.images.items():
         at = view.mm(flat([factor * image])[0])
         near = next((names for place, names in named if np.hypot(*(place - at)) < TOGETHER), None)
@@ -85,7 +85,8 @@ def name_images(page: Page, view: View, lever: Lever, factor: float) -> None:
             named.append((at, [name.lower()]))
     for at, names in named:
         signs.hinge(page.overlay, at, 0.9)
-        page.name(at, ", ".join(names[:6]) + (", …" if len(names) > 6 else ""), clear=1.6, size=9.0)
+        text = ", ".join(names[:6]) + (", …" if len(names) > 6 else "")
+        page.name(at, typeset(text), clear=1.6, size=9.0)
 
 
 def draw_forces(page: Page, view: View, found: ForcePolygons, lever: Lever, factor: float) -> None:
@@ -99,5 +100,5 @@ def draw_forces(page: Page, view: View, found: ForcePolygons, lever: Lever, fact
         points = lever.links.get(one.body, ())
         middle = sum((lever.images[point] for point in points), 0j) / max(1, len(points))
         moment_arc(page, view.mm(flat([factor * middle])[0]), one.couple, one.name)
-    if abs(lever.balancing) > TINY * greatest:
-        moment_arc(page, view.mm(np.zeros(2)), lever.balancing, "Mb" if lever.unit == "N m" else "Fb")
+    if lever.unit == "N m" and abs(lever.balancing) > TINY * greatest:
+        moment_arc(page, view.mm(np.zeros(2)), lever.balancing, "Mb")

@@ -89,7 +89,15 @@ def shown_places(found: ForcePolygons, group: GroupForces) -> list[complex]:
     links = found.mechanism.links
     points = {point for body in group.bodies if body in links for point in links[body].coordinates}
     acting = [one.place for one in (*group.actions, *group.reactions) if one.force != 0]
-    return [*(found.places[point] for point in points), *acting]
+    return [*(found.places[point] for point in points), *acting, *rims(found, group)]
+
+
+def rims(found: ForcePolygons, group: GroupForces) -> list[complex]:
+    """Corners around the rolling wheels of the group."""
+    wheels = [wheel for wheel in found.mechanism.rolling if wheel.link in group.bodies]
+    return [
+        found.places[wheel.centre] + wheel.radius * corner for wheel in wheels for corner in (1 + 1j, -1 - 1j)
+    ]
 
 
 def draw_polygons(page: Page, found: ForcePolygons, group: GroupForces, corner: Array, size: Array) -> float:
