@@ -45,7 +45,32 @@ def draw_group(page: Page, view: View, found: ForcePolygons, group: GroupForces,
         else:
             signs.traced_point(axes, places[name], sign, INK)
         page.name(view.mm(places[name]), plain(name), clear=2.2, size=9.0)
+    draw_marks(page, view, found, group, scene.factor)
     draw_forces(page, view, found, group, scene.factor)
+
+
+def draw_marks(page: Page, view: View, found: ForcePolygons, group: GroupForces, factor: float) -> None:
+    """Special points of the construction, if they lie in the view, with the lines on which they lie."""
+    for name, mark in group.marks:
+        at = view.mm(flat([factor * mark])[0])
+        if (at < view.corner + 4.0).any() or (at > view.corner + view.size - 4.0).any():
+            continue
+        signs.cross(page.overlay, at, 1.2, INK)
+        page.name(at, name, clear=1.4, size=9.0)
+        hinges = [found.places[joint.name] for joint in group.joints if joint.kind == "hinge"]
+        for hinge in hinges:
+            arms = [other for other in hinges if other != hinge and on_line(hinge, other, mark)]
+            if arms:
+                end = view.mm(flat([factor * hinge])[0])
+                page.overlay.plot(
+                    *np.array([end, at]).T, color=MUTED, linewidth=0.6, linestyle="--", zorder=3
+                )
+
+
+def on_line(first: complex, second: complex, place: complex) -> bool:
+    """Whether a place lies on the line through two others."""
+    along, way = second - first, place - first
+    return abs((along.conjugate() * way).imag) <= 1e-9 * abs(along) * max(abs(way), abs(along))
 
 
 def draw_bodies(

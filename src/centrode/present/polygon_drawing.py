@@ -70,7 +70,10 @@ def group_page(found: ForcePolygons, group: GroupForces, text: str) -> Figure:
     scene = scene_of(found.mechanism, found.exact)
     places = flat([factor * place for place in shown_places(found, group)])
     room_of_group = np.array([drawn, height]) - AROUND
-    length = round_length(float(np.max(np.ptp(places, axis=0) / room_of_group)), 1.0)
+    extents = np.ptp(places, axis=0)
+    if not extents.any():  # sliders in one place
+        extents = np.ptp(flat([factor * place for place in found.places.values()]), axis=0)
+    length = round_length(float(np.max(extents / room_of_group)), 1.0)
     view = View.about(np.array([LEFT, FOOT]), np.array([drawn, height]), places, length)
     draw_group(page, view, found, group, scene)
     corner, size = np.array([LEFT + drawn + GUTTER, FOOT]), np.array([room, height])
@@ -85,10 +88,11 @@ def group_page(found: ForcePolygons, group: GroupForces, text: str) -> Figure:
 
 
 def shown_places(found: ForcePolygons, group: GroupForces) -> list[complex]:
-    """Points of the group and where forces act."""
+    """Points of the group, its joints, and where forces act."""
     links = found.mechanism.links
     points = {point for body in group.bodies if body in links for point in links[body].coordinates}
     acting = [one.place for one in (*group.actions, *group.reactions) if one.force != 0]
+    acting += [joint.place for joint in group.joints if joint.kind in ("hinge", "guide", "rolling")]
     return [*(found.places[point] for point in points), *acting, *rims(found, group)]
 
 

@@ -25,7 +25,7 @@ HEADS = (
 def polygon_about(found: ForcePolygons) -> list[tuple[str, str]]:
     """Numbers of the bodies, the speed, what F1 and M1 stand for."""
     numbers = ", ".join(f"{number} {name}" for number, name in enumerate(found.names))
-    loads = {one.symbol: one.label for one in found.outer if one.source != "inertia"}
+    loads = {one.symbol.partition("(")[0]: one.label for one in found.outer if one.source != "inertia"}
     return [
         (_("bodies"), numbers),
         (_("speed of the drive"), _speed(found)),

@@ -52,10 +52,12 @@ class Found:
     ----------
     forces : joint, force and moment on a body of share 1
     chain : forces on the group in the order of its polygon, reactions in parts where they were found in parts
+    marks : special points of the construction, by name
     """
 
     forces: tuple[tuple[Joint, complex, float], ...]
     chain: tuple[Action, ...]
+    marks: tuple[tuple[str, complex], ...] = ()
 
 
 def dyad_of(cell: Cell) -> Dyad | None:

@@ -28,6 +28,7 @@ class GroupForces:
     polygon : of the whole group
     link_polygons : of each of its bodies
     joints : its own joints, inner and outer
+    marks : special points of the construction: S of a triad is its Assur point
     """
 
     bodies: tuple[str, ...]
@@ -39,6 +40,7 @@ class GroupForces:
     polygon: Polygon
     link_polygons: tuple[Polygon, ...]
     joints: tuple[Joint, ...]
+    marks: tuple[tuple[str, complex], ...] = ()
 
 
 @dataclass(frozen=True)

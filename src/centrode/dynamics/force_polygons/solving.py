@@ -146,7 +146,16 @@ def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces
         for body in cell.bodies
     )
     return GroupForces(
-        cell.bodies, numbers, kind, before, reactions, tuple(words.lines), whole, single, cell.joints
+        cell.bodies,
+        numbers,
+        kind,
+        before,
+        reactions,
+        tuple(words.lines),
+        whole,
+        single,
+        cell.joints,
+        found.marks,
     )
 
 

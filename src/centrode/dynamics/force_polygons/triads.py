@@ -7,7 +7,7 @@ then the polygon closes along two directions.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 from centrode.analysis.graphic.board import cross
@@ -89,7 +89,7 @@ def solve_triad(triad: Triad, ledger: Ledger, words: Words) -> Found | None:
     sizes[second] = cross(known, one.along) / sine
     words.lines += told.lines
     _tell(triad, ledger, words, (one, other, last), (turning, reach, sizes[third]))
-    return _found(triad, ledger, legs, sizes)
+    return replace(_found(triad, ledger, legs, sizes), marks=(("S", point),))
 
 
 def _tell(

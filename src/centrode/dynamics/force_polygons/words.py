@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from centrode.dynamics.force_polygons.joints import Joint
     from centrode.dynamics.force_polygons.ledger import Ledger
 
+NONE = 1e-14
+"""Arms and moments smaller than this part of what they are made of are rounding of none."""
+
 
 @dataclass
 class Words:
@@ -25,6 +28,7 @@ class Words:
         """Moments of a link about the inner hinge give the part of the outer reaction square to the arm."""
         symbol = ledger.symbol(side.joint, side.body) + "ᵗ"
         terms = ledger.told([side.body], inner.place)
+        size = size if terms else 0.0
         self.about(side.body, inner, ledger, f"{symbol}·{arm:.5g}{terms} = 0, {symbol} = {size:.6g} N")
 
     def about(self, body: str, joint: Joint, ledger: Ledger, equation: str) -> None:
@@ -86,7 +90,7 @@ class Words:
             _("link {link} along guide {guide}: {equation}").format(
                 link=self.link(side.body, ledger),
                 guide=inner.name,
-                equation=f"{told} = 0, {symbol} = {part:.6g} N",
+                equation=f"{told} = 0, {symbol} = {part + 0.0:.6g} N",
             )
         )
 
@@ -97,7 +101,9 @@ class Words:
         symbol = ledger.symbol(dyad.first.joint, dyad.first.body)
         terms = ledger.told([dyad.first.body, dyad.second.body], dyad.second.joint.place)
         held = f" {'-' if part * lever < 0 else '+'} {abs(part * lever):.5g} ({symbol}ᵗ)"
-        equation = f"{symbol}ⁿ·{reach:.5g}{held if part * lever else ''}{terms} = 0, {symbol}ⁿ = {left:.6g} N"
+        if abs(lever) <= NONE * ledger.scale:
+            held = ""
+        equation = f"{symbol}ⁿ·{reach:.5g}{held}{terms} = 0, {symbol}ⁿ = {left:.6g} N"
         self.lines.append(
             _("moments of the group {links} about {point}: {equation}").format(
                 links=self.links(dyad, ledger), point=joint_words(dyad.second.joint), equation=equation
@@ -107,8 +113,10 @@ class Words:
     def guide_moment(self, joint: Joint, body: str, ledger: Ledger, moment: float, force: complex) -> None:
         """Moment of a guide on a link, and by how much its force therefore passes beside."""
         symbol = ledger.symbol(joint, body)
-        size = f"M{symbol.removeprefix('R')} = {moment + 0.0:.6g} N m"
-        if force and abs(moment) > 1e-12 * ledger.scale * abs(force):
+        loads = sum(abs(action.force) for action in ledger.actions[body]) + abs(force)
+        some = abs(moment) > NONE * ledger.scale * loads
+        size = f"M{symbol.removeprefix('R')} = {moment if some else 0.0:.6g} N m"
+        if force and some:
             beside = _("{symbol} acts {arm} m beside").format(
                 symbol=symbol, arm=f"{abs(moment) / abs(force):.5g}"
             )
@@ -133,8 +141,8 @@ class Words:
                 )
             elif joint.kind == "rolling" and len(joint.bases) == 1:
                 text = _(
-                    "wheel {name} is kept at its track by other joints: its normal force is not determined"
-                    " and is taken as none"
+                    "wheel {name} is kept at its track by other joints: equilibrium does not determine its"
+                    " normal force, which is taken as none, here and in the joints that keep it"
                 )
             else:
                 continue
