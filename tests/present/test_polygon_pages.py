@@ -29,6 +29,7 @@ INSTANTS = {
     "rolling-wheel-rod": 0.6,
     "planetary-gear-train": 0.5,
     "two-link-arm": 0.7,
+    "jansen-leg": 1.0,
     "tangent-mechanism": 0.1,
     "scotch-yoke": 0.8,
     "oscillating-cylinder": 0.3,
