@@ -68,6 +68,16 @@ from .dynamics.reduction import reduce as reduce
 from .study.reducing import reduction_rows as reduction_rows
 from .study.reducing import reduction_parts as reduction_parts
 
+# Forces by hand
+from .dynamics.force_polygons.solving import force_polygons as force_polygons
+from .dynamics.force_polygons.result import ForcePolygons as ForcePolygons
+from .study.force_polygons import polygon_about as polygon_about
+from .study.force_polygons import polygon_steps as polygon_steps
+from .study.force_polygons import polygon_rows as polygon_rows
+from .study.force_polygons import balance_rows as balance_rows
+from .study.force_polygons import polygon_csv as polygon_csv
+from .present import polygon_figures as polygon_figures
+
 # Steady motion of a machine
 from .dynamics.steady import steady_motion as steady_motion
 from .dynamics.flywheel import flywheel as flywheel

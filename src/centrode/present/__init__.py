@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from centrode.present.integrations import integration_figures
     from centrode.present.machine_figures import machine_figures
     from centrode.present.plan_drawing import plan_figure
+    from centrode.present.polygon_drawing import polygon_figures
     from centrode.present.reading import scene_of
     from centrode.present.reduction_figures import reduction_figures
     from centrode.present.reduction_tables import write_reduction_csv
@@ -58,6 +59,7 @@ __all__ = [
     "motion_table",
     "reduction_figures",
     "plan_figure",
+    "polygon_figures",
     "region_figure",
     "save_figures",
     "scene_of",
@@ -93,6 +95,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "plan_drawing": ["plan_figure"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
+        "polygon_drawing": ["polygon_figures"],
         "reading": ["scene_of"],
         "reduction_figures": ["reduction_figures"],
         "reduction_tables": ["write_reduction_csv"],

@@ -78,13 +78,14 @@ def flat(places: Sequence[complex]) -> Array:
 
 
 def arrow(page: Page, start: Array, end: Array, colour: str, dashes: Any = "-", width: float = 1.0) -> None:
-    """An arrow on the page [mm], with names kept off it."""
+    """An arrow on the page [mm], with names kept off it; a short one has a small head."""
+    head = min(7.0, 2.5 * float(np.hypot(*(end - start))) + 1.0)
     page.overlay.add_patch(
         FancyArrowPatch(
             (float(start[0]), float(start[1])),
             (float(end[0]), float(end[1])),
             arrowstyle="-|>",
-            mutation_scale=7.0,
+            mutation_scale=head,
             shrinkA=0.0,
             shrinkB=0.0,
             color=colour,

@@ -54,6 +54,7 @@ class Page:
     segments: list[tuple[Array, Array]] = field(default_factory=list)
     wishes: list[Wish] = field(default_factory=list)
     boxes: list[Array] = field(default_factory=list)
+    size: tuple[float, float] = (WIDE, HIGH)
 
     def name(self, place: Array, text: str, clear: float = 1.5, size: float = 8.0, colour: str = INK) -> None:
         """Wish for a name."""
@@ -133,17 +134,18 @@ def crossed(low: Array, high: Array, segments: Sequence[tuple[Array, Array]]) ->
     return int(np.sum((enter <= leave) & (enter <= 1.0) & (leave >= 0.0)))
 
 
-def new_page() -> Page:
-    """An empty page; made inside `house_style`."""
-    figure = Figure(figsize=(WIDE / INCH, HIGH / INCH), dpi=150)
+def new_page(size: tuple[float, float] = (WIDE, HIGH)) -> Page:
+    """An empty page of a size [mm]; made inside `house_style`."""
+    wide, high = size
+    figure = Figure(figsize=(wide / INCH, high / INCH), dpi=150)
     FigureCanvasAgg(figure)
     overlay = figure.add_axes((0.0, 0.0, 1.0, 1.0), zorder=2)
     overlay.set_axis_off()
-    overlay.set_xlim(0.0, WIDE)
-    overlay.set_ylim(0.0, HIGH)
+    overlay.set_xlim(0.0, wide)
+    overlay.set_ylim(0.0, high)
     overlay.set_autoscale_on(False)
     overlay.patch.set_alpha(0.0)
-    return Page(figure, overlay)
+    return Page(figure, overlay, size=size)
 
 
 @dataclass(frozen=True)
@@ -174,8 +176,8 @@ class View:
 
     def axes(self, page: Page) -> Axes:
         """Axes in the plane's own units."""
-        x, y = self.corner / (WIDE, HIGH)
-        wide, high = self.size / (WIDE, HIGH)
+        x, y = self.corner / page.size
+        wide, high = self.size / page.size
         axes = page.figure.add_axes((float(x), float(y), float(wide), float(high)), zorder=1)
         axes.set_axis_off()
         axes.set_xlim(float(self.low[0]), float(self.low[0] + self.scale * self.size[0]))

@@ -1,0 +1,1 @@
+"""Kinetostatics by hand at an instant: force polygons of the groups, and Zhukovsky's lever."""
