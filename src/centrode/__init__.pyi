@@ -65,6 +65,7 @@ from .study.summary import motion_rows as motion_rows
 
 # Forces
 from .dynamics.reduction import reduce as reduce
+from .dynamics.kinetostatics.reactions import reactions as reactions
 from .study.reducing import reduction_rows as reduction_rows
 from .study.reducing import reduction_parts as reduction_parts
 
