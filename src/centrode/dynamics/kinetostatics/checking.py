@@ -18,7 +18,7 @@ Number: TypeAlias = Any
 
 
 def checks_of(found: Found, rates: Array) -> dict[str, float]:
-    """Worst residuals over all samples that are ok, each over the greatest force, moment or power of its sample.
+    """Worst residuals over all samples that are ok, each over the greatest force or moment of its sample, or power.
 
     `rates` (samples, drives) are the speeds of the drives.
     """
@@ -37,7 +37,7 @@ def _worst(found: Found, missing: Array, size: Array) -> float:
 
 
 def _equilibrium(forces: Forces) -> tuple[Array, Array]:
-    """What is missing to the equilibrium of every pin and link, moments about the link's first point; greatest force."""
+    """What is missing to the equilibrium of every pin and link, moments about its first point; greatest force."""
     system, mechanism = forces.system, forces.system.scheme.structure.mechanism
     on: dict[Entity, list[Pull]] = {entity: [] for entity in system.scheme.structure.unknowns}
     size: Number = 0.0
@@ -70,11 +70,15 @@ def _frame(found: Found) -> tuple[Array, Array]:
 
 
 def _power(found: Found, rates: Array) -> tuple[Array, Array]:
-    """Power of the drives, and of loads and inertia by virtual work."""
+    """Power of the drives, and of loads and inertia by virtual work; the greatest of the whole motion."""
     given = found.parts["balancing"] * rates
     taken = found.outer.moment[0] * found.pace.moving.rate
-    return np.abs(given.sum(axis=-1) + taken), np.abs(given).sum(axis=-1) + np.abs(taken)
+    good = found.status == Status.OK
+    greatest = np.max((np.abs(given).sum(axis=-1) + np.abs(taken))[good], initial=0.0)
+    return np.abs(given.sum(axis=-1) + taken), np.full(len(good), greatest)
 
 
 def _flat(forces: Forces, values: Number) -> Array:
-    return np.broadcast_to(values, forces.system.shape)[0]
+    """Numbers over the samples."""
+    flat: Array = np.broadcast_to(values, forces.system.shape)[0]
+    return flat

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.kinetostatics.results import reactions_of
+from centrode.dynamics.kinetostatics.scheme import Unknown
 from centrode.dynamics.kinetostatics.sides import Side
 from centrode.dynamics.kinetostatics.solution import Forces, Kinetostatics
 from centrode.errors import Status
@@ -23,8 +24,7 @@ MOMENTS = ("guide_moment", "gear_moment", "balancing")
 def reaction_status(system: Kinetostatics, status: Codes) -> Codes:
     """The motion's statuses (n), and `singular` where rounding leaves no digit of the reactions."""
     found = status.copy()
-    with np.errstate(invalid="ignore"):
-        lost = system.inverse.loss[0] >= 1.0
+    lost = system.inverse.useless[0]
     found[lost & ((status == Status.OK) | (status == Status.CUT_OFF))] = Status.SINGULAR
     return found
 
@@ -53,11 +53,10 @@ def undetermined_parts(
     return found
 
 
-def _self_stress(system: Kinetostatics, unknown: tuple) -> Forces:  # type: ignore[type-arg]
+def _self_stress(system: Kinetostatics, unknown: Unknown) -> Forces:
     """All constraint forces that a unit of one repeating equation brings about."""
-    forces = system.forces(system.pulls[unknown])
-    ones = np.ones(system.shape)
-    return Forces(system, {**forces.multipliers, unknown: ones}, ())
+    multipliers = system.forces(system.pulls[unknown]).multipliers
+    return Forces(system, {**multipliers, unknown: multipliers[unknown] + 1.0}, ())
 
 
 def _measured(parts: Mapping[str, Array], scale: float) -> dict[str, Array]:
@@ -67,4 +66,5 @@ def _measured(parts: Mapping[str, Array], scale: float) -> dict[str, Array]:
 
 
 def _greatest(values: Array) -> Array:
-    return np.abs(values).reshape(len(values), -1).max(axis=1)
+    greatest: Array = np.abs(values).reshape(len(values), -1).max(axis=1)
+    return greatest

@@ -26,7 +26,7 @@ class Scheme:
 
     Attributes
     ----------
-    solved : unknowns of the linear system
+    solved : as many unknowns as there are equations
     hosts : (point, axis) -> unknown that follows from the pin's balance
     loose : (point, axis) of points without a link to bear them: they keep their own equations
     repeating : unknowns of the equations that repeat others; nothing tells how great they are
@@ -59,6 +59,11 @@ class Scheme:
     def links(self) -> tuple[str, ...]:
         """Links, each with three equations."""
         return tuple(self.structure.mechanism.links)
+
+    @property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """Unknowns of the linear system, those of repeating equations behind the others."""
+        return (*self.solved, *self.repeating)
 
     @property
     def size(self) -> int:

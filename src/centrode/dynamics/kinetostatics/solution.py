@@ -93,9 +93,9 @@ class Kinetostatics:
     @cached_property
     def inverse(self) -> Inverse:
         """The matrix of the equations, inverted at every position."""
-        size = self.scheme.size
-        matrix = np.zeros((size, size, *self.shape))
-        for column, unknown in enumerate(self.scheme.solved):
+        size, unknowns = self.scheme.size, self.scheme.unknowns
+        matrix = np.zeros((size, len(unknowns), *self.shape))
+        for column, unknown in enumerate(unknowns):
             self._add(matrix[:, column], self.pulls[unknown])
             if unknown[0].angular:
                 matrix[:, column] *= self.scale
@@ -108,10 +108,14 @@ class Kinetostatics:
         return found
 
     def forces(self, outer: Sequence[Pull]) -> Forces:
-        """Constraint forces that balance what acts on points and links; equations that repeat others bear nothing."""
+        """Constraint forces that balance what acts on points and links.
+
+        Equations that repeat others bear nothing, except where the others alone are singular: there all together bear
+        the least. What nothing determines is one of the many forces that are possible.
+        """
         solved = self.inverse.times(-self.right_side(outer))
         multipliers: dict[Unknown, Number] = {}
-        for row, unknown in enumerate(self.scheme.solved):
+        for row, unknown in enumerate(self.scheme.unknowns):
             multipliers[unknown] = solved[row] * self.scale if unknown[0].angular else solved[row]
         multipliers |= self._at_hosts(multipliers, outer)
         return Forces(self, multipliers, tuple(outer))

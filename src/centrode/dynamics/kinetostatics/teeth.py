@@ -34,7 +34,7 @@ class Teeth:
         return cls(found)
 
     def pulls(self, constraint: GearRatio, at: Positions, numbers: Dimensions) -> tuple[Pull, ...]:
-        """The force between the teeth, square to the line of centres, that turns the second wheel by one unit of moment.
+        """The force between the teeth, square to the line of centres, with a moment of one on the second wheel.
 
         Its radial part, which presses the wheels apart, is left out: nothing tells the pressure angle.
         """
