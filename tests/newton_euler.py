@@ -13,7 +13,7 @@ import numpy.typing as npt
 import xarray as xr
 
 import centrode as ct
-from burdened import GRAVITY, dot
+from burdened import GRAVITY
 from mechanisms import link, point, slide
 
 Array = npt.NDArray[np.float64]
@@ -137,7 +137,8 @@ class Balance:
         self.add(self.bearer(first), -push * unit, self.at(first))
 
     def twist(self, load: Any) -> None:
-        base, slow = 0.0, 0.0
+        base: Any = 0.0
+        slow: Any = 0.0
         if load.relative_to != FRAME:
             base, slow = (link(self.motion, load.relative_to, w) for w in ("angle", "angular_velocity"))
         x = link(self.motion, load.link) - base
@@ -208,6 +209,11 @@ class Balance:
                 self.add(self.bearer(first), -given * way, self.at(first))
             else:
                 self.along_guide(drive.guide or "", given)
+
+
+def dot(one: Any, other: Any) -> Array:
+    """Scalar product of plane vectors as complex numbers."""
+    return np.asarray((np.conj(one) * other).real)
 
 
 def vector(values: xr.DataArray) -> Complex:

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import centrode as ct
-from burdened import burdened, dot
+from burdened import burdened
 from centrode.dynamics.kinetostatics.scheme import Scheme
 from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import Moving, State
@@ -21,7 +21,7 @@ from centrode.kinematics.solve import asked_span, solve
 from growing import KINDS, descriptions, grown, mechanism_of
 from growing_higher import HIGHER, grown_higher
 from mechanisms import EPS
-from newton_euler import FRAME, Balance, vector
+from newton_euler import FRAME, Balance, dot, vector
 
 Array = npt.NDArray[np.float64]
 WIDTH = 0.3
@@ -38,7 +38,7 @@ def asked(
     parts["drives"][0]["speed"] = speed
     mechanism = mechanism_of(parts)
     initial = ready(mechanism).kinematics.path.initial
-    ends = {"samples": 7, "start": initial - WIDTH, "stop": initial + WIDTH}
+    ends: Any = {"samples": 7, "start": initial - WIDTH, "stop": initial + WIDTH}
     return mechanism, ct.motion(mechanism, **ends), ct.reactions(mechanism, **ends)
 
 

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from centrode.dynamics.kinetostatics.finding import Found
 from centrode.dynamics.kinetostatics.solution import Forces
+from centrode.dynamics.kinetostatics.stacking import column
 from centrode.dynamics.pulls import Pull, total
 from centrode.errors import Status
 from centrode.structure.positions import Entity
@@ -39,6 +40,7 @@ def _worst(found: Found, missing: Array, size: Array) -> float:
 def _equilibrium(forces: Forces) -> tuple[Array, Array]:
     """What is missing to the equilibrium of every pin and link, moments about its first point; greatest force."""
     system, mechanism = forces.system, forces.system.scheme.structure.mechanism
+    samples = system.shape[-1]
     on: dict[Entity, list[Pull]] = {entity: [] for entity in system.scheme.structure.unknowns}
     size: Number = 0.0
     for pull in forces.all_pulls:
@@ -52,12 +54,13 @@ def _equilibrium(forces: Forces) -> tuple[Array, Array]:
         x, y, moment = total(pulls, system.at.points[point])
         missing = np.maximum(missing, np.maximum(np.abs(x), np.abs(y)))
         missing = np.maximum(missing, np.abs(moment) / system.scale) if entity.kind == "link" else missing
-    return _flat(forces, missing), _flat(forces, size)
+    return column(missing, samples), column(size, samples)
 
 
 def _frame(found: Found) -> tuple[Array, Array]:
     """What the frame bears, less all loads and the inertia forces, which are minus the rate of momentum."""
     forces, scale = found.forces, found.forces.system.scale
+    samples = forces.system.shape[-1]
     borne, acting = total(forces.on_frame), total(found.outer.pulls)
     missing: Number = 0.0
     size: Number = 0.0
@@ -66,7 +69,7 @@ def _frame(found: Found) -> tuple[Array, Array]:
     for pull in [*forces.on_frame, *found.outer.pulls]:
         size = np.maximum(size, np.maximum(np.abs(pull.force[0]), np.abs(pull.force[1])))
         size = np.maximum(size, np.abs(pull.moment_about((0.0, 0.0))) / scale)
-    return _flat(forces, missing), _flat(forces, size)
+    return column(missing, samples), column(size, samples)
 
 
 def _power(found: Found, rates: Array) -> tuple[Array, Array]:
@@ -76,9 +79,3 @@ def _power(found: Found, rates: Array) -> tuple[Array, Array]:
     good = found.status == Status.OK
     greatest = np.max((np.abs(given).sum(axis=-1) + np.abs(taken))[good], initial=0.0)
     return np.abs(given.sum(axis=-1) + taken), np.full(len(good), greatest)
-
-
-def _flat(forces: Forces, values: Number) -> Array:
-    """Numbers over the samples."""
-    flat: Array = np.broadcast_to(values, forces.system.shape)[0]
-    return flat

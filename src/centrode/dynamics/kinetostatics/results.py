@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from centrode.dynamics.kinetostatics.sides import Side, side_forces
 from centrode.dynamics.kinetostatics.solution import Forces
+from centrode.dynamics.kinetostatics.stacking import columns, tables
 from centrode.dynamics.pulls import Pull
 from centrode.structure.constraints import Constraint, NoTurning, PointOnGuide, is_drive
 from centrode.structure.gearing import Straight
@@ -26,9 +27,11 @@ def reactions_of(forces: Forces, sides: Sequence[Side]) -> dict[str, Array]:
         kind: [c for c in structure.constraints if isinstance(c, kind)]
         for kind in (PointOnGuide, GearRatio, Contact, NoSlip)
     }
+    samples = forces.system.shape[-1]
+    drives = [_value(forces, c) for c in structure.constraints if is_drive(c)]
     found = {
-        "joint_force": _stacked(forces, [list(pair) for pair in side_forces(forces, sides).values()]),
-        "balancing": _stacked(forces, [_value(forces, c) for c in structure.constraints if is_drive(c)]),
+        "joint_force": tables([*side_forces(forces, sides).values()], 2, samples),
+        "balancing": columns(drives, samples),
     }
     if of_kind[PointOnGuide]:
         found |= _of_guides(forces, of_kind[PointOnGuide])
@@ -44,13 +47,6 @@ def _value(forces: Forces, constraint: Constraint | None) -> Number:
     return 0.0 if constraint is None else forces.multipliers.get((constraint, 0), 0.0)
 
 
-def _stacked(forces: Forces, values: Sequence[Any]) -> Array:
-    """Nested lists of numbers over the samples as one array, samples first."""
-    if values and isinstance(values[0], list):
-        return np.stack([_stacked(forces, value) for value in values], axis=1)
-    return np.stack([np.broadcast_to(value, forces.system.shape)[0] for value in values], axis=-1)
-
-
 def _force_of(pulls: Iterable[Pull]) -> list[Number]:
     """The first of the forces that a constraint exerts: on the point, slider or wheel; carriers come after."""
     return next(list(pull.force) for pull in pulls if not isinstance(pull.force[0], float) or any(pull.force))
@@ -62,10 +58,11 @@ def _of_guides(forces: Forces, guides: Sequence[Constraint]) -> dict[str, Array]
     units = [_force_of(forces.system.pulls[c, 0]) for c in guides]
     vectors = [[value * x for x in unit] for value, unit in zip(normal, units, strict=True)]
     moments = [_value(forces, turning.get(c.guide)) for c in guides if isinstance(c, PointOnGuide)]
+    samples = forces.system.shape[-1]
     return {
-        "guide_force": _stacked(forces, vectors),
-        "guide_normal": _stacked(forces, normal),
-        "guide_moment": _stacked(forces, moments),
+        "guide_force": tables(vectors, 2, samples),
+        "guide_normal": columns(normal, samples),
+        "guide_moment": columns(moments, samples),
     }
 
 
@@ -79,7 +76,8 @@ def _of_gears(forces: Forces, gears: Sequence[Constraint]) -> dict[str, Array]:
         force = forces.system.pulls[gear, 0][0].force
         known = gear.gear in forces.system.teeth.axes
         teeth.append([value * x if known else np.nan for x in force])
-    return {"gear_moment": _stacked(forces, moments), "tooth_force": _stacked(forces, teeth)}
+    samples = forces.system.shape[-1]
+    return {"gear_moment": tables(moments, 3, samples), "tooth_force": tables(teeth, 2, samples)}
 
 
 def _of_wheels(
@@ -97,8 +95,9 @@ def _of_wheels(
         normal.append(press if isinstance(track, Straight) or not track.inside else -press)
         way = (out[1], -out[0]) if isinstance(track, Straight) else (-out[1], out[0])
         along.append(grip[0] * way[0] + grip[1] * way[1])
+    samples = forces.system.shape[-1]
     return {
-        "rolling_force": _stacked(forces, vectors),
-        "rolling_normal": _stacked(forces, normal),
-        "rolling_tangential": _stacked(forces, along),
+        "rolling_force": tables(vectors, 2, samples),
+        "rolling_normal": columns(normal, samples),
+        "rolling_tangential": columns(along, samples),
     }

@@ -32,7 +32,7 @@ class Side:
 def sides_of(mechanism: Mechanism) -> tuple[Side, ...]:
     """Sides of all hinges: points of the frame first, links in description order, the frame after them.
 
-    A moving point in one link is a hinge if a guide, a wheel or a cylinder holds it as well.
+    A moving point in one link is a hinge if a guide or a cylinder holds it as well; so is a fixed one in none.
     """
     held = {guide.point for guide in mechanism.guides}
     held |= {point for drive in mechanism.drives for point in drive.distance or ()}
@@ -40,7 +40,7 @@ def sides_of(mechanism: Mechanism) -> tuple[Side, ...]:
     for point in (*mechanism.frame.points, *mechanism.moving_points):
         links = [name for name, link in mechanism.links.items() if point in link.coordinates]
         fixed = point in mechanism.frame.points
-        if links and (fixed or len(links) > 1 or point in held):
+        if len(links) > 1 or (links and fixed) or (point in held and (links or fixed)):
             found += [Side(point, link) for link in links]
             found += [Side(point, FRAME)] if fixed else []
     return tuple(found)
