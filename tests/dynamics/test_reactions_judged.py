@@ -9,6 +9,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.kinetostatics.inverse import EPSILON, inverse_of
+from centrode.dynamics.solution import SETTLED
 from mechanisms import EPS
 from newton_euler import vector
 
@@ -127,18 +128,7 @@ def test_a_slider_in_two_bearings_on_one_line() -> None:
     single = double.model_copy(update={"guides": double.guides[:1]})
     found, plain = ct.reactions(double, 9), ct.reactions(single, 9)
     undetermined = found.attrs["undetermined"].split("; ")
-    assert undetermined == [
-        "B/bar",
-        "C/bar",
-        "guide B",
-        "guide second",
-        "moment of guide B",
-    ] or undetermined == [
-        "C/bar",
-        "guide B",
-        "guide second",
-        "moment of guide B",
-    ]
+    assert undetermined == ["C/bar", "guide B", "guide second", "moment of guide B"]
     hinges = ["O/OA", "O/frame", "A/OA", "A/AB", "B/AB"]
     size = 512 * EPS * float(abs(plain.joint_force).max())
     assert abs(found.joint_force.sel(side=hinges) - plain.joint_force.sel(side=hinges)).max() <= size
@@ -285,6 +275,6 @@ def test_the_steady_motion_gives_the_driving_moment() -> None:
     assert found.attrs["rate_from"] == "steady"
     assert np.array_equal(found.drive_value, steady.drive_value)
     needed = steady.driving_moment - steady.attrs["inertia"] * steady.drive_acceleration
-    # the drive turns backwards; works and moments of the cycle come from series as exact as their panels resolve
+    # the drive turns backwards; loads and speed of the cycle are made to agree to SETTLED
     size = float(abs(steady.driving_moment).max() + abs(steady.moment_of_loads).max())
-    assert abs(-found.balancing[:, 0] - needed).max() <= 1e-9 * size
+    assert abs(-found.balancing[:, 0] - needed).max() <= 16 * SETTLED * size

@@ -30,14 +30,15 @@ class Side:
 
 
 def sides_of(mechanism: Mechanism) -> tuple[Side, ...]:
-    """Sides of all hinges: points of the frame first, links in description order, the frame after them.
+    """Sides of all hinges, in the order in which links name the points; of each its links, then the frame.
 
     A moving point in one link is a hinge if a guide or a cylinder holds it as well; so is a fixed one in none.
     """
     held = {guide.point for guide in mechanism.guides}
     held |= {point for drive in mechanism.drives for point in drive.distance or ()}
     found = []
-    for point in (*mechanism.frame.points, *mechanism.moving_points):
+    named = [point for link in mechanism.links.values() for point in link.coordinates]
+    for point in dict.fromkeys([*named, *mechanism.moving_points, *mechanism.frame.points]):
         links = [name for name, link in mechanism.links.items() if point in link.coordinates]
         fixed = point in mechanism.frame.points
         if len(links) > 1 or (links and fixed) or (point in held and (links or fixed)):
