@@ -195,7 +195,22 @@ class Balance:
         for wheel in self.mechanism.rolling:
             xy = self.motion.contact.sel(rolling=wheel.id).to_numpy()
             force = vector(self.found.rolling_force.sel(rolling=wheel.id))
+            self.parts_of_contact(wheel, force, xy[:, 0] + 1j * xy[:, 1])
             self.pair(wheel.link, wheel.on, force, xy[:, 0] + 1j * xy[:, 1])
+
+    def parts_of_contact(self, wheel: Any, force: Complex, contact: Complex) -> None:
+        """The track presses the rim towards the wheel's centre, or the inside of a ring away from it."""
+        ring = wheel.along.inside and wheel.radius > wheel.along.radius
+        inwards = (self.at(wheel.centre) - contact) / wheel.radius * (-1.0 if ring else 1.0)
+        if wheel.along.radius is None:
+            along = self.turn(wheel.on) * complex(*wheel.along.unit)
+        else:
+            # counter-clockwise about the circle's centre, which is on the other side of an outer wheel's rim
+            along = 1j * (-inwards if wheel.along.inside else inwards)
+        one = self.found.sel(rolling=wheel.id)
+        size = 1e-9 * (1.0 + abs(force))
+        assert not (abs(one.rolling_normal.to_numpy() - dot(inwards, force)) > size).any()
+        assert not (abs(one.rolling_tangential.to_numpy() - dot(along, force)) > size).any()
 
     def drives(self) -> None:
         for drive in self.mechanism.drives:

@@ -44,8 +44,21 @@ def asked(
 
 def bound(mechanism: ct.Mechanism, balance: Balance) -> Array:
     """What rounding may leave of a sum of forces: of each summand, and of accelerations."""
-    size = Scheme.of(ready(mechanism).structure).size
-    return OPERATIONS * size * EPS * balance.greatest()
+    return OPERATIONS * size_of(mechanism) * EPS * balance.greatest()
+
+
+def size_of(mechanism: ct.Mechanism) -> int:
+    """Number of equations."""
+    return Scheme.of(ready(mechanism).structure).size
+
+
+def condition_of(found: xr.Dataset, mechanism: ct.Mechanism) -> Array:
+    """Condition numbers: `reaction_loss` is their square times the number of equations times EPS."""
+    return np.asarray(np.sqrt(found.reaction_loss.to_numpy() / (size_of(mechanism) * EPS)))
+
+
+def worst_condition(found: xr.Dataset, mechanism: ct.Mechanism) -> float:
+    return float(np.max(condition_of(found, mechanism)[found.reaction_status.to_numpy() == 0]))
 
 
 def check(parts: dict[str, Any], seed: int) -> int:
@@ -54,7 +67,13 @@ def check(parts: dict[str, Any], seed: int) -> int:
     good = found.reaction_status.to_numpy() == 0
     assert np.isfinite(found.joint_force.to_numpy()[good]).all() or found.attrs["undetermined"]
     assert not np.isfinite(found.joint_force.to_numpy()[found.reaction_status.to_numpy() == 3]).any()
-    if not good.any() or found.attrs["undetermined"]:
+    if not good.any():
+        return 0
+    for residual in ("equilibrium_residual", "frame_residual", "power_residual"):
+        assert (
+            found.attrs[residual] <= OPERATIONS * size_of(mechanism) * worst_condition(found, mechanism) * EPS
+        )
+    if found.attrs["undetermined"]:
         return 0
     with np.errstate(all="ignore"):
         balance, outer = Balance.of(mechanism, motion, found), Balance.of_outer(mechanism, motion, found)
@@ -91,9 +110,7 @@ def equals_virtual_work(mechanism: ct.Mechanism, found: xr.Dataset, good: Array)
     reduced = ct.reduce(mechanism, len(ends), float(ends[0]), float(ends[-1]))
     rate = reduced.drive_rate.to_numpy()
     wanted = reduced.reduced_inertia_slope.to_numpy() * rate**2 / 2 - reduced.reduced_moment.to_numpy()
-    size = Scheme.of(ready(mechanism).structure).size
-    # reaction_loss is condition squared times size times EPS
-    condition = np.sqrt(found.reaction_loss.to_numpy() / (size * EPS))
+    size, condition = size_of(mechanism), condition_of(found, mechanism)
     greatest = np.max(abs(found.joint_force.to_numpy()), axis=(1, 2)) * max(scale_of(mechanism), 1.0)
     greatest = np.maximum(greatest, abs(wanted))
     difference = abs(found.balancing.to_numpy()[:, 0] - wanted)

@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.dynamics.kinetostatics.checking import checks_of
+from centrode.dynamics.kinetostatics.constraint_pulls import positions_of
+from centrode.dynamics.kinetostatics.finding import find
 from centrode.dynamics.kinetostatics.inverse import EPSILON, inverse_of
+from centrode.dynamics.kinetostatics.moving import pace_of
+from centrode.dynamics.kinetostatics.solution import Forces
+from centrode.dynamics.reducer import Burden
 from centrode.dynamics.solution import SETTLED
+from centrode.dynamics.states import Moving, State
+from centrode.kinematics.ready import ready
+from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.spans import span_at
+from centrode.structure.constraints import PointInLink
+from centrode.structure.rank import jacobian
 from mechanisms import EPS
 from newton_euler import vector
 
@@ -52,6 +65,33 @@ def test_the_loss_near_a_change_point_covers_the_error() -> None:
     assert (
         error <= (found.reaction_loss.to_numpy() * abs(wanted))[good] + 64 * EPS * abs(wanted)[good]
     ).all()
+
+
+def test_equilibrium_holds_to_rounding_however_near_a_dead_point() -> None:
+    """What is lost there is lost to the position, not to the solution."""
+    for near in (1e-1, 1e-3, 1e-5):
+        found = ct.reactions(parallelogram(), at=[near])
+        assert found.reaction_status.to_numpy().tolist() == [OK]
+        assert found.attrs["equilibrium_residual"] <= 64 * EPS
+
+
+def test_checks_tell_of_wrong_reactions() -> None:
+    """Each of the three residuals sees a force that is off by a thousandth."""
+    prepared = ready(ct.example("six-bar-press"))
+    solved = solve(prepared, asked_span(prepared, 5, None, None))
+    burden = Burden.of(prepared.mechanism)
+    found = find(solved, burden, pace_of(solved, burden))
+    rates = found.pace.moving.rate[:, None]
+    assert max(checks_of(found, rates).values()) <= 1e3 * EPS
+    for unknown, names in (
+        ((PointInLink("O", "OA"), 0), {"equilibrium_residual", "frame_residual"}),
+        ((PointInLink("A", "OA"), 1), {"equilibrium_residual"}),
+    ):
+        off = {**found.forces.multipliers, unknown: found.forces.multipliers[unknown] * 1.001}
+        wrong = replace(found, forces=Forces(found.forces.system, off, found.forces.outer))
+        assert {name for name, share in checks_of(wrong, rates).items() if share > 1e-5} == names
+    wrong = replace(found, parts={**found.parts, "balancing": found.parts["balancing"] * 1.001})
+    assert checks_of(wrong, rates)["power_residual"] > 1e-5
 
 
 def test_limits_are_singular_and_what_lies_beyond_is_open() -> None:
@@ -112,11 +152,12 @@ def test_three_cranks_say_what_they_do_not_determine() -> None:
     assert abs(found.frame_moment - two.frame_moment).max() <= 4 * size
 
 
-def test_a_slider_in_two_bearings_on_one_line() -> None:
+@pytest.mark.parametrize("apart", [1.0, 1e-7])
+def test_a_slider_in_two_bearings_on_one_line(apart: float) -> None:
     """The normal forces and the moment of one bearing depend on each other; all hinges are determined."""
     double = ct.Mechanism(
         frame={"points": {"O": [0, 0]}},
-        links={"OA": {"length": 1}, "AB": {"length": 3}, "bar": {"points": {"B": [0, 0], "C": [1, 0]}}},
+        links={"OA": {"length": 1}, "AB": {"length": 3}, "bar": {"points": {"B": [0, 0], "C": [apart, 0]}}},
         guides=[
             {"point": "B", "on": "frame", "through": "O", "direction": [1, 0], "link": "bar"},
             {"point": "C", "on": "frame", "through": "O", "direction": [1, 0], "name": "second"},
@@ -135,6 +176,52 @@ def test_a_slider_in_two_bearings_on_one_line() -> None:
     assert abs(found.balancing - plain.balancing).max() <= size
     assert np.isnan(found.guide_normal).all()
     assert np.isnan(found.guide_moment.sel(guide="B")).all()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_not_determined_by_singular_values(seed: int) -> None:
+    """Hinges of cranks on a rigid plate: those that the null space of the whole transposed Jacobian touches."""
+    random = np.random.default_rng(seed)
+    cranks = int(random.integers(2, 5))
+    places = random.uniform(-3.0, 3.0, (cranks, 2))
+    names = [f"A{k}" for k in range(cranks)]
+    links: dict[str, Any] = {
+        f"c{k}": {"points": {f"O{k}": [0, 0], names[k]: [1, 0]}, "angle": 0.8} for k in range(cranks)
+    }
+    links["plate"] = {"points": dict(zip(names, places.tolist(), strict=True)), "angle": 0.0}
+    links["rod"] = {"points": {names[0]: [0, 0], "E": [2.5, 0]}}
+    links["end"] = {"points": {"Q": [0, 0], "E": [2.0, 0]}}
+    frame = {f"O{k}": place for k, place in enumerate(places.tolist())}
+    frame["Q"] = [float(places[0, 0]) + 3.5, float(places[0, 1])]
+    mechanism = ct.Mechanism(
+        frame={"points": frame},
+        links=links,
+        drives=[{"link": "c0", "start": 0.8, "speed": 1.0}],
+        loads=[{"kind": "force", "point": "E", "vector": [1, 2]}],
+        assembly={"sides": {"E": "left"}},
+    )
+    found = ct.reactions(mechanism, at=[0.9, 1.0])
+    structure = ready(mechanism).structure
+    state = solve(ready(mechanism), span_at(ready(mechanism).kinematics.path, np.array([0.9])))
+    at = positions_of(State.of(state, Moving(*(np.ones(1),) * 3)), structure.dimensions)
+    matrix = jacobian(
+        structure.constraints,
+        structure.unknowns,
+        structure.dimensions,
+        at.mapped(lambda x: float(np.ravel(x)[0])),
+    )
+    _left, values, right = np.linalg.svd(matrix.T)
+    free = right[int(np.sum(values > 1e-9 * values[0])) :]
+    owners = [c for c in structure.constraints for _row in range(c.size)]
+    touched = {
+        f"{owner.point}/{owner.link}"
+        for owner, column in zip(owners, free.T, strict=True)
+        if isinstance(owner, PointInLink) and np.any(abs(column) > 1e-9)
+    }
+    sides = [side for side in found.side.to_numpy().tolist() if not side.endswith("/frame")]
+    said = {side for side in sides if not bool(found.determined.sel(side=side))}
+    assert said == touched
+    assert bool(touched) == (cranks > 2)
 
 
 def test_what_repeats_others_carries_over_where_they_are_singular() -> None:

@@ -40,6 +40,12 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     if found.attrs["undetermined"]:
         names = found.attrs["undetermined"].split("; ")
         rows.append((_("not determined"), ", ".join(map(_said, names))))
+    if "tooth_force" in found:
+        absent = np.isnan(found["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
+        gears = ", ".join(found["gear"].to_numpy()[absent])
+        known = np.isfinite(found["gear_moment"].to_numpy()).any()
+        if gears and known:
+            rows.append((_("no tooth force"), _("{gears}: nothing tells the radii").format(gears=gears)))
     texts = (_("equilibrium of links"), _("sum over the frame"), _("power balance"))
     words = (
         _("off by {share:.1e} of the greatest force"),

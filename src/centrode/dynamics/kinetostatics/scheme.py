@@ -1,8 +1,8 @@
 """What the equations of kinetostatics are solved for: one unknown for each scalar constraint.
 
 Unknowns are the multipliers of J' lambda = -Q: the force of a constraint is its multiplier times its row. A
-pin has no mass, so one link of each pin, its host, bears whatever else acts on the pin: the two forces between
-pin and host are left to the pin's own balance, and three equations a link remain.
+pin has no mass, so a link of each pin, its host, bears whatever else acts on the pin: the force between pin and
+host is left to the pin's own balance, and three equations a link remain.
 """
 
 from __future__ import annotations
@@ -76,17 +76,9 @@ class Scheme:
 
 
 def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
-    """The unknown that bears each coordinate of each pin: of one and the same link, where a link keeps both."""
-    sides: dict[str, list[Unknown]] = {point: [] for point in points}
+    """The unknown that bears each coordinate of each pin: the first that there is."""
+    found: dict[Axis, Unknown] = {}
     for constraint, row in kept:
-        if isinstance(constraint, PointInLink) and constraint.point in sides:
-            sides[constraint.point].append((constraint, row))
-    found = {}
-    for point, unknowns in sides.items():
-        whole = [constraint for constraint, row in unknowns if row == 1 and (constraint, 0) in unknowns]
-        for axis in range(2):
-            bearing = [unknown for unknown in unknowns if unknown[1] == axis]
-            first = [unknown for unknown in bearing if whole and unknown[0] == whole[0]]
-            if first or bearing:
-                found[point, axis] = (first or bearing)[0]
+        if isinstance(constraint, PointInLink) and constraint.point in points:
+            found.setdefault((constraint.point, row), (constraint, row))
     return found
