@@ -28,6 +28,7 @@ from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
 from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
+from centrode.cli.reactions import reactions
 from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
@@ -49,6 +50,7 @@ COMMANDS: tuple[click.Command, ...] = (
     rotatability,
     reduce,
     polygons,
+    reactions,
     variants,
     limits,
     region,

@@ -69,6 +69,12 @@ class Mass:
         return not is_none(self.mass)
 
     @property
+    def moment_of_inertia(self) -> Number:
+        """The inertia of a planar link [kg m^2]."""
+        assert not isinstance(self.inertia, tuple)
+        return self.inertia
+
+    @property
     def resists(self) -> bool:
         """Whether it has a moment of inertia."""
         return self.inertia != () if isinstance(self.inertia, tuple) else not is_none(self.inertia)

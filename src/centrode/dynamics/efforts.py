@@ -10,6 +10,7 @@ import numpy as np
 
 from centrode.dynamics.amounts import Amount, Diagram, Situation
 from centrode.dynamics.coordinates import Coordinate
+from centrode.dynamics.pulls import Pull
 from centrode.dynamics.states import State
 from centrode.errors import InputError
 from centrode.kinematics.paths import JETS
@@ -62,6 +63,10 @@ class Effort:
     def along(self, state: State) -> Number:
         """Derivative by the parameter of what it works along."""
         return (self.coordinate if self.works is None else self.works).slope(state).value
+
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        """What one unit of it does to points and links."""
+        return (self.coordinate if self.works is None else self.works).pulls(state)
 
     def _sense(self, state: State, speed: Number) -> Number:
         if state.m is not JETS:

@@ -15,7 +15,7 @@ from centrode.dynamics.jumps import jumps_of
 from centrode.dynamics.loads import Acting, loads_of
 from centrode.dynamics.masses import Given, Mass, masses_of
 from centrode.dynamics.states import Moving, State
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.branches import Event
 from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
@@ -79,6 +79,14 @@ class Burden:
             what = _("there are neither masses nor loads to reduce")
             raise InputError("", what, _("give links a mass, or [[loads]]"))
         return cls(masses, loads)
+
+    @classmethod
+    def in_plane(cls, mechanism: Mechanism) -> Burden:
+        """The same where forces in joints are asked for, which on the sphere are not computed yet."""
+        if mechanism.space == "sphere":
+            what = _("forces in joints on the sphere are not computed yet")
+            raise NotComputedYet("space", what, _("describe a plane one"))
+        return cls.of(mechanism)
 
     @property
     def links(self) -> tuple[str, ...]:

@@ -8,8 +8,9 @@ from typing import Any, TypeAlias
 
 from centrode.algebra.jets import Jet
 from centrode.dynamics.coordinates import Coordinate, Turn
+from centrode.dynamics.pulls import Pull
 from centrode.dynamics.states import Place, State
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.model.loads import Load
 from centrode.model.mechanism import FRAME, Mechanism
@@ -45,6 +46,11 @@ class Spin:
         parts = [(own - other) * axis for own, other, axis in pairs]
         return sum(parts[1:], parts[0])
 
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        raise NotComputedYet(
+            "space", _("forces in joints on the sphere are not computed yet"), _("describe a plane one")
+        )
+
     def _axis(self, state: State) -> Place:
         if isinstance(self.axis, str):
             unit = 1.0 / state.mechanism.sphere_radius
@@ -62,6 +68,10 @@ class Travel:
 
     def slope(self, state: State) -> Jet:
         return Jet((state.m.base.sign(state.rate), 0.0))
+
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        what = _("friction as a plain sum acts in no joint")
+        raise NotComputedYet("[[loads]]", what, _("take form out: virtual work has it in the joints"))
 
 
 def turning_of(mechanism: Mechanism, load: Load, where: str, measured: bool) -> Coordinate:

@@ -11,10 +11,10 @@ import numpy as np
 
 from centrode.analysis.graphic.board import cross
 from centrode.analysis.graphic.stage import Drawing
+from centrode.dynamics.bodies import Centre, Mass, Radial
 from centrode.dynamics.coordinates import Component, Distance, HalfSquare, Slide, Turn
 from centrode.dynamics.force_polygons.bodies import Bodies
 from centrode.dynamics.loads import Acting, Effort
-from centrode.dynamics.masses import Centre, Mass
 from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import State
 from centrode.model.mechanism import FRAME
@@ -95,7 +95,7 @@ class Reader:
             pulled = -mass.mass * complex(rates.acceleration(x), rates.acceleration(y))
             yield Action(f"Φ{number}", mass.link, mass.link, "inertia", pulled, self.place(mass.centre))
         if mass.resists:
-            turn = -mass.inertia * rates.acceleration(self.state.angle(mass.link))
+            turn = -mass.moment_of_inertia * rates.acceleration(self.state.angle(mass.link))
             yield Action(f"MΦ{number}", mass.link, mass.link, "inertia", moment=turn)
 
     def loads(self) -> Iterator[Action]:
@@ -131,7 +131,7 @@ class Reader:
 
     def actions(self, effort: Effort, strength: float) -> Iterator[tuple[str, complex, complex, float]]:
         """Body, force, place and moment of each action that an effort of this strength is."""
-        along = effort.coordinate
+        along = effort.coordinate if effort.works is None else effort.works
         if isinstance(along, Component):
             body = self.bodies.host(along.at) if isinstance(along.at, str) else along.at.link
             yield body, strength * self.direction(along), self.place(along.at), 0.0
@@ -145,8 +145,9 @@ class Reader:
             place = self.drawing.point(guide.point)
             yield self.bodies.carrier(guide), force, place, 0.0
             yield guide.on, -force, place, 0.0
+        elif not isinstance(along, (Distance, HalfSquare)):
+            along.pulls(self.state)  # says why it acts on no body
         else:
-            assert isinstance(along, (Distance, HalfSquare))
             ends = self.drawing.point(along.first), self.drawing.point(along.second)
             apart = ends[1] - ends[0]
             force = strength * (apart if isinstance(along, HalfSquare) else apart / abs(apart))
@@ -159,10 +160,11 @@ class Reader:
         turn = 1.0 + 0j if along.axes == FRAME else complex(*self.drawing.at.poses[along.axes].rotor)
         return unit / abs(unit) * turn
 
-    def place(self, at: str | Centre) -> complex:
+    def place(self, at: str | Centre | Radial) -> complex:
         """Place of a point or of a centre of mass."""
         if isinstance(at, str):
             return self.drawing.point(at)
+        assert isinstance(at, Centre)
         turn = complex(*self.drawing.at.poses[at.link].rotor)
         return self.drawing.point(at.base) + turn * complex(float(at.along), float(at.across))
 

@@ -59,7 +59,7 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
         The mechanism does not close there, or stands at a limit, a change point or a dead point.
     """
     room = room_of(paper)
-    burden = Burden.of(mechanism)
+    burden = Burden.in_plane(mechanism)
     prepared = ready(mechanism)
     solved = solve(prepared, span_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
     exact = dataset_of(solved)
