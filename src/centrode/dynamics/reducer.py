@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import copysign
 from typing import Any, TypeAlias
@@ -21,6 +22,7 @@ from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
+from centrode.model.loads import Load
 from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -73,8 +75,21 @@ class Burden:
         NotComputedYet
             Friction by a coefficient.
         """
+        return cls._of(mechanism, given, m, mechanism.loads)
+
+    @classmethod
+    def for_reactions(cls, mechanism: Mechanism) -> Burden:
+        """The same without friction by coefficients, which those who know the reactions add."""
+        _refuse_sphere(mechanism)
+        loads = [load for load in mechanism.loads if load.coefficient is None]
+        return cls._of(mechanism, None, ARRAYS, loads)
+
+    @classmethod
+    def _of(
+        cls, mechanism: Mechanism, given: Given | None, m: Namespace, described: Sequence[Load]
+    ) -> Burden:
         masses = masses_of(mechanism, given, m)
-        loads = loads_of(mechanism, masses, given, m)
+        loads = loads_of(mechanism, masses, given, m, described)
         if not masses and not loads:
             what = _("there are neither masses nor loads to reduce")
             raise InputError("", what, _("give links a mass, or [[loads]]"))
@@ -83,9 +98,7 @@ class Burden:
     @classmethod
     def in_plane(cls, mechanism: Mechanism) -> Burden:
         """The same where forces in joints are asked for, which on the sphere are not computed yet."""
-        if mechanism.space == "sphere":
-            what = _("forces in joints on the sphere are not computed yet")
-            raise NotComputedYet("space", what, _("describe a plane one"))
+        _refuse_sphere(mechanism)
         return cls.of(mechanism)
 
     @property
@@ -102,6 +115,12 @@ class Burden:
     def needs_law(self) -> bool:
         """Whether a load depends on time or on speeds, so that it matters how the drive moves."""
         return any(effort.needs_law for load in self.loads for effort in load.efforts)
+
+
+def _refuse_sphere(mechanism: Mechanism) -> None:
+    if mechanism.space == "sphere":
+        what = _("forces in joints on the sphere are not computed yet")
+        raise NotComputedYet("space", what, _("describe a plane one"))
 
 
 class Reducer:

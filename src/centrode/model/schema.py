@@ -10,7 +10,7 @@ from centrode.model.asked import Assembly, Display, Study
 from centrode.model.bodies import RING_AND_POINT, SHAPES, Frame, Link
 from centrode.model.description import Description
 from centrode.model.driving import Drive
-from centrode.model.loads import FORMS, KINDS, Load
+from centrode.model.loads import FITS, FORMS, KINDS, Load
 from centrode.model.machines import SHAFTS, FlywheelShape, Machine, Shaft
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.part import Part
@@ -150,6 +150,10 @@ PROPERTIES: dict[type[Part], Schema] = {
         "viscous": _quantity("damping"),
         "quadratic": _quantity("quadratic damping"),
         "coefficient": _quantity("ratio"),
+        "radius": _above_zero("length"),
+        "fit": {"enum": list(FITS)},
+        "pin": _NAME,
+        **dict.fromkeys(("length", "height"), _above_zero("length")),
         "form": {"enum": list(FORMS)},
         "free_length": _quantity("length"),
         "free_angle": _quantity("angle"),

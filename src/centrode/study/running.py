@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from centrode.dynamics.friction.contacts import contacts_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.reducer import Burden
-from centrode.errors import InputError, MotionError, NotComputedYet, Status
+from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.several_drives.coefficients import coefficients_of, most_samples
@@ -102,8 +103,8 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
     if not mechanism.loads and not any(link.mass or link.inertia for link in mechanism.links.values()):
         return None, []
     try:
-        burden = Burden.of(mechanism)
-        return reactions_at(solved, burden, pace_of(solved, burden)), []
+        burden = Burden.for_reactions(mechanism)
+        return reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism)), []
     except (InputError, NotComputedYet) as missing:
         what = (
             _("{where}: {what}").format(where=missing.where, what=missing.what)
@@ -168,7 +169,7 @@ def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
         **_times(solved),
         "worst_residual": Scalar(float(np.nanmax(solved.residual, initial=0.0)), "1"),
     }
-    for status in Status:
+    for status in STATUSES_OF_MOTION:
         found[f"samples_{status.name.lower()}"] = Scalar(int(np.sum(solved.status == status)), "1")
     for kind in ("limit", "change point"):
         places = dict.fromkeys(event.at for event in solved.events() if event.kind == kind)

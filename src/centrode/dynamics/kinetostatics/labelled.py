@@ -8,9 +8,14 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.jets import Jet
+from centrode.dynamics.friction.labelled import (
+    friction_attributes,
+    friction_coordinates,
+    friction_variables,
+)
 from centrode.dynamics.kinetostatics.checking import checks_of
 from centrode.dynamics.kinetostatics.finding import Found
+from centrode.dynamics.kinetostatics.moving import rates_of
 from centrode.dynamics.kinetostatics.totals import totals_of
 from centrode.dynamics.reducer import Burden
 from centrode.errors import Status
@@ -23,7 +28,6 @@ from centrode.kinematics.dataset import (
     named,
     units_of_drives,
 )
-from centrode.kinematics.paths import JETS
 from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
 
@@ -39,6 +43,10 @@ DIMENSIONS = {
     "rolling_force": ("rolling", "axis"),
     "rolling_normal": ("rolling",),
     "rolling_tangential": ("rolling",),
+    "friction_moment": ("bearing",),
+    "friction_force": ("guide",),
+    "friction_power": ("friction",),
+    "efficiency": (),
     "balancing": ("drive",),
     "inertia_force": ("link", "axis"),
     "inertia_moment": ("link",),
@@ -52,7 +60,7 @@ DIMENSIONS = {
 def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
     """The dataset of `reactions`."""
     parts = found.parts | totals_of(found)
-    checks = checks_of(found, _rates(solved, found))
+    checks = checks_of(found, rates_of(solved, found.pace))
     # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
     absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
     undetermined = _masked(parts, found)
@@ -71,23 +79,21 @@ def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
     variables["determined"] = named("determined", ("side",), sides)
     attributes = attributes_of(solved) | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
-    return xr.Dataset(variables, coords=_coordinates(solved, burden, found), attrs=attributes)
-
-
-def _rates(solved: Solved, found: Found) -> Array:
-    """Speeds of the drives (samples, drives)."""
-    path = solved.ready.kinematics.path
-    if not path.by_time:
-        return found.pace.moving.rate[:, None]
-    time = Jet.variable(solved.span.time, 1)
-    values = path.drive_values(JETS, time).values()
-    speeds = [value.derivative(1) if isinstance(value, Jet) else 0.0 for value in values]
-    return np.stack([np.broadcast_to(speed, solved.span.time.shape) for speed in speeds], axis=-1)
+    coordinates = _coordinates(solved, burden, found)
+    if found.rubbing is not None:
+        rubbed, powers = found.rubbing.rubbed, found.rubbing.powers
+        variables |= friction_variables(solved, rubbed, powers)
+        coordinates |= friction_coordinates(rubbed.contacts)
+        attributes |= friction_attributes(solved, rubbed, powers)
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
 def _statuses(solved: Solved, found: Found) -> dict[str, Variable]:
     motion = judgements_of(solved, ())["status"]
-    flags = {key: motion[2][key] for key in ("flag_values", "flag_meanings")}
+    flags = {
+        "flag_values": np.array(list(Status), dtype=np.int8),
+        "flag_meanings": " ".join(status.name.lower() for status in Status),
+    }
     dimensions, values, attributes = named("reaction_status", ("sample",), found.status)
     loss = found.forces.system.inverse.loss[0]
     return {
