@@ -107,6 +107,12 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
     return tuple(found.values())
 
 
+def without_friction(mechanism: Mechanism) -> Mechanism:
+    """The mechanism without friction by coefficients."""
+    loads = tuple(load for load in mechanism.loads if load.coefficient is None)
+    return mechanism.model_copy(update={"loads": loads})
+
+
 def refuse_undetermined(
     contacts: Sequence[Contact], undetermined: Mapping[str, Any], sides: Sequence[Any], mechanism: Mechanism
 ) -> None:

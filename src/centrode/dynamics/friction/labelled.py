@@ -15,8 +15,8 @@ from centrode.kinematics.dataset import Variable, labels_of, named, units_of_dri
 from centrode.kinematics.solve import Solved
 
 
-def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers) -> dict[str, Variable]:
-    """What is known of friction besides what stands at every sample that has reactions."""
+def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bool) -> dict[str, Variable]:
+    """What is known of friction besides what stands at every sample that has reactions; works over a `whole` range."""
     parameter = solved.span.parameter
     locking = powers.locking
     locking[rubbed.solution.outcome == Outcome.LOCKED] = JAMMED
@@ -26,8 +26,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers) -> dict[s
         "flag_meanings": " ".join(LOCKING.values()),
     }
     works = np.trapezoid(-rubbed.amounts * rubbed.slopes, parameter, axis=0)
-    locked = rubbed.solution.outcome != Outcome.FOUND
-    works = np.where(locked.any(), np.nan, works)
+    works = np.where(whole and _found(rubbed), works, np.nan)
     found = {
         "friction_work": named("friction_work", ("friction",), works),
         "friction_turns": named("friction_turns", ("sample", "friction"), rubbed.turns.astype(np.int8)),
@@ -47,13 +46,17 @@ def friction_coordinates(contacts: tuple[Contact, ...]) -> dict[str, Any]:
     return found | ({"bearing": labels_of(bearings)} if bearings else {})
 
 
-def friction_attributes(solved: Solved, rubbed: Rubbed, powers: Powers) -> dict[str, Any]:
+def friction_attributes(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bool) -> dict[str, Any]:
     """How well the sizes were found, what does not rub because it does not move, and the efficiency of the whole."""
     return {
         "friction_residual": float(np.max(rubbed.solution.residual, initial=0.0)),
         "friction_iterations": rubbed.solution.tries,
         "standing": "; ".join(rubbed.standing),
         "efficiency": powers.mean_efficiency(solved.span.parameter)
-        if (rubbed.solution.outcome == Outcome.FOUND).all()
+        if whole and _found(rubbed)
         else float("nan"),
     }
+
+
+def _found(rubbed: Rubbed) -> bool:
+    return bool((rubbed.solution.outcome == Outcome.FOUND).all())

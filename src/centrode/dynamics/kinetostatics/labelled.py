@@ -57,8 +57,8 @@ DIMENSIONS = {
 }
 
 
-def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
-    """The dataset of `reactions`."""
+def labelled(solved: Solved, burden: Burden, found: Found, whole: bool) -> xr.Dataset:
+    """The dataset of `reactions`; `whole` where the samples are a range, and works over it have a sense."""
     parts = found.parts | totals_of(found)
     checks = checks_of(found, rates_of(solved, found.pace))
     # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
@@ -82,9 +82,9 @@ def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
     coordinates = _coordinates(solved, burden, found)
     if found.rubbing is not None:
         rubbed, powers = found.rubbing.rubbed, found.rubbing.powers
-        variables |= friction_variables(solved, rubbed, powers)
+        variables |= friction_variables(solved, rubbed, powers, whole)
         coordinates |= friction_coordinates(rubbed.contacts)
-        attributes |= friction_attributes(solved, rubbed, powers)
+        attributes |= friction_attributes(solved, rubbed, powers, whole)
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
