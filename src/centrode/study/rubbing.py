@@ -21,11 +21,9 @@ def friction_rows(found: xarray.Dataset) -> Rows:
     if "friction" not in found.dims:
         return []
     rows = []
-    if found.sizes["sample"] > 1:
-        mean = found.attrs["efficiency"]
-        rows.append(
-            (_("efficiency"), f"{mean:.4f}" if np.isfinite(mean) else _("none: it is not told everywhere"))
-        )
+    mean = found.attrs["efficiency"]
+    if np.isfinite(mean):
+        rows.append((_("efficiency"), f"{mean:.4f}"))
     held = int((found["self_locking"] == HELD).sum())
     if held:
         text = ngettext("{n} sample: loads do not drive it", "{n} samples: loads do not drive it", held)
@@ -47,7 +45,7 @@ def friction_rows(found: xarray.Dataset) -> Rows:
 
 def friction_losses(found: xarray.Dataset) -> Table | None:
     """Header and rows: greatest power and work of friction at each contact, and its share; None without friction."""
-    if "friction" not in found.dims or found.sizes["sample"] < 2:
+    if "friction" not in found.dims:
         return None
     header = [_("friction at"), _("greatest power, W"), _("work, J"), _("share, %")]
     works = found["friction_work"].to_numpy()
