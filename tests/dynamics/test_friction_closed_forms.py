@@ -27,7 +27,9 @@ def statuses(found: xr.Dataset) -> list[int]:
     return [int(status) for status in found.reaction_status.to_numpy()]
 
 
-@pytest.mark.parametrize(("fit", "factor"), [("clearance", 1.0), ("new", math.pi / 2), ("worn-in", 4 / math.pi)])
+@pytest.mark.parametrize(
+    ("fit", "factor"), [("clearance", 1.0), ("new", math.pi / 2), ("worn-in", 4 / math.pi)]
+)
 @pytest.mark.parametrize("speed", [3.0, -3.0])
 def test_a_journal_under_a_weight(fit: str, factor: float, speed: float) -> None:
     """The pin bears the weight whatever the angle, and the moment is mu r W against the turning."""
