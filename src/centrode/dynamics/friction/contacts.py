@@ -153,8 +153,13 @@ def _bearings(mechanism: Mechanism, load: Load, where: str) -> list[Bearing]:
     carrier = _carrier(mechanism, point)
     pin = load.pin or carrier or bodies[0]
     if carrier not in (None, pin):
-        what = _("the pin {point} is fixed in the slider of its guide").format(point=point)
-        raise InputError(where, what, _("take pin out"))
+        text = _("the pin {point} is fixed in the frame")
+        text = (
+            text
+            if point in mechanism.frame.points
+            else _("the pin {point} is fixed in the slider of its guide")
+        )
+        raise InputError(where, text.format(point=point), _("take pin out"))
     links = [name for name in bodies if name != pin]
     if load.link is not None:
         if load.link == pin:
@@ -163,9 +168,6 @@ def _bearings(mechanism: Mechanism, load: Load, where: str) -> list[Bearing]:
                 where, what.format(point=point, link=pin), _("name another link, or another pin")
             )
         links = [load.link]
-    if FRAME in links:
-        what = _("the pin {point} of the frame is fixed in it").format(point=point)
-        raise InputError(where, what, _("take pin out"))
     coefficient = (load.coefficient or 0.0) * FITS[load.fit]
     return [Bearing(point, link, pin, coefficient, load.radius or 0.0, where) for link in links]
 

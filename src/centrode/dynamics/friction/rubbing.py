@@ -112,17 +112,17 @@ def _motion(
     slope, bend = column(jet.value, samples), column(jet.derivative(1), samples)
     unit = max(1.0, state.scale)
     reach = np.maximum(1.0, np.abs(state.parameter))
+    condition = system.inverse.condition[0]
     with np.errstate(all="ignore"):
-        noise = REST * (np.abs(bend) * reach + unit) + EPSILON * system.inverse.condition[0] * unit
+        noise = REST * (np.abs(bend) * reach + unit) + EPSILON * condition * unit
         rest = ~(np.abs(slope) > noise)
-        standing = float(np.nanmax(np.abs(slope), initial=0.0)) <= REST * unit
+        bends = np.abs(bend) > noise + EPSILON * condition**2 * unit
         speed = np.where(rest, 0.0, slope) * state.rate
         # where the drive itself stands, it is about to move as it is accelerated
-        onward = np.where(np.abs(bend) > noise, bend, 0.0) * state.rate**2
-        onward = np.where(rest, onward, slope * acceleration)
+        onward = np.where(rest, np.where(bends, bend, 0.0) * state.rate**2, slope * acceleration)
         sense = np.sign(np.where(speed == 0.0, onward, speed))
-    sense = np.where(np.isfinite(sense) & (not standing), sense, 0.0)
-    return sense, np.where(rest, 0.0, slope), rest & (sense != 0.0)
+    sense = np.where(np.isfinite(sense), sense, 0.0)
+    return sense, np.where(rest, 0.0, slope), (speed == 0.0) & (sense != 0.0)
 
 
 def _sizes(contact: Contact, state: State) -> list[Size]:
