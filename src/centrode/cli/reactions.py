@@ -141,8 +141,8 @@ def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
     locked = int((found["reaction_status"] == Status.SELF_LOCKING).sum())
     if locked:
         what = ngettext(
-            "self-locking: at {locked} of {all} samples no drive overcomes the friction",
-            "self-locking: at {locked} of {all} samples no drive overcomes the friction",
+            "self-locking: at {n} sample no drive overcomes the friction",
+            "self-locking: at {n} samples no drive overcomes the friction",
             locked,
-        ).format(locked=locked, all=len(status))
+        ).format(n=locked)
         raise MotionError(mechanism, what, _("make the coefficients or radii less, or the sliders longer"))

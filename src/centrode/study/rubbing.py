@@ -23,7 +23,7 @@ def friction_rows(found: xarray.Dataset) -> Rows:
     rows = []
     mean = found.attrs["efficiency"]
     if np.isfinite(mean):
-        rows.append((_("efficiency"), f"{mean:.4f}"))
+        rows.append((_("overall efficiency"), f"{mean:.4f}"))
     held = int((found["self_locking"] == HELD).sum())
     if held:
         text = ngettext("{n} sample: loads do not drive it", "{n} samples: loads do not drive it", held)

@@ -104,7 +104,8 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
         return None, []
     try:
         burden = Burden.for_reactions(mechanism)
-        return reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism)), []
+        found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
+        return found, _jams(found)
     except (InputError, NotComputedYet) as missing:
         what = (
             _("{where}: {what}").format(where=missing.where, what=missing.what)
@@ -112,6 +113,17 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
             else missing.what
         )
         return None, [_("reactions are left out: {reason}").format(reason=what)]
+
+
+def _jams(reactions: xr.Dataset) -> list[str]:
+    """A note where friction lets nothing move."""
+    locked = int((reactions["reaction_status"] == Status.SELF_LOCKING).sum())
+    text = ngettext(
+        "self-locking: at {n} sample no drive overcomes the friction",
+        "self-locking: at {n} samples no drive overcomes the friction",
+        locked,
+    )
+    return [text.format(n=locked)] if locked else []
 
 
 def _by_each_drive(solved: Solved) -> bool:
