@@ -177,7 +177,7 @@ def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
         (("mass = 2\n", "mass = -2\n"), (), "mass must not be negative"),
         (("length = 0.4", "length = 0.4\nmass = 1"), (), "no moment of inertia"),
         (('value = "-2 kN"', 'value = "-2 m"'), (), "value"),
-        (('kind = "force"\nguide = "B"', 'kind = "friction"\nguide = "B"'), (), "friction"),
+        (('kind = "force"\nguide = "B"', 'kind = "friction"\nguide = "B"'), (), "value must not be negative"),
         (("", ""), ("--samples", "0"), "samples"),
         (("", ""), ("--samples", "999999"), "ask for at most"),
         (("", ""), ("--at", "3 m"), "--at"),

@@ -71,18 +71,22 @@ class Effort:
     def _sense(self, state: State, speed: Number) -> Number:
         if state.m is not JETS:
             return state.m.base.sign(speed)
-        return np.where(grows(self.coordinate, state), 1.0, -1.0) * (state.rate != 0.0)
+        return sense_of(self.coordinate, state) * (state.rate != 0.0)
 
 
 def grows(coordinate: Coordinate, state: State) -> Number:
-    """Where a coordinate grows in time; where it turns, `state.side` decides."""
+    """Where a coordinate grows in time; where it turns, `state.side` decides, and without one it grows."""
+    return sense_of(coordinate, state) >= 0.0
+
+
+def sense_of(coordinate: Coordinate, state: State) -> Number:
+    """1 where a coordinate grows in time, -1 where it shrinks; 0 where it rests, unless `state.side` decides."""
     slope = coordinate.slope(state)
     speed, bend = slope.value * state.rate, slope.derivative(1) * state.rate
     reach = np.maximum(1.0, np.abs(state.parameter))
     with np.errstate(invalid="ignore"):
         rest = np.abs(slope.value) <= REST * (np.abs(slope.derivative(1)) * reach + state.scale)
-    beside = bend * state.side >= 0.0
-    return np.where(rest, beside, speed >= 0.0)
+        return np.where(rest, np.sign(bend * state.side), np.sign(speed))
 
 
 @dataclass(frozen=True)
