@@ -65,8 +65,14 @@ from .study.summary import motion_rows as motion_rows
 
 # Forces
 from .dynamics.reduction import reduce as reduce
+from .dynamics.kinetostatics.reactions import reactions as reactions
 from .study.reducing import reduction_rows as reduction_rows
 from .study.reducing import reduction_parts as reduction_parts
+from .study.joints import joint_table as joint_table
+from .study.reacting import reaction_rows as reaction_rows
+from .study.reacting import reaction_extremes as reaction_extremes
+from .study.reacting import reactions_at_instant as reactions_at_instant
+from .study.reacting import greatest_reaction as greatest_reaction
 
 # Steady motion of a machine
 from .dynamics.steady import steady_motion as steady_motion
@@ -124,6 +130,8 @@ from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
 from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_reduction_csv as write_reduction_csv
+from .present import write_reactions_csv as write_reactions_csv
+from .present import write_joint_table_csv as write_joint_table_csv
 from .present import write_region_csv as write_region_csv
 from .present import write_centres_csv as write_centres_csv
 from .present import write_centrodes_csv as write_centrodes_csv
