@@ -177,7 +177,11 @@ def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
         (("mass = 2\n", "mass = -2\n"), (), "mass must not be negative"),
         (("length = 0.4", "length = 0.4\nmass = 1"), (), "no moment of inertia"),
         (('value = "-2 kN"', 'value = "-2 m"'), (), "value"),
-        (('kind = "force"\nguide = "B"', 'kind = "friction"\nguide = "B"'), (), "value must not be negative"),
+        (
+            ('kind = "force"\nguide = "B"', 'kind = "friction"\nguide = "B"'),
+            (),
+            "value must not be negative",
+        ),
         (("", ""), ("--samples", "0"), "samples"),
         (("", ""), ("--samples", "999999"), "ask for at most"),
         (("", ""), ("--at", "3 m"), "--at"),
@@ -231,3 +235,16 @@ def test_a_run_says_why_reactions_are_left_out(centrode: Centrode, folder: Path)
     done = centrode("run", "crank-rocker", "--out", "s", "--samples", 5, "--no-figures")
     assert "reactions" not in done.out
     assert not (folder / "s" / "reactions.csv").exists()
+
+
+def test_friction_by_a_coefficient_and_plain_sums_are_refused(centrode: Centrode, folder: Path) -> None:
+    example = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
+    link = list(ct.example("crank-rocker").links)[-1]
+    for keys, message in (
+        ("coefficient = 0.1", "friction by a coefficient needs the reactions"),
+        ('quadratic = 0.1\nform = "plain sum"', "a plain sum is no moment in a hinge"),
+    ):
+        (folder / "r.toml").write_text(example.replace('"DB"', f'"{link}"') + keys + "\n")
+        done = centrode("reactions", "r.toml")
+        assert done.code == 2
+        assert message in done.err

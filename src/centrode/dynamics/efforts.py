@@ -71,22 +71,22 @@ class Effort:
     def _sense(self, state: State, speed: Number) -> Number:
         if state.m is not JETS:
             return state.m.base.sign(speed)
-        return sense_of(self.coordinate, state) * (state.rate != 0.0)
+        return np.sign(_going(self.coordinate, state))
 
 
 def grows(coordinate: Coordinate, state: State) -> Number:
-    """Where a coordinate grows in time; where it turns, `state.side` decides, and without one it grows."""
-    return sense_of(coordinate, state) >= 0.0
+    """Where a coordinate grows in time; where it turns, `state.side` decides."""
+    return _going(coordinate, state) >= 0.0
 
 
-def sense_of(coordinate: Coordinate, state: State) -> Number:
-    """1 where a coordinate grows in time, -1 where it shrinks; 0 where it rests, unless `state.side` decides."""
+def _going(coordinate: Coordinate, state: State) -> Number:
+    """A number with the sign of a coordinate's speed; where it turns that on `state.side`, zero at the place itself."""
     slope = coordinate.slope(state)
     speed, bend = slope.value * state.rate, slope.derivative(1) * state.rate
     reach = np.maximum(1.0, np.abs(state.parameter))
     with np.errstate(invalid="ignore"):
         rest = np.abs(slope.value) <= REST * (np.abs(slope.derivative(1)) * reach + state.scale)
-        return np.where(rest, np.sign(bend * state.side), np.sign(speed))
+    return np.where(rest, bend * state.side, speed)
 
 
 @dataclass(frozen=True)

@@ -82,11 +82,16 @@ class Burden:
 
     @classmethod
     def in_plane(cls, mechanism: Mechanism) -> Burden:
-        """The same where forces in joints are asked for, which on the sphere are not computed yet."""
+        """The same as forces on links of the plane; NotComputedYet on the sphere, InputError for what is no force."""
         if mechanism.space == "sphere":
-            what = _("forces in joints on the sphere are not computed yet")
+            what = _("reactions on the sphere are not computed yet")
             raise NotComputedYet("space", what, _("describe a plane one"))
-        return cls.of(mechanism)
+        found = cls.of(mechanism)
+        for load in found.loads:
+            if any(effort.works is not None for effort in load.efforts):
+                what = _("a plain sum is no moment in a hinge, so it makes no reactions")
+                raise InputError(load.where, what, _("take form out"))
+        return found
 
     @property
     def links(self) -> tuple[str, ...]:

@@ -53,7 +53,7 @@ def reactions(
     InputError
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
-        Friction, the sphere.
+        Friction by a coefficient, the sphere.
     """
     burden = Burden.in_plane(mechanism)
     if speed not in SPEEDS:
