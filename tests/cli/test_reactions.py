@@ -138,7 +138,7 @@ def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> No
     (folder / "w.toml").write_text(text)
     done = centrode("reactions", "w.toml", "--samples", 5, "--out", "result")
     assert done.code == 0, done
-    assert done.rows["not determined"] == "C/wheel, guide C, wheel wheel"
+    assert done.rows["not determined"] == "C/wheel; guide C; wheel wheel"
     assert "nan" not in done.out
     assert {row["rolling_normal_wheel [N]"] for row in rows_of(folder / "result" / "reactions.csv")} == {""}
 

@@ -15,7 +15,6 @@ from centrode.cli.arguments import (
     samples_option,
     start_option,
     stop_option,
-    written_option,
 )
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError, Status
@@ -42,7 +41,12 @@ MOST_INSTANTS = 100
     is_flag=True,
     help=mark("At the real speed of a machine in steady motion, not at its mean speed."),
 )
-@written_option
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("DIR"),
+    help=mark("Also write tables into this folder."),
+)
 @samples_option
 @start_option
 @stop_option

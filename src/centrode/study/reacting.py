@@ -39,7 +39,7 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     ]
     if found.attrs["undetermined"]:
         names = found.attrs["undetermined"].split("; ")
-        rows.append((_("not determined"), ", ".join(map(_said, names))))
+        rows.append((_("not determined"), "; ".join(map(_said, names))))
     if "tooth_force" in found:
         absent = np.isnan(found["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
         gears = ", ".join(found["gear"].to_numpy()[absent])
@@ -137,7 +137,10 @@ def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: in
         if values.ndim == 1:
             rows.append([label, unit, "", "", _number(float(here), noise), ""])
             continue
-        size, direction = float(np.hypot(*here)), float(np.degrees(np.arctan2(here[1], here[0])))
+        size, direction = (
+            float(np.hypot(*here)),
+            round(float(np.degrees(np.arctan2(here[1], here[0]))), 2) + 0.0,
+        )
         components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
         still = size <= noise
         rows.append([label, unit, *components, _number(size, noise), "" if still else f"{direction:.2f}"])
