@@ -12,9 +12,11 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import (
     mechanism_argument,
+    no_figures_option,
     samples_option,
     start_option,
     stop_option,
+    written_option,
 )
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError, Status
@@ -41,15 +43,11 @@ MOST_INSTANTS = 100
     is_flag=True,
     help=mark("At the real speed of a machine in steady motion, not at its mean speed."),
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("DIR"),
-    help=mark("Also write tables into this folder."),
-)
+@written_option
 @samples_option
 @start_option
 @stop_option
+@no_figures_option
 def reactions(
     mechanism: str,
     instants: tuple[str, ...],
@@ -58,6 +56,7 @@ def reactions(
     samples: int | None,
     start: str | None,
     stop: str | None,
+    no_figures: bool,
 ) -> None:
     """Print extremes or instants, write tables where asked; exit code 3 if samples are not reached."""
     description = ct.load(mechanism)
@@ -77,8 +76,7 @@ def reactions(
                 found = ct.reactions(
                     description, samples, first, last, places, speed="steady" if steady else "mean"
                 )
-                progress.say(_("writing tables"))
-                write(description, found, draft)
+                write(description, found, draft, progress, figures=not no_figures and not instants)
                 names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
     click.echo("\n" + report(description, found, instants))
@@ -101,11 +99,17 @@ def _check(instants: tuple[str, ...], samples: int | None, start: str | None, st
         raise InputError(beside, _("instants are asked for with --at"), _("take one of the two out"))
 
 
-def write(mechanism: ct.Mechanism, found: xarray.Dataset, folder: Path) -> None:
-    """Write reactions and the table of joints into a folder."""
+def write(
+    mechanism: ct.Mechanism, found: xarray.Dataset, folder: Path, progress: Progress, *, figures: bool
+) -> None:
+    """Write reactions and the table of joints into a folder, and figures where asked."""
+    progress.say(_("writing tables"))
     ct.write_reactions_csv(found, folder / "reactions.csv", mechanism.display)
     ct.write_motion_netcdf(found, folder / "reactions.nc")
     ct.write_joint_table_csv(ct.joint_table(mechanism), folder / "joints.csv")
+    if figures:
+        progress.say(_("drawing"))
+        ct.save_figures(ct.reaction_figures(mechanism, found), folder)
 
 
 def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, ...]) -> str:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from centrode.present.integrations import integration_figures
     from centrode.present.machine_figures import machine_figures
     from centrode.present.plan_drawing import plan_figure
+    from centrode.present.reaction_figures import reaction_figures
     from centrode.present.reaction_tables import write_joint_table_csv, write_reactions_csv
     from centrode.present.reading import scene_of
     from centrode.present.reduction_figures import reduction_figures
@@ -56,6 +57,7 @@ __all__ = [
     "integration_figures",
     "motion_figures",
     "motion_table",
+    "reaction_figures",
     "reduction_figures",
     "plan_figure",
     "region_figure",
@@ -94,6 +96,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "plan_drawing": ["plan_figure"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
+        "reaction_figures": ["reaction_figures"],
         "reaction_tables": ["write_joint_table_csv", "write_reactions_csv"],
         "reading": ["scene_of"],
         "reduction_figures": ["reduction_figures"],
