@@ -164,6 +164,7 @@ from .present import write_integration_csv as write_integration_csv
 from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
 from .present import reduction_figures as reduction_figures
+from .present import reaction_figures as reaction_figures
 from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures

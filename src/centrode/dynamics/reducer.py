@@ -76,7 +76,7 @@ class Burden:
         masses = masses_of(mechanism, given, m)
         loads = loads_of(mechanism, masses, given, m)
         if not masses and not loads:
-            what = _("there are neither masses nor loads to reduce")
+            what = _("there are neither masses nor loads")
             raise InputError("", what, _("give links a mass, or [[loads]]"))
         return cls(masses, loads)
 

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from centrode.present.machine_figures import machine_figures
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.polygon_drawing import polygon_figures
+    from centrode.present.reaction_figures import reaction_figures
     from centrode.present.reaction_tables import write_joint_table_csv, write_reactions_csv
     from centrode.present.reading import scene_of
     from centrode.present.reduction_figures import reduction_figures
@@ -58,6 +59,7 @@ __all__ = [
     "integration_figures",
     "motion_figures",
     "motion_table",
+    "reaction_figures",
     "reduction_figures",
     "plan_figure",
     "polygon_figures",
@@ -99,6 +101,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
         "polygon_drawing": ["polygon_figures"],
+        "reaction_figures": ["reaction_figures"],
         "reaction_tables": ["write_joint_table_csv", "write_reactions_csv"],
         "reading": ["scene_of"],
         "reduction_figures": ["reduction_figures"],
