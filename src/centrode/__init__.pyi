@@ -77,6 +77,18 @@ from .study.machines import flywheel_rows as flywheel_rows
 from .study.machines import flywheel_scalars as flywheel_scalars
 from .present import machine_figures as machine_figures
 
+# Shaking forces and counterweights
+from .dynamics.balancing.shaking import shaking as shaking
+from .dynamics.balancing.balance import balance as balance
+from .dynamics.balancing.balance import Balance as Balance
+from .dynamics.balancing.counterweights import Counterweight as Counterweight
+from .study.balancing import balance_rows as balance_rows
+from .study.balancing import balance_effects as balance_effects
+from .study.balancing import balance_steps as balance_steps
+from .present import balance_figures as balance_figures
+from .present import write_balance_csv as write_balance_csv
+from .present import write_harmonics_csv as write_harmonics_csv
+
 # Equations in symbols
 from .equations.derivation import equations as equations
 from .present import equations_text as equations_text
