@@ -58,6 +58,13 @@ def test_every_variable_of_a_motion_is_named() -> None:
     integrated = ("drift", "angle_difference", "position_difference")
     known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
     known |= set(reduced) | set(steady)
+    known |= {"shaking_force", "shaking_force_size", "shaking_moment", "inertia_on_drive", "order"}
+    known |= {
+        f"{what}_harmonic_{part}"
+        for what in ("force", "moment")
+        for part in ("cosine", "sine", "amplitude", "phase")
+    }
+    known.add("force_harmonic_greatest")
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

@@ -25,7 +25,6 @@ from centrode.locale import _, mark
 
 if TYPE_CHECKING:
     from centrode.dynamics.balancing.balance import To
-    from centrode.dynamics.balancing.instants import Speed
 
 OPTIONS: tuple[Callable[..., Any], ...] = (
     click.option(
@@ -135,7 +134,7 @@ def _asked(given: dict[str, Any]) -> dict[str, Any]:
         "on": given["links"] or None,
         "to": cast("To", "fraction" if given["fraction"] is not None else given["to"]),
         "moment": given["moment"],
-        "speed": cast("Speed", "steady" if given["steady"] else "drive"),
+        "speed": "steady" if given["steady"] else "drive",
         "radius": _by_link(given["radii"], "--radius", "OA=50 mm"),
         "most": _by_link(given["heaviest"], "--most", "OA=3 kg"),
         "thickness": given["thickness"],

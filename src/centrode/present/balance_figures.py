@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
@@ -13,14 +15,12 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.present.abscissa import main_abscissa
-from centrode.present.curves import Panel, sheet, write_title
+from centrode.present.curves import Panel, legend_width, sheet, write_legend, write_title
 from centrode.present.drawing import draw_mechanism
-from centrode.present.labels import label_places
-from centrode.present.obstacles import lines
 from centrode.present.reading import scene_of
 from centrode.present.scene import Scene, box
-from centrode.present.shown import formula, labelled, plain
-from centrode.present.style import DASHES, INK, MUTED, PALETTE, Decimals, Pen, house_style, pens
+from centrode.present.shown import formula, labelled, shown_as
+from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style, pens
 from centrode.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 BEFORE, AFTER = Pen(PALETTE[1], DASHES[1]), Pen(PALETTE[0])
-NOTHING = 1e-9
-WEIGHT_POINTS = 8.5
+SHOWN = 0.12
+"""Share of the motion at which the mechanism is drawn: at its beginning links often lie on one line."""
 
 
 def balance_figures(balance: Balance, motion: xarray.Dataset) -> dict[str, Figure]:
@@ -42,7 +42,7 @@ def balance_figures(balance: Balance, motion: xarray.Dataset) -> dict[str, Figur
     ----------
     balance : Balance
     motion : Dataset
-        The mechanism's motion; the first sample is drawn.
+        The mechanism's motion over its cycle; one sample of it is drawn.
 
     Returns
     -------
@@ -64,7 +64,9 @@ def _words() -> tuple[str, str]:
 
 def _hodograph(balance: Balance) -> Figure:
     """Ends of the shaking force from one origin, with dots every tenth of the cycle."""
-    figure = Figure(figsize=(7.4, 6.2), layout="constrained")
+    size = np.ptp(np.concatenate([data["shaking_force"] for data in (balance.before, balance.after)]), axis=0)
+    width, height = np.maximum(6.0 * size / max(float(size.max()), np.finfo(float).tiny), 2.6)
+    figure = Figure(figsize=(width + 2.9, height + 1.1), layout="constrained")
     axes = figure.subplots()
     for word, data, pen in zip(_words(), (balance.before, balance.after), (BEFORE, AFTER), strict=True):
         force = data["shaking_force"].to_numpy()
@@ -91,7 +93,7 @@ def _hodograph(balance: Balance) -> Figure:
 def _cycle(balance: Balance) -> Figure:
     """Size of the force, moment, and what the drive gives, over the cycle."""
     rows = []
-    for name in ("shaking_force_size", "shaking_moment", "inertia_on_drive"):
+    for number, name in enumerate(("shaking_force_size", "shaking_moment", "inertia_on_drive")):
         unit = str(balance.before[name].attrs["units"])
         curves = {
             word: data[name].to_numpy()
@@ -101,7 +103,7 @@ def _cycle(balance: Balance) -> Figure:
         quantity = QUANTITIES[name]
         label = labelled(f"{quantity.title}", unit)
         scale = max(float(np.nanmax(np.abs(curve))) for curve in curves.values())
-        rows.append([Panel(label, unit, curves, drawn, scale)])
+        rows.append([Panel(label, unit, curves, drawn, scale, legend=number == 0)])
     title = _("What the inertia does to the frame and to the drive")
     return sheet(title, _(balance.mechanism.title), rows, main_abscissa(balance.mechanism, balance.before))
 
@@ -121,6 +123,7 @@ def _harmonics(balance: Balance) -> Figure:
         axes.set_ylabel(labelled(text, str(balance.before[name].attrs["units"])))
         axes.yaxis.set_major_formatter(Decimals())
         axes.grid(visible=False, axis="x")
+        axes.set_axisbelow(True)
     axes.set_xlabel(_("order: periods in a turn of the drive"))
     figure.axes[0].legend(loc="upper right")
     write_title(figure, _("Harmonics of shaking force and moment"), _(balance.mechanism.title))
@@ -141,21 +144,24 @@ def _bars(axes: Axes, balance: Balance, name: str) -> None:
 
 
 def _drawing(balance: Balance, motion: xarray.Dataset) -> Figure:
-    """The mechanism with its counterweights at the first sample."""
+    """The mechanism with its counterweights at one sample, and what they weigh in a legend."""
     scene = scene_of(balance.mechanism, motion)
-    scene = _wide_enough(scene, balance.counterweights)
-    size = scene.high - scene.low
-    width = 7.0 * float(size[0]) / scene.extent + 1.6
-    figure = Figure(
-        figsize=(max(4.6, width), 7.0 * float(size[1]) / scene.extent + 1.4), layout="constrained"
-    )
-    axes = figure.subplots()
-    draw_mechanism(axes, scene, 0)
-    colours = pens(balance.mechanism.link_names)
+    sample = round(SHOWN * motion.sizes["sample"])
     heavy = [one for one in balance.counterweights if one.mass > 0.0]
+    scene = _wide_enough(scene, heavy, sample)
+    size = scene.high - scene.low
+    colours = pens(balance.mechanism.link_names)
+    names = {one.link: _name(balance, one) for one in heavy}
+    beside = legend_width(list(names.values())) if names else 0.0
+    width, height = 6.4 * size / scene.extent
+    figure = Figure(figsize=(max(width, 3.2) + 1.0 + beside, height + 1.5), layout="constrained")
+    axes = figure.subplots()
+    draw_mechanism(axes, scene, sample)
+    key: list[tuple[Artist, str]] = []
     for one in heavy:
-        _draw_one(axes, scene, one, colours[one.link].colour)
-    _write_masses(axes, scene, heavy)
+        circle = _draw_one(axes, scene, sample, one, colours[one.link].colour)
+        key += [] if circle is None else [(circle, names[one.link])]
+    write_legend(axes, key, inches=float(height))
     axes.grid(visible=False)
     axes.set_xlabel(labelled(formula("x"), str(balance.mechanism.display.length)))
     axes.set_ylabel(labelled(formula("y"), str(balance.mechanism.display.length)))
@@ -163,53 +169,37 @@ def _drawing(balance: Balance, motion: xarray.Dataset) -> Figure:
     return figure
 
 
+def _name(balance: Balance, one: Counterweight) -> str:
+    factor, unit = shown_as("m", balance.mechanism.display)
+    text = _("{link}: {mass:.4g} kg, {radius:.4g} {unit} from {base}")
+    return text.format(link=one.link, mass=one.mass, radius=one.radius * factor, unit=unit, base=one.base)
+
+
 def _reach(scene: Scene, one: Counterweight) -> float:
     """Radius of the circle that is drawn: the disc's own, else a sign."""
-    return 2.6 * scene.sign if one.disc is None else max(one.disc * scene.factor, 1.5 * scene.sign)
+    return 2.4 * scene.sign if one.disc is None else max(one.disc * scene.factor, 1.5 * scene.sign)
 
 
-def _wide_enough(scene: Scene, counterweights: tuple[Counterweight, ...]) -> Scene:
+def _wide_enough(scene: Scene, counterweights: Sequence[Counterweight], sample: int) -> Scene:
     """The scene with corners that hold the counterweights too."""
     corners = [np.array([scene.low, scene.high])]
     for one in counterweights:
-        at = scene.carried(one.link, one.place, 0)
-        if at is not None and one.mass > 0.0:
+        at = scene.carried(one.link, one.place, sample)
+        if at is not None:
             corners.append(np.array([at - _reach(scene, one), at + _reach(scene, one)]))
     low, high = box(corners)
     return replace(scene, low=low, high=high)
 
 
-def _draw_one(axes: Axes, scene: Scene, one: Counterweight, colour: str) -> None:
-    """An arm from the base, and a filled circle."""
-    at, base = scene.carried(one.link, one.place, 0), scene.at(0).get(one.base)
+def _draw_one(axes: Axes, scene: Scene, sample: int, one: Counterweight, colour: str) -> Circle | None:
+    """An arm from the base, and a filled circle; great discs lie behind the links."""
+    at, base = scene.carried(one.link, one.place, sample), scene.at(sample).get(one.base)
     if at is None or base is None:
-        return
+        return None
     axes.plot([base[0], at[0]], [base[1], at[1]], color=colour, linewidth=2.4, zorder=2.9)
     circle = Circle(
-        (at[0], at[1]), _reach(scene, one), facecolor=colour, edgecolor=INK, linewidth=0.9, zorder=4.5
+        (at[0], at[1]), _reach(scene, one), facecolor=colour, edgecolor=INK, linewidth=0.9, zorder=1.9
     )
     circle.set_alpha(0.55)
     axes.add_patch(circle)
-
-
-def _write_masses(axes: Axes, scene: Scene, counterweights: list[Counterweight]) -> None:
-    """The mass beside each counterweight."""
-    places = {}
-    for one in counterweights:
-        at = scene.carried(one.link, one.place, 0)
-        if at is not None:
-            places[f"{one.mass:.4g} kg"] = at
-    point = scene.extent / (72.0 * scene.inches)
-    offset = max([_reach(scene, one) for one in counterweights], default=0.0) + 0.9 * WEIGHT_POINTS * point
-    centres = label_places(places, lines(scene, 0), offset, WEIGHT_POINTS * point)
-    for text, centre in centres.items():
-        axes.text(
-            centre[0],
-            centre[1],
-            plain(text),
-            fontsize=WEIGHT_POINTS,
-            color=MUTED,
-            ha="center",
-            va="center",
-            zorder=8,
-        )
+    return circle

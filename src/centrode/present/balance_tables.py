@@ -53,7 +53,7 @@ def write_harmonics_csv(balance: Balance, path: Path) -> None:
         for header, unit, values in _by_order(data[variable], variable)
     ]
     with path.open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file)
+        writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["order", *(header for header, _values in columns)])
         orders = balance.before["order"].values.tolist()
         writer.writerows(zip(orders, *(values for _header, values in columns), strict=True))

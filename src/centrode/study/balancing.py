@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees
+from math import degrees, dist
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -12,7 +12,7 @@ from centrode.dynamics.balancing.counterweights import Counterweight
 from centrode.dynamics.balancing.loops import Loop, Share
 from centrode.dynamics.masses import massless_links
 from centrode.locale import _
-from centrode.model.mechanism import Display
+from centrode.model.mechanism import Display, Mechanism
 from centrode.quantities import display_unit
 
 if TYPE_CHECKING:
@@ -49,9 +49,21 @@ def kind_text(found: Balance) -> str:
     if found.to == "full":
         both = _("shaking force and shaking moment zero")
         return both if found.discs else _("shaking force zero")
-    if found.to == "least":
-        return _("the least greatest effects that counterweights on these links allow")
-    return _("what turns with the crank's pin, and a fraction of what moves to and fro")
+    if found.weights is not None:
+        return _weights_text(found.weights)
+    said = _("what turns with the crank's pin, and {share:.4g} % of what moves to and fro")
+    return said.format(share=100.0 * (found.fraction or 0.0))
+
+
+def _weights_text(weights: tuple[float, ...]) -> str:
+    names = (_("shaking force"), _("shaking moment"), _("moment of the drive"))
+    parts = [(name, weight) for name, weight in zip(names, weights, strict=True) if weight]
+    if len(parts) == 1:
+        return _("the least greatest value: {what}").format(what=parts[0][0])
+    total = " + ".join(f"{weight:g} x {name}" for name, weight in parts)
+    return _("the least sum of greatest values, each over that without counterweights: {sum}").format(
+        sum=total
+    )
 
 
 def _speed_text(data: xarray.Dataset) -> str:
@@ -157,13 +169,53 @@ def _share_text(share: Share) -> str:
 
 
 def _sums(found: Balance, loop: Loop) -> list[str]:
+    """Masses at the moving joints, and the products that balance them."""
     crank, coupler = found.shares[:2]
-    turning = (crank.at_second + coupler.at_first).real
-    said = [_("{mass:.6g} kg turn with {point}").format(mass=turning, point=loop.A)]
+    turning = crank.at_second + coupler.at_first
+    said = [_("{mass:.6g} kg turn with {point}").format(mass=turning.real, point=loop.A)]
     if loop.rocker is None:
-        moved = coupler.at_second.real + loop.slider
-        said.append(_("{mass:.6g} kg move to and fro with {point}").format(mass=moved, point=loop.B))
+        moved = coupler.at_second + loop.slider
+        said.append(_("{mass:.6g} kg move to and fro with {point}").format(mass=moved.real, point=loop.B))
     else:
-        moved = (found.shares[2].at_second + coupler.at_second).real
-        said.append(_("{mass:.6g} kg turn with {point}").format(mass=moved, point=loop.B))
-    return said
+        moved = found.shares[2].at_second + coupler.at_second
+        said.append(_("{mass:.6g} kg turn with {point}").format(mass=moved.real, point=loop.B))
+    if any(
+        abs(share.at_second.imag) > NOTHING * abs(share.at_first + share.at_second) for share in found.shares
+    ):
+        return said  # vectors: no sum of numbers
+    return [*said, *_products(found, loop, turning.real, moved.real)]
+
+
+def _products(found: Balance, loop: Loop, turning: float, moved: float) -> list[str]:
+    """Mass times length on each link with a counterweight, where the textbook has a sum for it."""
+    factor, unit = display_unit("m", found.mechanism.display.length)
+    by_link = {one.link: one for one in found.counterweights}
+    lengths = {share.link: factor * length_of(found.mechanism, share) for share in found.shares}
+    if found.fraction is not None:
+        text = _("({turning:.6g} kg + {share:.4g} · {moved:.6g} kg) · {length:.6g} {unit} on {link}")
+        said = text.format(
+            turning=turning,
+            share=found.fraction,
+            moved=moved,
+            length=lengths[loop.crank],
+            unit=unit,
+            link=loop.crank,
+        )
+        return [said]
+    if found.to != "full" or not found.unique or set(by_link) != {loop.crank, loop.rocker or loop.coupler}:
+        return []
+    text = _("{mass:.6g} kg · {length:.6g} {unit} on {link}")
+    other, at_pin = loop.rocker, turning
+    if other is None:
+        other = loop.coupler
+        at_pin = turning + moved + by_link[other].mass
+    if other == loop.coupler and by_link[other].base != loop.A:
+        return []
+    sums = ((at_pin, loop.crank), (moved, other))
+    return [text.format(mass=m, length=lengths[link], unit=unit, link=link) for m, link in sums]
+
+
+def length_of(mechanism: Mechanism, share: Share) -> float:
+    """Distance of the two joints of a link [m]."""
+    places = mechanism.links[share.link].coordinates
+    return dist(places[share.first], places[share.second])

@@ -6,32 +6,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
-import numpy as np
 import xarray as xr
 
-from centrode.dynamics.balancing.asked import Lengths, Masses, asked_spots, number
+from centrode.dynamics.balancing.asked import Lengths, Masses, asked_spots
+from centrode.dynamics.balancing.choosing import by_fraction, check_masses, fully, least_effects
 from centrode.dynamics.balancing.counterweights import (
     Counterweight,
-    Spot,
     counterweight,
     with_counterweights,
 )
-from centrode.dynamics.balancing.full import enough_spots, full_balance
-from centrode.dynamics.balancing.inertial import Complex
 from centrode.dynamics.balancing.instants import Speed, check_speed, on_sphere
-from centrode.dynamics.balancing.lightest import Aim, lightest
-from centrode.dynamics.balancing.loops import Loop, Share, fraction_of_slider_crank, loop_of, shares_of
+from centrode.dynamics.balancing.loops import Loop, Share, loop_of, shares_of
 from centrode.dynamics.balancing.moments import Disc, discs_for, with_discs
-from centrode.dynamics.balancing.reachable import hinged_from
-from centrode.dynamics.balancing.shaking import ORDERS, About, greatest_of, place_of, shaking
+from centrode.dynamics.balancing.shaking import ORDERS, About, place_of, shaking
 from centrode.dynamics.balancing.turning import Turning
-from centrode.errors import InputError, MotionError
+from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
 To: TypeAlias = Literal["full", "least", "fraction"]
 KINDS = get_args(To)
-EFFECTS = {"force": "shaking_force", "moment": "shaking_moment", "driving": "inertia_on_drive"}
 
 
 @dataclass(frozen=True)
@@ -48,6 +42,10 @@ class Balance:
         Inertia that balances the shaking moment; none where it was not asked for.
     before, after : Dataset
         Of `shaking`, of both mechanisms; their attributes hold the greatest values over the cycle.
+    fraction : float or None
+        Of what moves to and fro, where that was asked for.
+    weights : three numbers or None
+        Of force, moment and drive in the least greatest effects.
     left : float or None
         Of a full balance: what is left of the sum of mass times place, over all masses times the greatest length.
     unique : bool
@@ -66,6 +64,8 @@ class Balance:
     discs: tuple[Disc, ...]
     before: xr.Dataset
     after: xr.Dataset
+    fraction: float | None
+    weights: tuple[float, ...] | None
     left: float | None
     unique: bool
     bound: float | None
@@ -95,7 +95,7 @@ def balance(
     Parameters
     ----------
     on : links, or "LINK@POINT" with the point that the radius is measured from
-        Left out: for "full" as few links as are enough, those hinged to the frame first; else those hinged to the frame.
+        Left out: those hinged to the frame; for "full" as few as are enough, and others where these are not.
     to : "full", "least" or "fraction"
         Shaking force zero; the least greatest effects; for a slider-crank, what turns with the crank's pin and a
         `fraction` of what moves to and fro.
@@ -140,29 +140,42 @@ def balance(
     turning = Turning.of(mechanism, complex(*centre), speed)
     spots = asked_spots(mechanism, on, to, radius, most, thickness, density)
     loop = loop_of(mechanism, turning.masses)
-    left, unique, bound = None, True, None
     if to == "full":
-        spots = enough_spots(turning, spots) if on is None else spots
-        found = full_balance(turning, spots)
-        if not found.complete:
-            raise _cannot(turning, mechanism, spots, found.left)
-        products, left, unique = found.products, found.left, found.unique
+        chosen = fully(mechanism, turning, spots, named=on is not None)
     elif to == "least":
-        products, bound = _least(turning, spots, weights)
+        chosen = least_effects(turning, spots, weights)
     else:
-        spots, products = _by_fraction(mechanism, turning, spots, loop, fraction)
-    weighed = tuple(counterweight(mechanism, spot, s) for spot, s in zip(spots, products, strict=True))
-    _check_masses(spots, weighed)
+        chosen = by_fraction(mechanism, turning, spots, loop, fraction)
+    weighed = tuple(
+        counterweight(mechanism, spot, s) for spot, s in zip(chosen.spots, chosen.products, strict=True)
+    )
+    check_masses(chosen.spots, weighed)
     balanced = with_counterweights(mechanism, turning.masses, weighed)
     discs: tuple[Disc, ...] = ()
     if moment:
         discs = discs_for(Turning.of(balanced, complex(*centre), speed), balanced)
         balanced = with_discs(balanced, discs)
+    ends = (turning.first, turning.first + turning.period) if speed == "drive" else (None, None)
     before, after = (
-        shaking(one, samples, about=centre, speed=speed, orders=orders) for one in (mechanism, balanced)
+        shaking(one, samples, *ends, about=centre, speed=speed, orders=orders)
+        for one in (mechanism, balanced)
     )
-    shares = () if loop is None else shares_of(mechanism, turning.masses, loop)
-    return Balance(mechanism, balanced, to, weighed, discs, before, after, left, unique, bound, loop, shares)
+    return Balance(
+        mechanism,
+        balanced,
+        to,
+        weighed,
+        discs,
+        before,
+        after,
+        chosen.fraction,
+        chosen.weights,
+        chosen.left,
+        chosen.unique,
+        chosen.bound,
+        loop,
+        () if loop is None else shares_of(mechanism, turning.masses, loop),
+    )
 
 
 def _check(to: str, speed: str, moment: bool) -> None:
@@ -173,69 +186,3 @@ def _check(to: str, speed: str, moment: bool) -> None:
     if moment and to != "full":
         what = _("discs balance the shaking moment only where the force is balanced fully")
         raise InputError("moment", what, _('use to = "full"'))
-
-
-def _least(turning: Turning, spots: Sequence[Spot], weights: Sequence[float]) -> tuple[Complex, float | None]:
-    """Products with the least greatest effects, and the force [N] that none go below."""
-    numbers = [number(weight, "weights", "ratio") for weight in weights]
-    if len(numbers) != 3 or min(numbers) < 0.0 or not max(numbers) > 0.0:
-        what = _("expected three numbers, none negative and not all zero: of force, moment and drive")
-        raise InputError("weights", what, "(1, 0, 0)")
-    aim = Aim(*numbers)
-    greatest = greatest_of(turning)
-    sizes = [greatest[f"greatest_{EFFECTS[name]}"] for name, _weight in aim.parts]
-    if min(sizes) == 0.0:
-        raise InputError("weights", _("what they count is zero without counterweights"))
-    found = lightest(turning, spots, aim, sizes)
-    # in steady motion the counterweights change the speed itself
-    proved = found.bound is not None and turning.instants.panels is None
-    return found.products, (found.bound or 0.0) * sizes[0] / aim.force if proved else None
-
-
-def _by_fraction(
-    mechanism: Mechanism, turning: Turning, spots: Sequence[Spot], loop: Loop | None, fraction: float
-) -> tuple[list[Spot], Complex]:
-    """The one counterweight on the crank of a slider-crank."""
-    share = number(fraction, "fraction", "ratio")
-    if not 0.0 <= share <= 1.0:
-        what = _("expected a number from 0 to 1, got {value}").format(value=f"{share:g}")
-        raise InputError("fraction", what, _("half or two thirds are usual"))
-    if loop is None or loop.rocker is not None:
-        what = _("a fraction of what moves to and fro is balanced in slider-cranks only")
-        raise InputError("fraction", what, _("ask for the full balance, or for the least greatest force"))
-    chosen = [spot for spot in spots if spot.link == loop.crank]
-    if len(chosen) != 1 or len(spots) != 1 or chosen[0].base != loop.O:
-        what = _("this counterweight stands on the crank {crank}").format(crank=loop.crank)
-        raise InputError("on", what, _("leave the links out"))
-    return chosen, np.array([fraction_of_slider_crank(mechanism, turning.masses, loop, share)])
-
-
-def _check_masses(spots: Sequence[Spot], weighed: Sequence[Counterweight]) -> None:
-    for spot, one in zip(spots, weighed, strict=True):
-        most = spot.making.most
-        if most is not None and one.mass > most * (1.0 + 1e-9):
-            what = _("the counterweight on {link} would have {mass:.6g} kg, more than {most:.6g} kg")
-            raise MotionError(
-                "most",
-                what.format(link=one.link, mass=one.mass, most=most),
-                _("allow more, give it a greater radius, or ask for the least greatest force"),
-            )
-
-
-def _cannot(turning: Turning, mechanism: Mechanism, spots: Sequence[Spot], left: float) -> MotionError:
-    """Why the force cannot be balanced fully."""
-    hinged = hinged_from(mechanism)
-    heavy = [one.link for one in turning.masses if one.weighs and one.link not in hinged]
-    links = ", ".join(spot.link for spot in spots) or _("none")
-    if heavy:
-        what = _("its force cannot be balanced fully: hinges alone do not lead from the frame to {links}")
-        return MotionError(
-            "", what.format(links=", ".join(heavy)), _("ask for the least greatest force instead")
-        )
-    what = _(
-        "counterweights on {links} do not balance its force: the common centre of mass would still move"
-        " ({left:.2g} of the greatest length)"
-    )
-    return MotionError(
-        "", what.format(links=links, left=left), _("name more links, or leave the choice to centrode")
-    )

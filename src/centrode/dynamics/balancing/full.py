@@ -1,9 +1,9 @@
 """Full balance of the shaking force: the common centre of mass is brought to rest.
 
-The sum of mass times place of all links is to be constant. Places of bases and rotors of links with counterweights are
-functions of the drive; where the sum lies in their span (with constants) the counterweights follow from linear equations:
-the method of linearly independent vectors (R. S. Berkof, G. G. Lowen, Journal of Engineering for Industry 91, 1969, 21-26)
-by numbers in place of the closure of loops.
+The sum of mass times place of all links is to be constant. Places of bases and rotors of links with counterweights
+are functions of the drive; where the sum lies in their span (with constants) the counterweights follow from linear
+equations: the method of linearly independent vectors (R. S. Berkof, G. G. Lowen, Journal of Engineering for Industry
+91, 1969, 21-26) by numbers in place of the closure of loops.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Harmonics of what inertia does to the frame: Fourier coefficients over a whole cycle of the drive.
 
 At constant speed by the trapezoidal rule on a whole period, which converges faster than any power of the number of
-nodes for smooth periodic functions (L. N. Trefethen, J. A. C. Weideman, SIAM Review 56, 2014, 385-458); where loads make
-the acceleration jump by Gauss's rule between the jumps.
+nodes for smooth periodic functions (L. N. Trefethen, J. A. C. Weideman, SIAM Review 56, 2014, 385-458); where loads
+make the acceleration jump by Gauss's rule between the jumps.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def harmonics_of(turning: Turning, most: int) -> Harmonics:
     panels = turning.instants.panels
     count = NODES_PER_TURN * turning.turns
     force, moment = turning.sizes
-    sizes = np.array([force, force, moment or 1.0])
+    sizes = np.array([force or 1.0, force or 1.0, moment or 1.0])  # nothing moves: the sums are zero
     before: Array | None = None
     error = np.inf
     for _doubling in range(MOST_DOUBLINGS):

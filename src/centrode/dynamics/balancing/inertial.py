@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,7 @@ from centrode.dynamics.states import Place, State
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Complex: TypeAlias = npt.NDArray[np.complex128]
+Numbers = TypeVar("Numbers", Array, Complex)
 
 
 @dataclass(frozen=True)
@@ -28,14 +29,15 @@ class Pace:
     rate: Array
     second_rate: Array
 
-    def second(self, orders: Complex | Array) -> Complex | Array:
+    def second(self, orders: Numbers) -> Numbers:
         """Second derivatives by time of what has value and two derivatives by the parameter (3, ..., n)."""
-        return np.asarray(orders[2] * self.rate**2 + orders[1] * self.second_rate)
+        found: Numbers = orders[2] * self.rate**2 + orders[1] * self.second_rate
+        return found
 
 
 @dataclass(frozen=True)
 class Tracks:
-    """Where bodies are: `places` (3, bodies, n) [m] and `angles` (3, bodies, n) [rad], with derivatives by the parameter."""
+    """Where bodies are: `places` [m] and `angles` [rad] (3, bodies, n), with derivatives by the parameter."""
 
     places: Complex
     angles: Array
@@ -43,7 +45,7 @@ class Tracks:
 
 @dataclass(frozen=True)
 class Effects:
-    """What inertia does at n samples: force on the frame [N], moment on it [N m], moment or force the drive must give."""
+    """What inertia does at n samples: force and moment on the frame [N, N m], and what the drive must give for it."""
 
     force: Complex
     moment: Array

@@ -1,4 +1,4 @@
-"""Counterweights with the least greatest effects: shaking force, shaking moment, moment of the drive, each with a weight.
+"""Counterweights with the least greatest effects: shaking force, shaking moment, moment of the drive, weighted.
 
 With bases in the frame the force depends linearly on the products of mass and radius, and the least greatest force is
 found with a proof (`minimax`). Inertias and the masses on moving bases bend this: then linear problems are solved one
@@ -34,7 +34,7 @@ BETWEEN = 1e-9
 
 @dataclass(frozen=True)
 class Aim:
-    """Weights of the greatest shaking force, shaking moment and moment of the drive, each over that without counterweights."""
+    """Weights of greatest shaking force, shaking moment and moment of the drive, each over that of before."""
 
     force: float = 1.0
     moment: float = 0.0
@@ -128,7 +128,7 @@ class Problem:
                 [slope @ getattr(column, name) for slope, column in zip(slopes, self.columns, strict=True)]
             ).T
             rows = rows * (self.unit / size)
-            found.append(Term(weight, getattr(whole, name) / size - rows @ x, rows))
+            found.append(Term(weight, np.asarray(getattr(whole, name) / size - rows @ x), rows))
         if not self.pull:
             return found
         pairs = len(self.spots)
@@ -170,7 +170,7 @@ class Problem:
 
     def _size(self, x: Array, name: str, values: Array) -> Array:
         whole = self.effects(x, self.turning.effects(values), self.columns_at(values))
-        return np.abs(getattr(whole, name))
+        return np.asarray(np.abs(getattr(whole, name)))
 
 
 def lightest(turning: Turning, spots: Sequence[Spot], aim: Aim, sizes: Sequence[float]) -> Lightest:

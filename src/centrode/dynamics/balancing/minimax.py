@@ -1,8 +1,9 @@
-"""The least greatest value of vectors that depend linearly on unknowns, by cutting planes with a proof of how good it is.
+"""The least greatest value of vectors that depend linearly on unknowns, by cutting planes, with a proof.
 
-Minimise the sum over terms of weight * max over n instants of |constant + rows x|: a second-order cone programme. Every
-linear programme over some of its tangents bounds the answer from below, every x tried bounds it from above (J. E. Kelley,
-Journal of the Society for Industrial and Applied Mathematics 8, 1960, 703-712).
+Minimise the sum over terms of weight * max over n instants of |constant + rows x|: a second-order cone programme.
+Every linear programme over some of its tangents bounds the answer from below, every x tried bounds it from above
+(J. E. Kelley, Journal of the Society for Industrial and Applied Mathematics 8, 1960, 703-712). Between the linear
+programmes the unknowns are polished by sequential quadratic programming over the instants that stand out.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ class Term:
     """weight * max |constant + rows x|; constant (n), rows (n, unknowns), real or complex."""
 
     weight: float
-    constant: Complex
-    rows: Complex
+    constant: Complex | Array
+    rows: Complex | Array
 
     def at(self, x: Array) -> Array:
         """Absolute values at the instants."""

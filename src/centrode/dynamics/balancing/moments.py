@@ -1,9 +1,9 @@
 """Balance of the shaking moment: discs that turn against links hinged to the frame, and inertia added to the others.
 
-Once the force is balanced, the moment of momentum does not depend on the place it is taken about. Where it is a sum of
-constants times the angular velocities of the links, discs geared one to one against the links on the frame cancel it. Of
-an in-line four-bar it is such a sum if the coupler is a physical pendulum, k^2 = r r' with r, r' the distances of its
-centre of mass from its joints (R. S. Berkof, Mechanism and Machine Theory 8, 1973, 397-410).
+Once the force is balanced, the moment of momentum does not depend on the place it is taken about. Where it is a sum
+of constants times the angular velocities of the links, discs geared one to one against the links on the frame cancel
+their shares. Of an in-line four-bar the coupler has no share if it is a physical pendulum, k^2 = r r' with r, r' the
+distances of its centre of mass from its joints (R. S. Berkof, Mechanism and Machine Theory 8, 1973, 397-410).
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ import xarray as xr
 
 from centrode.dynamics.balancing.harmonics import Harmonics, harmonics_of
 from centrode.dynamics.balancing.inertial import Array, Effects, Pace, effects_of, tracks_of
-from centrode.dynamics.balancing.instants import Instants, Speed, check_speed, on_sphere
+from centrode.dynamics.balancing.instants import Speed, check_speed, on_sphere
 from centrode.dynamics.balancing.turning import Turning, heavy, top
 from centrode.dynamics.solution import solution_of
 from centrode.dynamics.states import Moving, State
@@ -63,8 +63,8 @@ def shaking(
     Returns
     -------
     Dataset
-        `shaking_force` (sample, axis), its size, `shaking_moment`, `inertia_on_drive` (sample); where the drive turns all
-        the way round at a constant speed or in steady motion, harmonics by `order` (docs: balancing).
+        `shaking_force` (sample, axis), its size, `shaking_moment`, `inertia_on_drive` (sample); where the drive
+        turns all the way round at a constant speed or in steady motion, harmonics by `order` (docs: balancing).
 
     Raises
     ------
@@ -175,20 +175,21 @@ def _harmonics(
         with speaking("en"):  # what results keep
             turning = Turning.of(mechanism, about, speed)
             harmonics = harmonics_of(turning, orders)
+            greatest = greatest_of(turning)
     except (InputError, MotionError) as failure:
         return {}, {"no_harmonics": failure.what}
     facts = {
         "turns_of_cycle": turning.turns,
         "harmonics_nodes": harmonics.nodes,
         "harmonics_error": harmonics.error,
-        **greatest_of(turning),
+        **greatest,
     }
     return variables_of(harmonics), facts
 
 
 def greatest_of(turning: Turning) -> dict[str, float]:
     """Greatest force, moment and driving moment of inertia over the cycle, between samples too, and where."""
-    facts = {}
+    facts: dict[str, float] = {}
     for name, curve in (
         ("shaking_force", lambda q: np.abs(turning.effects(q).force)),
         ("shaking_moment", lambda q: np.abs(turning.effects(q).moment)),

@@ -21,7 +21,7 @@ Curve: TypeAlias = Callable[[Array], Array]
 
 NODES_PER_TURN = 360
 PARTS, ROUNDS = 32, 5
-"""Into so many parts a stretch about a top is cut, so often: the top's place then is known to 1e-7 of a node's width."""
+"""Into so many parts a stretch about a top is cut, so often: its place then is known to 1e-7 of a node's width."""
 NEAR = 0.02
 """Share of the greatest value at the nodes within which another top may be the greater one between them."""
 MOST_TOPS = 40
