@@ -78,7 +78,7 @@ def discs_for(turning: Turning, mechanism: Mechanism) -> tuple[Disc, ...]:
         elif inertia < 0.0:
             discs.append(Disc(name, None, -float(inertia)))
         else:
-            raise _too_much(turning.masses, name, float(inertia))
+            raise _too_much(name, float(inertia))
     return tuple(discs)
 
 
@@ -96,13 +96,17 @@ def _turns(rate: Array) -> bool:
     return bool(np.max(np.abs(rate)) > SAME)
 
 
-def _too_much(masses: Sequence[Mass], link: str, surplus: float) -> MotionError:
-    own = sum(mass.inertia for mass in masses if mass.link == link)
-    what = _("link {link} is no physical pendulum: its inertia is {own:.6g} kg m², and {right:.6g} is right")
+def _too_much(link: str, surplus: float) -> MotionError:
+    what = _(
+        "the shaking moment cannot be balanced: the inertia of {link} is {surplus:.6g} kg m² too great, and it is"
+        " not hinged to the frame, where a disc could turn against it"
+    )
     return MotionError(
         f"[links.{link}]",
-        what.format(link=link, own=own, right=own - surplus),
-        _("give it less inertia, or lead its centre of mass nearer to the middle between its joints"),
+        what.format(link=link, surplus=surplus),
+        _(
+            "make it a physical pendulum: less inertia, or its centre of mass nearer to the middle of its joints"
+        ),
     )
 
 
