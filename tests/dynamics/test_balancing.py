@@ -334,7 +334,7 @@ def test_discs_balance_the_moment_of_an_in_line_four_bar(seed: int, pendulum: fl
 def test_discs_that_are_not_to_be_had() -> None:
     with pytest.raises(ct.MotionError, match="no discs balance"):
         ct.balance(four_bar(1), moment=True)
-    with pytest.raises(ct.MotionError, match="the inertia of AB is .* too great"):
+    with pytest.raises(ct.MotionError, match=r"the inertia of AB is .* too great"):
         ct.balance(four_bar(1, in_line=True, pendulum=1.5), moment=True)
     with pytest.raises(ct.InputError, match="only where the force is balanced fully"):
         ct.balance(four_bar(1), to="least", moment=True)

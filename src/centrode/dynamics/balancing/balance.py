@@ -137,8 +137,8 @@ def balance(
         raise on_sphere()
     _check(to, speed, moment)
     centre = place_of(mechanism, about)
-    turning = Turning.of(mechanism, complex(*centre), speed)
     spots = asked_spots(mechanism, on, to, radius, most, thickness, density)
+    turning = Turning.of(mechanism, complex(*centre), speed, [(spot.link, spot.base) for spot in spots])
     loop = loop_of(mechanism, turning.masses)
     if to == "full":
         chosen = fully(mechanism, turning, spots, named=on is not None)

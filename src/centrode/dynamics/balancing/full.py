@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from centrode.dynamics.balancing.counterweights import Spot, mass_moments
-from centrode.dynamics.balancing.inertial import Complex, tracks_of
+from centrode.dynamics.balancing.inertial import Complex
 from centrode.dynamics.balancing.turning import Turning
 
 INSTANTS = 90
@@ -53,9 +53,9 @@ def full_balance(turning: Turning, spots: Sequence[Spot]) -> FullBalance:
     The mass of a counterweight whose base moves acts on what carries it, so it is found in rounds.
     """
     values = turning.values(INSTANTS * turning.turns)
-    state = turning.instants.state(values)
+    state, tracks = turning.at(values)
     mass = np.array([one.mass for one in turning.masses])
-    own = _swing(mass @ tracks_of(state, turning.masses).places[0])
+    own = _swing(mass @ tracks.places[0])
     pairs = [mass_moments(state, spot) for spot in spots]
     bases = np.array([_swing(base) for base, _rotor in pairs]).reshape(len(spots), len(values))
     rotors = np.array([_swing(rotor) for _base, rotor in pairs]).reshape(len(spots), len(values))

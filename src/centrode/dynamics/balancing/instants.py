@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import copysign, tau
 from typing import Literal, TypeAlias, get_args
@@ -113,8 +113,12 @@ def constant_rate(prepared: Ready) -> float:
     return rate
 
 
-def turns_of_cycle(instants: Instants, masses: tuple[Mass, ...]) -> int:
+def turns_of_cycle(
+    instants: Instants, masses: Sequence[Mass], carriers: Sequence[tuple[str, str]] = ()
+) -> int:
     """The least number of whole turns of the drive after which all masses are back in their places.
+
+    `carriers` are links that may carry more, each with one of its points: they are to be back too.
 
     Raises
     ------
@@ -131,7 +135,7 @@ def turns_of_cycle(instants: Instants, masses: tuple[Mass, ...]) -> int:
     for most in (FEW_TURNS, MOST_TURNS):
         turned = (PROBES + tau * np.arange(most + 1)[:, None]).reshape(-1)
         values = path.initial + path.forward * turned
-        found = _signature(instants, masses, values)
+        found = _signature(instants, masses, carriers, values)
         missing = ~np.isfinite(found).all(axis=0)
         if missing.any():
             raise does_not_turn(float(values[missing][0]))
@@ -144,15 +148,22 @@ def turns_of_cycle(instants: Instants, masses: tuple[Mass, ...]) -> int:
     raise InputError("[[gears]]", what, _("change the ratios of the gears"))
 
 
-def _signature(instants: Instants, masses: tuple[Mass, ...], values: Array) -> Array:
-    """Places of the centres of mass over the greatest length, and how the links stand, with first derivatives."""
+def _signature(
+    instants: Instants, masses: Sequence[Mass], carriers: Sequence[tuple[str, str]], values: Array
+) -> Array:
+    """What has to be the same again: places over the greatest length with their derivatives, turning, and carriers."""
     state, count = instants.state(values), len(values)
+    size = 1.0 / state.scale
     rows = []
     for mass in masses:
         x, y = state.centre(mass.centre)
-        for jet in (x * (1.0 / state.scale), y * (1.0 / state.scale), *state.rotor(mass.link)):
-            rows += [np.broadcast_to(np.squeeze(jet.derivative(k)), (count,)) for k in range(2)]
-    return np.array(rows)
+        turning = state.angle(mass.link)
+        rows += [(jet * size).derivative(k) for jet in (x, y) for k in range(2)]
+        rows += [turning.derivative(k) for k in (1, 2)]
+    for link, base in carriers:
+        x, y = state.point(base)
+        rows += [jet.value for jet in (x * size, y * size, *state.rotor(link))]
+    return np.array([np.broadcast_to(np.squeeze(row), (count,)) for row in rows])
 
 
 def does_not_turn(value: float) -> MotionError:

@@ -17,15 +17,18 @@ from centrode.dynamics.balancing.counterweights import PARAMETERS, Spot, columns
 from centrode.dynamics.balancing.full import SAME, full_balance
 from centrode.dynamics.balancing.inertial import Array, Complex, Effects
 from centrode.dynamics.balancing.making import LEAST
-from centrode.dynamics.balancing.minimax import Term, least
+from centrode.dynamics.balancing.minimax import CLOSED, Term, least, within
 from centrode.dynamics.balancing.turning import Turning, tops
 
 INSTANTS = 180
 WIDE = 20.0
 """Products of mass and radius are looked for up to so many times all masses times the greatest length."""
 STEPS, EXCHANGES = 60, 8
-CONVERGED = 1e-9
-"""Gain that a linear problem still promises, over the value, at which the search ends."""
+CONVERGED, ROUGHLY = 1e-9, 1e-3
+"""Gain that a linear problem still promises, over the value, at which a search ends, and a first look."""
+LEAST_TRUST = 1e-9
+CRUMB = 1e-6
+"""Product over `unit` of a counterweight that is tried to be left out."""
 PULL = 1e-9
 """Weight of the greatest product over `unit`: of counterweights that do the same the smaller ones are taken."""
 BETWEEN = 1e-9
@@ -188,7 +191,15 @@ def lightest(turning: Turning, spots: Sequence[Spot], aim: Aim, sizes: Sequence[
             break
         problem = finer
         x, bound = _descended(problem, x, limits)
+    x = _without_crumbs(problem, x)
     return Lightest(problem.products(x), problem.value(x), None if problem.pull else bound)
+
+
+def _without_crumbs(problem: Problem, x: Array) -> Array:
+    """Without the counterweights that are nothing but what is left of the search."""
+    small = np.repeat(np.hypot(x[::2], x[1::2]) < CRUMB, 2)
+    fewer = np.where(small, 0.0, x)
+    return fewer if problem.value(fewer) <= problem.value(x) * (1.0 + CLOSED) else x
 
 
 def _solved(problem: Problem, limits: Array) -> tuple[Array, float]:
@@ -198,15 +209,15 @@ def _solved(problem: Problem, limits: Array) -> tuple[Array, float]:
         return _descended(problem, zero, limits)
     full = full_balance(problem.turning, problem.spots).products / problem.unit
     resting = np.stack([full.real, full.imag], axis=1).reshape(-1)
-    length = np.repeat(np.hypot(resting[::2], resting[1::2]), 2)
-    cap = np.repeat(limits, 2)
-    resting = np.where(length > cap, resting * cap / np.where(length > 0.0, length, 1.0), resting)
+    resting = within(np.clip(resting, -WIDE, WIDE), limits)
     beginnings = [zero, resting, 0.5 * resting, -0.5 * resting]
-    found = [_descended(problem, x, limits) for x in beginnings]
-    return min(found, key=lambda pair: problem.value(pair[0]))
+    found = [_descended(problem, x, limits, ROUGHLY)[0] for x in beginnings]
+    return _descended(problem, min(found, key=problem.value), limits)
 
 
-def _descended(problem: Problem, x: Array, limits: Array) -> tuple[Array, float]:
+def _descended(
+    problem: Problem, x: Array, limits: Array, converged: float = CONVERGED
+) -> tuple[Array, float]:
     """Linear problems one after the other; also what the last one cannot go below."""
     value, trust = problem.value(x), WIDE
     bound = -np.inf
@@ -218,12 +229,12 @@ def _descended(problem: Problem, x: Array, limits: Array) -> tuple[Array, float]
         promised, gained = value - found.value, value - reached
         if gained > 0.0:
             x, value = found.x, reached
-        if problem.linear or promised <= CONVERGED * value:
+        if problem.linear or promised <= converged * value:
             break
         if gained < 0.25 * promised:
             trust = 0.25 * min(trust, float(np.max(np.abs(found.x - x))) or trust)
         elif gained > 0.75 * promised:
             trust = min(2.0 * trust, WIDE)
-        if trust < 1e-12:
+        if trust < LEAST_TRUST:
             break
     return x, bound

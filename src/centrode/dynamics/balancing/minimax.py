@@ -85,7 +85,7 @@ def least(terms: Sequence[Term], low: Array, high: Array, most: Array) -> Found:
                 _touch_tops(planes, number, term, x)
             for pair in np.flatnonzero(np.hypot(x[::2], x[1::2]) > most * (1.0 - 1e-6)):
                 planes.bound_pair(int(pair), x[2 * pair] + 1j * x[2 * pair + 1], float(most[pair]))
-            inside = _within(x, most)
+            inside = within(x, most)
             here = value_of(terms, inside)
             if here < value:
                 best, value = inside, here
@@ -210,10 +210,10 @@ def _by_quadratics(
         options={"ftol": 1e-15, "maxiter": 100},
     )
     better = np.clip(found.x[:unknowns], low, high)
-    return _within(better, most) if np.isfinite(better).all() else x
+    return within(better, most) if np.isfinite(better).all() else x
 
 
-def _within(x: Array, most: Array) -> Array:
+def within(x: Array, most: Array) -> Array:
     """Pairs that are too long made as long as they may be."""
     length = np.hypot(x[::2], x[1::2])
     share = np.where(length > most, most / np.where(length > 0.0, length, 1.0), 1.0)

@@ -15,7 +15,7 @@ import numpy as np
 
 from centrode.dynamics.balancing.counterweights import replaced
 from centrode.dynamics.balancing.full import INSTANTS
-from centrode.dynamics.balancing.inertial import Array, Tracks, cross, orders, tracks_of
+from centrode.dynamics.balancing.inertial import Array, Tracks, cross, orders
 from centrode.dynamics.balancing.reachable import hinged_from
 from centrode.dynamics.balancing.turning import Turning
 from centrode.dynamics.masses import Mass
@@ -52,8 +52,7 @@ def discs_for(turning: Turning, mechanism: Mechanism) -> tuple[Disc, ...]:
     Raises MotionError where none do: the links are not in line, or a link has more inertia than it may have.
     """
     values = turning.values(INSTANTS * turning.turns)
-    state = turning.instants.state(values)
-    tracks = tracks_of(state, turning.masses)
+    state, tracks = turning.at(values)
     momentum, size = _momentum(tracks, turning.masses)
     hinged = hinged_from(mechanism)
     names = [name for name in mechanism.links if _turns(orders(state.angle(name), len(values))[1])]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import tau
@@ -10,9 +10,17 @@ from typing import TypeAlias
 
 import numpy as np
 
-from centrode.dynamics.balancing.inertial import Array, Effects, effects_of, sizes_of, tracks_of
+from centrode.dynamics.balancing.inertial import (
+    Array,
+    Effects,
+    Tracks,
+    effects_of,
+    sizes_of,
+    tracks_of,
+)
 from centrode.dynamics.balancing.instants import Instants, Speed, does_not_turn, turns_of_cycle
 from centrode.dynamics.masses import Mass, masses_of
+from centrode.dynamics.states import State
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -45,11 +53,17 @@ class Turning:
     about: complex
 
     @classmethod
-    def of(cls, mechanism: Mechanism, about: complex, speed: Speed = "drive") -> Turning:
-        """The cycle of a mechanism; raises as `Instants.of`, `heavy` and `turns_of_cycle`."""
+    def of(
+        cls,
+        mechanism: Mechanism,
+        about: complex,
+        speed: Speed = "drive",
+        carriers: Sequence[tuple[str, str]] = (),
+    ) -> Turning:
+        """The cycle of a mechanism, and of what stands on carriers; raises as `Instants.of` and `turns_of_cycle`."""
         masses = heavy(mechanism)
         instants = Instants.of(mechanism, speed)
-        return cls(instants, masses, turns_of_cycle(instants, masses), about)
+        return cls(instants, masses, turns_of_cycle(instants, masses, carriers), about)
 
     @property
     def first(self) -> float:
@@ -73,17 +87,22 @@ class Turning:
     @cached_property
     def sizes(self) -> tuple[float, float]:
         """Greatest force [N] and moment [N m] if no link took anything from another."""
-        tracks = tracks_of(self.instants.state(self.nodes), self.masses)
+        _state, tracks = self.at(self.nodes)
         return sizes_of(tracks, self.masses, self.instants.pace(self.nodes), self.about)
 
-    def effects(self, values: Array) -> Effects:
-        """What the inertia does at values of the drive; MotionError where the mechanism has no motion."""
-        tracks = tracks_of(self.instants.state(values), self.masses)
-        found = effects_of(tracks, self.masses, self.instants.pace(values), self.about)
-        missing = ~np.isfinite(found.force + found.moment + found.driving)
+    def at(self, values: Array) -> tuple[State, Tracks]:
+        """Where the masses are at values of the drive; MotionError where the mechanism has no motion."""
+        state = self.instants.state(values)
+        tracks = tracks_of(state, self.masses)
+        missing = ~np.isfinite(tracks.places.sum(axis=(0, 1)) + tracks.angles.sum(axis=(0, 1)))
         if missing.any():
             raise does_not_turn(float(values[missing][0]))
-        return found
+        return state, tracks
+
+    def effects(self, values: Array) -> Effects:
+        """What the inertia does at values of the drive; raises as `at`."""
+        _state, tracks = self.at(values)
+        return effects_of(tracks, self.masses, self.instants.pace(values), self.about)
 
 
 @dataclass(frozen=True)
