@@ -26,7 +26,8 @@ WIDE = 20.0
 STEPS, EXCHANGES = 60, 8
 CONVERGED, ROUGHLY = 1e-9, 1e-3
 """Gain that a linear problem still promises, over the value, at which a search ends, and a first look."""
-LEAST_TRUST = 1e-9
+NEARBY, LEAST_TRUST = 1e-2, 1e-9
+"""Region of trust about an answer that more instants change a little, and the least one."""
 CRUMB = 1e-6
 """Product over `unit` of a counterweight that is tried to be left out."""
 PULL = 1e-9
@@ -190,7 +191,7 @@ def lightest(turning: Turning, spots: Sequence[Spot], aim: Aim, sizes: Sequence[
         if finer is None:
             break
         problem = finer
-        x, bound = _descended(problem, x, limits)
+        x, bound = _descended(problem, x, limits, trust=WIDE if problem.linear else NEARBY)
     x = _without_crumbs(problem, x)
     return Lightest(problem.products(x), problem.value(x), None if problem.pull else bound)
 
@@ -212,18 +213,18 @@ def _solved(problem: Problem, limits: Array) -> tuple[Array, float]:
     resting = within(np.clip(resting, -WIDE, WIDE), limits)
     beginnings = [zero, resting, 0.5 * resting, -0.5 * resting]
     found = [_descended(problem, x, limits, ROUGHLY)[0] for x in beginnings]
-    return _descended(problem, min(found, key=problem.value), limits)
+    return _descended(problem, min(found, key=problem.value), limits, trust=10.0 * NEARBY)
 
 
 def _descended(
-    problem: Problem, x: Array, limits: Array, converged: float = CONVERGED
+    problem: Problem, x: Array, limits: Array, converged: float = CONVERGED, trust: float = WIDE
 ) -> tuple[Array, float]:
     """Linear problems one after the other; also what the last one cannot go below."""
-    value, trust = problem.value(x), WIDE
+    value = problem.value(x)
     bound = -np.inf
     for _step in range(STEPS):
         low, high = np.maximum(x - trust, -WIDE), np.minimum(x + trust, WIDE)
-        found = least(problem.terms(x), low, high, limits)
+        found = least(problem.terms(x), low, high, limits, max(CLOSED, 0.1 * converged))
         bound = found.bound
         reached = problem.value(found.x)
         promised, gained = value - found.value, value - reached

@@ -56,7 +56,7 @@ def value_of(terms: Sequence[Term], x: Array) -> float:
     return sum(term.weight * float(np.max(term.at(x))) for term in terms)
 
 
-def least(terms: Sequence[Term], low: Array, high: Array, most: Array) -> Found:
+def least(terms: Sequence[Term], low: Array, high: Array, most: Array, closed: float = CLOSED) -> Found:
     """The unknowns, in pairs, with the least sum of greatest values.
 
     Parameters
@@ -66,6 +66,7 @@ def least(terms: Sequence[Term], low: Array, high: Array, most: Array) -> Found:
         Bounds of each; finite.
     most : (pairs)
         Greatest length of each pair; infinite where there is none.
+    closed : gap between the bounds, over the value, at which it is found
     """
     planes = _Planes(len(terms), len(low))
     for number, term in enumerate(terms):
@@ -89,7 +90,7 @@ def least(terms: Sequence[Term], low: Array, high: Array, most: Array) -> Found:
             here = value_of(terms, inside)
             if here < value:
                 best, value = inside, here
-        if value - bound <= CLOSED * max(value, 1e-3):
+        if value - bound <= closed * max(value, 1e-3):
             break
     return Found(best, value, min(bound, value))
 
