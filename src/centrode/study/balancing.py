@@ -93,6 +93,8 @@ def _proof_rows(found: Balance) -> Rows:
     if found.bound is not None:
         text = _("no counterweights on these links bring the greatest force below {force:.6g} N")
         rows.append((_("proved"), text.format(force=found.bound)))
+    elif found.proved:
+        rows.append((_("proved"), _("no counterweights on these links, with these radii, do better")))
     if not found.unique:
         text = _("other counterweights on these links do the same; these have the least products")
         rows.append((_("choice"), text))

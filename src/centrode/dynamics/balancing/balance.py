@@ -51,8 +51,9 @@ class Balance:
     unique : bool
         Of a full balance: no other counterweights on these links do the same.
     bound : float or None [N]
-        Of the least greatest force at constant speed, with bases in the frame: no counterweights on these links go
-        below it.
+        Of the least greatest force: no counterweights on these links, with these radii, go below it.
+    proved : bool
+        Of least greatest effects: no counterweights on these links, with these radii, do better.
     loop, shares
         Of a slider-crank or four-bar: its parts, and the masses replaced at its joints.
     """
@@ -69,6 +70,7 @@ class Balance:
     left: float | None
     unique: bool
     bound: float | None
+    proved: bool
     loop: Loop | None
     shares: tuple[Share, ...]
 
@@ -129,9 +131,9 @@ def balance(
 
     Notes
     -----
-    A full balance leaves rounding. The least greatest force is found to 1e-8 of itself, with `bound` as its proof;
-    with moments, or counterweights on links that are not hinged to the frame, it is the best of several searches.
-    In steady motion counterweights are sought at the speed without them; `after` has its own real speed.
+    A full balance leaves rounding. The least greatest effects are found to 1e-8, mostly with a proof (`proved`); with
+    discs, and where more inertia than counterweights have would be better, they are the best of several searches. In
+    steady motion counterweights are sought at the speed without them; `after` has its own real speed.
     """
     if mechanism.space == "sphere":
         raise on_sphere()
@@ -173,6 +175,7 @@ def balance(
         chosen.left,
         chosen.unique,
         chosen.bound,
+        chosen.proved,
         loop,
         () if loop is None else shares_of(mechanism, turning.masses, loop),
     )

@@ -20,6 +20,8 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
+ROUNDING = 1e-9
+"""Effects below this share of what their parts amount to are nothing but rounding."""
 EFFECTS = {"force": "shaking_force", "moment": "shaking_moment", "driving": "inertia_on_drive"}
 
 
@@ -34,6 +36,7 @@ class Chosen:
     left: float | None = None
     unique: bool = True
     bound: float | None = None
+    proved: bool = False
 
 
 def fully(mechanism: Mechanism, turning: Turning, spots: Sequence[Spot], *, named: bool) -> Chosen:
@@ -50,15 +53,18 @@ def least_effects(turning: Turning, spots: Sequence[Spot], weights: Sequence[flo
     aim = _aim(weights)
     greatest = greatest_of(turning)
     sizes = [greatest[f"greatest_{EFFECTS[name]}"] for name, _weight in aim.parts]
-    if min(sizes) == 0.0:
+    whole = {"force": turning.sizes[0], "moment": turning.sizes[1], "driving": turning.sizes[1]}
+    small = [size <= ROUNDING * whole[name] for (name, _weight), size in zip(aim.parts, sizes, strict=True)]
+    if any(small):
         raise InputError("weights", _("what they count is zero without counterweights"))
     found = lightest(turning, spots, aim, sizes)
     bound = None
-    if found.bound is not None and turning.instants.panels is None:
-        # in steady motion the counterweights change the speed itself, so nothing is proved
+    # in steady motion the counterweights change the speed itself, so nothing is proved
+    proved = found.bound is not None and turning.instants.panels is None
+    if found.bound is not None and proved and aim.force and len(aim.parts) == 1:
         bound = found.bound * sizes[0] / aim.force
     weighed = (aim.force, aim.moment, aim.driving)
-    return Chosen(tuple(spots), found.products, weights=weighed, bound=bound)
+    return Chosen(tuple(spots), found.products, weights=weighed, bound=bound, proved=proved)
 
 
 def by_fraction(

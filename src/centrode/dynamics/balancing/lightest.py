@@ -1,8 +1,9 @@
 """Counterweights with the least greatest effects: shaking force, shaking moment, moment of the drive, weighted.
 
 With bases in the frame the force depends linearly on the products of mass and radius, and the least greatest force is
-found with a proof (`minimax`). Inertias and the masses on moving bases bend this: then linear problems are solved one
-after the other within a region of trust, from several beginnings.
+found with a proof (`minimax`). Masses and inertias go with the length of the products, which may be an unknown of its
+own, not below them: a convex problem that bounds the answer. Where its lengths are those of its products it is the
+answer. Else, and with discs, linear problems are solved one after the other within a region of trust.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from centrode.dynamics.balancing.counterweights import PARAMETERS, Spot, columns
 from centrode.dynamics.balancing.full import SAME, full_balance
 from centrode.dynamics.balancing.inertial import Array, Complex, Effects
 from centrode.dynamics.balancing.making import LEAST
-from centrode.dynamics.balancing.minimax import CLOSED, Term, least, within
+from centrode.dynamics.balancing.minimax import CLOSED, Found, Term, least
 from centrode.dynamics.balancing.turning import Turning, tops
 
 INSTANTS = 180
@@ -30,6 +31,8 @@ NEARBY, LEAST_TRUST = 1e-2, 1e-9
 """Region of trust about an answer that more instants change a little, and the least one."""
 CRUMB = 1e-6
 """Product over `unit` of a counterweight that is tried to be left out."""
+TIGHT = 1e-7
+"""By how much the value may exceed that of the problem in which lengths of products are free to be greater."""
 PULL = 1e-9
 """Weight of the greatest product over `unit`: of counterweights that do the same the smaller ones are taken."""
 BETWEEN = 1e-9
@@ -98,6 +101,11 @@ class Problem:
             spot.fixed for spot in self.spots
         )
 
+    @property
+    def convex(self) -> bool:
+        """Whether effects depend linearly on the products and their lengths: inertia of discs goes with the square."""
+        return self.linear or all(spot.making.thickness is None for spot in self.spots)
+
     @cached_property
     def pull(self) -> float:
         """Weight of the greatest product, where several counterweights may do the same."""
@@ -120,35 +128,39 @@ class Problem:
             whole = whole + column.times(parameters(spot.making.made(abs(product)), product))
         return whole
 
-    def terms(self, x: Array) -> list[Term]:
-        """What counts, linear about some unknowns."""
+    def terms(self, x: Array, lengths: Sequence[bool]) -> list[Term]:
+        """What counts, linear about some unknowns; `lengths`: for which spots the length is an unknown of its own."""
         whole = self.effects(x, self.own, self.columns)
-        slopes = [
-            self._slopes(spot, product) for spot, product in zip(self.spots, self.products(x), strict=True)
-        ]
+        products = self.products(x)
+        place = np.concatenate([x, np.abs(products) / self.unit])
+        slopes = [self._slopes(*each) for each in zip(self.spots, products, lengths, strict=True)]
         found = []
         for (name, weight), size in zip(self.aim.parts, self.sizes, strict=True):
-            rows = np.concatenate(
-                [slope @ getattr(column, name) for slope, column in zip(slopes, self.columns, strict=True)]
-            ).T
+            parts = [s @ getattr(column, name) for s, column in zip(slopes, self.columns, strict=True)]
+            rows = np.concatenate([*(part[:2] for part in parts), *(part[2:] for part in parts)]).T
             rows = rows * (self.unit / size)
-            found.append(Term(weight, np.asarray(getattr(whole, name) / size - rows @ x), rows))
+            constant = np.asarray(getattr(whole, name) / size - rows @ place)
+            found.append(Term(weight, constant, rows))
         if not self.pull:
             return found
         pairs = len(self.spots)
-        small = np.zeros((pairs, 2 * pairs), dtype=np.complex128)
+        small = np.zeros((pairs, 3 * pairs), dtype=np.complex128)
         small[np.arange(pairs), 2 * np.arange(pairs)] = 1.0
         small[np.arange(pairs), 2 * np.arange(pairs) + 1] = 1j
         return [*found, Term(self.pull, np.zeros(pairs, dtype=np.complex128), small)]
 
-    def _slopes(self, spot: Spot, product: complex) -> Array:
-        """Derivatives of the parameters by the product's components (2, PARAMETERS)."""
+    def _slopes(self, spot: Spot, product: complex, length: bool) -> Array:
+        """Derivatives of the parameters by the product's components and its length (3, PARAMETERS)."""
         made = spot.making.made(abs(product), LEAST * self.unit)
         towards = product / abs(product) if product else 0j
-        slopes = np.zeros((2, PARAMETERS))
-        slopes[:, 0] = made.mass_slope * towards.real, made.mass_slope * towards.imag
+        by_length = np.array([made.mass_slope, 0.0, 0.0, made.inertia_slope])
+        slopes = np.zeros((3, PARAMETERS))
         slopes[0, 1] = slopes[1, 2] = 1.0
-        slopes[:, 3] = made.inertia_slope * towards.real, made.inertia_slope * towards.imag
+        if length:
+            slopes[2] = by_length
+        else:
+            slopes[0] += towards.real * by_length
+            slopes[1] += towards.imag * by_length
         return slopes
 
     def value(self, x: Array) -> float:
@@ -184,16 +196,73 @@ def lightest(turning: Turning, spots: Sequence[Spot], aim: Aim, sizes: Sequence[
     """
     problem = Problem(turning, tuple(spots), aim, tuple(sizes), turning.values(INSTANTS * turning.turns))
     most = [spot.making.greatest for spot in spots]
-    limits = np.array([np.inf if one is None else one / problem.unit for one in most])
-    x, bound = _solved(problem, limits)
+    limits = np.array([WIDE if one is None else min(WIDE, one / problem.unit) for one in most])
+    x, bound = _solved(problem, limits, None)
     for _exchange in range(EXCHANGES):
         finer = problem.with_tops(x)
         if finer is None:
             break
         problem = finer
-        x, bound = _descended(problem, x, limits, trust=WIDE if problem.linear else NEARBY)
+        x, bound = _solved(problem, limits, x)
     x = _without_crumbs(problem, x)
-    return Lightest(problem.products(x), problem.value(x), None if problem.pull else bound)
+    return Lightest(problem.products(x), problem.value(x), bound)
+
+
+def _solved(problem: Problem, limits: Array, near: Array | None) -> tuple[Array, float | None]:
+    """The answer, with what no answer goes below where that is proved; `near` is one for a few instants less."""
+    zero = np.zeros(2 * len(problem.spots))
+    if problem.convex:
+        found = _linear(problem, zero, limits, WIDE, CLOSED, [True] * len(problem.spots))
+        x = found.x[: len(zero)]
+        bound = found.bound - problem.pull * WIDE
+        if problem.value(x) <= found.value + TIGHT * max(found.value, 1e-3):
+            return x, bound
+        # more inertia than the products have would be better: what was proved is not reached
+    if near is not None:
+        return _descended(problem, near, limits, CONVERGED, NEARBY), None
+    full = full_balance(problem.turning, problem.spots).products / problem.unit
+    resting = np.stack([full.real, full.imag], axis=1).reshape(-1)
+    longest = np.repeat(np.maximum(np.hypot(resting[::2], resting[1::2]) / limits, 1.0), 2)
+    resting = resting / longest
+    beginnings = [zero, resting, 0.5 * resting, -0.5 * resting]
+    looked = [_descended(problem, x, limits, ROUGHLY, WIDE) for x in beginnings]
+    return _descended(problem, min(looked, key=problem.value), limits, CONVERGED, 10.0 * NEARBY), None
+
+
+def _linear(
+    problem: Problem, x: Array, limits: Array, trust: float, closed: float, lengths: Sequence[bool]
+) -> Found:
+    """The answer of the linear problem about some unknowns, within a region of trust."""
+    own = np.hypot(x[::2], x[1::2])
+    low = np.concatenate([np.maximum(x - trust, -WIDE), np.maximum(own - 2.0 * trust, 0.0)])
+    high = np.concatenate([np.minimum(x + trust, WIDE), np.minimum(own + 2.0 * trust, limits)])
+    return least(problem.terms(x, lengths), low, high, closed)
+
+
+def _descended(problem: Problem, x: Array, limits: Array, converged: float, trust: float) -> Array:
+    """Linear problems one after the other.
+
+    The length of a product bends where it is zero: there, and only there, it is an unknown of its own.
+    """
+    value = problem.value(x)
+    for _step in range(STEPS):
+        lengths = (np.hypot(x[::2], x[1::2]) < CRUMB).tolist()
+        found = _linear(problem, x, limits, trust, max(CLOSED, 0.1 * converged), lengths)
+        there = found.x[: len(x)]
+        reached = problem.value(there)
+        promised, gained = value - found.value, value - reached
+        step = float(np.max(np.abs(there - x)))
+        if gained > 0.0:
+            x, value = there, reached
+        if promised <= converged * value:
+            break
+        if gained < 0.25 * promised:
+            trust = 0.25 * min(trust, step or trust)
+        elif gained > 0.75 * promised:
+            trust = min(2.0 * trust, WIDE)
+        if trust < LEAST_TRUST:
+            break
+    return x
 
 
 def _without_crumbs(problem: Problem, x: Array) -> Array:
@@ -201,41 +270,3 @@ def _without_crumbs(problem: Problem, x: Array) -> Array:
     small = np.repeat(np.hypot(x[::2], x[1::2]) < CRUMB, 2)
     fewer = np.where(small, 0.0, x)
     return fewer if problem.value(fewer) <= problem.value(x) * (1.0 + CLOSED) else x
-
-
-def _solved(problem: Problem, limits: Array) -> tuple[Array, float]:
-    """The best of what several beginnings lead to; one is enough where the problem is linear."""
-    zero = np.zeros(2 * len(problem.spots))
-    if problem.linear:
-        return _descended(problem, zero, limits)
-    full = full_balance(problem.turning, problem.spots).products / problem.unit
-    resting = np.stack([full.real, full.imag], axis=1).reshape(-1)
-    resting = within(np.clip(resting, -WIDE, WIDE), limits)
-    beginnings = [zero, resting, 0.5 * resting, -0.5 * resting]
-    found = [_descended(problem, x, limits, ROUGHLY)[0] for x in beginnings]
-    return _descended(problem, min(found, key=problem.value), limits, trust=10.0 * NEARBY)
-
-
-def _descended(
-    problem: Problem, x: Array, limits: Array, converged: float = CONVERGED, trust: float = WIDE
-) -> tuple[Array, float]:
-    """Linear problems one after the other; also what the last one cannot go below."""
-    value = problem.value(x)
-    bound = -np.inf
-    for _step in range(STEPS):
-        low, high = np.maximum(x - trust, -WIDE), np.minimum(x + trust, WIDE)
-        found = least(problem.terms(x), low, high, limits, max(CLOSED, 0.1 * converged))
-        bound = found.bound
-        reached = problem.value(found.x)
-        promised, gained = value - found.value, value - reached
-        if gained > 0.0:
-            x, value = found.x, reached
-        if problem.linear or promised <= converged * value:
-            break
-        if gained < 0.25 * promised:
-            trust = 0.25 * min(trust, float(np.max(np.abs(found.x - x))) or trust)
-        elif gained > 0.75 * promised:
-            trust = min(2.0 * trust, WIDE)
-        if trust < LEAST_TRUST:
-            break
-    return x, bound

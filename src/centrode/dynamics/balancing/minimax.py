@@ -56,43 +56,64 @@ def value_of(terms: Sequence[Term], x: Array) -> float:
     return sum(term.weight * float(np.max(term.at(x))) for term in terms)
 
 
-def least(terms: Sequence[Term], low: Array, high: Array, most: Array, closed: float = CLOSED) -> Found:
-    """The unknowns, in pairs, with the least sum of greatest values.
+def least(terms: Sequence[Term], low: Array, high: Array, closed: float = CLOSED) -> Found:
+    """The unknowns with the least sum of greatest values: pairs, then for each a length not below that of the pair.
 
     Parameters
     ----------
     terms : sized so that values are of the order of 1
-    low, high : (unknowns)
+    low, high : (3 pairs)
         Bounds of each; finite.
-    most : (pairs)
-        Greatest length of each pair; infinite where there is none.
     closed : gap between the bounds, over the value, at which it is found
     """
+    weights = [term.weight for term in terms]
     planes = _Planes(len(terms), len(low))
     for number, term in enumerate(terms):
         for instant in range(0, len(term.constant), max(1, len(term.constant) // 24)):
             for direction in DIRECTIONS if np.iscomplexobj(term.rows) else (1.0, -1.0):
                 planes.touch(number, term, instant, direction)
-    weights = [term.weight for term in terms]
-    best, value, bound = np.zeros(len(low)), value_of(terms, np.zeros(len(low))), -np.inf
+    for pair in range(len(low) // 3):
+        for direction in DIRECTIONS:
+            planes.widen(pair, direction)
+    best = _inside(np.clip(np.zeros(len(low)), low, high), high)
+    value, bound = value_of(terms, best), -np.inf
     for round_ in range(MOST_ROUNDS):
         x, heights = planes.lowest(weights, low, high)
         bound = max(bound, float(np.dot(weights, heights)))
         tried = [x]
         if round_ % POLISHED == POLISHED - 1:
-            tried.append(_polished(terms, best, low, high, most))
+            tried.append(_polished(terms, best, low, high))
         for x in tried:
             for number, term in enumerate(terms):
                 _touch_tops(planes, number, term, x)
-            for pair in np.flatnonzero(np.hypot(x[::2], x[1::2]) > most * (1.0 - 1e-6)):
-                planes.bound_pair(int(pair), x[2 * pair] + 1j * x[2 * pair + 1], float(most[pair]))
-            inside = within(x, most)
+            pairs, lengths = _split(x)
+            for k in np.flatnonzero(np.abs(pairs) > lengths * (1.0 - 1e-6)).tolist():
+                if pairs[k]:
+                    planes.widen(k, complex(pairs[k] / abs(pairs[k])))
+            inside = _inside(x, high)
             here = value_of(terms, inside)
             if here < value:
                 best, value = inside, here
         if value - bound <= closed * max(value, 1e-3):
             break
     return Found(best, value, min(bound, value))
+
+
+def _split(x: Array) -> tuple[Complex, Array]:
+    """Pairs as complex numbers, and lengths."""
+    count = len(x) // 3
+    return np.asarray(x[: 2 * count : 2] + 1j * x[1 : 2 * count : 2]), x[2 * count :]
+
+
+def _inside(x: Array, high: Array) -> Array:
+    """Pairs that are too long made as long as they may be, lengths that are too short as long as their pairs."""
+    pairs, lengths = _split(x)
+    most = high[2 * len(pairs) :]
+    own = np.abs(pairs)
+    share = np.where(own > most, most / np.where(own > 0.0, own, 1.0), 1.0)
+    shorter = pairs * share
+    flat = np.stack([shorter.real, shorter.imag], axis=1).reshape(-1)
+    return np.concatenate([flat, np.maximum(lengths, np.abs(shorter))])
 
 
 @dataclass
@@ -112,12 +133,13 @@ class _Planes:
         self.left.append(row)
         self.right.append(-float((np.conj(direction) * term.constant[instant]).real))
 
-    def bound_pair(self, pair: int, place: complex, most: float) -> None:
-        """A pair stays below the tangent of its circle that faces a place outside."""
+    def widen(self, pair: int, direction: complex) -> None:
+        """The component of a pair along a unit direction stays below its length."""
         row = np.zeros(self.unknowns + self.terms)
-        row[2 * pair], row[2 * pair + 1] = place.real / abs(place), place.imag / abs(place)
+        row[2 * pair], row[2 * pair + 1] = direction.real, direction.imag
+        row[2 * (self.unknowns // 3) + pair] = -1.0
         self.left.append(row)
-        self.right.append(most)
+        self.right.append(0.0)
 
     def lowest(self, weights: Sequence[float], low: Array, high: Array) -> tuple[Array, Array]:
         """Unknowns and heights of the least weighted sum of heights."""
@@ -149,11 +171,11 @@ def _tops(sizes: Array) -> list[int]:
     return [int(instant) for instant in peaks[order]]
 
 
-def _polished(terms: Sequence[Term], x: Array, low: Array, high: Array, most: Array) -> Array:
+def _polished(terms: Sequence[Term], x: Array, low: Array, high: Array) -> Array:
     """Unknowns nearer to the answer by sequential quadratic programming: tangents alone close in slowly on a curve."""
     for _round in range(POLISHES):
         corners = [(k, i) for k, term in enumerate(terms) for i in _near(term.at(x))]
-        better = _by_quadratics(terms, corners, x, low, high, most)
+        better = _by_quadratics(terms, corners, x, low, high)
         if value_of(terms, better) >= value_of(terms, x):
             break
         x = better
@@ -167,37 +189,30 @@ def _near(sizes: Array) -> list[int]:
 
 
 def _by_quadratics(
-    terms: Sequence[Term],
-    corners: Sequence[tuple[int, int]],
-    x: Array,
-    low: Array,
-    high: Array,
-    most: Array,
+    terms: Sequence[Term], corners: Sequence[tuple[int, int]], x: Array, low: Array, high: Array
 ) -> Array:
     """The least sum of heights above chosen instants of the terms."""
-    unknowns = len(x)
+    unknowns, count = len(x), len(x) // 3
     weights = np.concatenate([np.zeros(unknowns), [term.weight for term in terms]])
     owners = np.array([k for k, _i in corners])
     constant = np.array([terms[k].constant[i] for k, i in corners])
     rows = np.array([terms[k].rows[i] for k, i in corners])
-    lids = np.flatnonzero(np.isfinite(most))
 
     def room(y: Array) -> Array:
-        vectors = constant + rows @ y[:unknowns]
-        pairs = y[:unknowns].reshape(-1, 2)[lids]
-        return np.concatenate(
-            [y[unknowns + owners] - np.abs(vectors), most[lids] ** 2 - np.sum(pairs**2, axis=1)]
-        )
+        pairs, lengths = _split(y[:unknowns])
+        heights = y[unknowns + owners] - np.abs(constant + rows @ y[:unknowns])
+        return np.concatenate([heights, lengths - np.abs(pairs)])
 
     def slopes(y: Array) -> Array:
-        vectors = constant + rows @ y[:unknowns]
-        sizes = np.abs(vectors)
-        units = vectors / np.where(sizes > 0.0, sizes, 1.0)
-        found = np.zeros((len(corners) + len(lids), len(y)))
+        units = _units(constant + rows @ y[:unknowns])
+        found = np.zeros((len(corners) + count, len(y)))
         found[: len(corners), :unknowns] = -(np.conj(units)[:, None] * rows).real
         found[np.arange(len(corners)), unknowns + owners] = 1.0
-        for line, pair in enumerate(lids):
-            found[len(corners) + line, 2 * pair : 2 * pair + 2] = -2.0 * y[2 * pair : 2 * pair + 2]
+        towards = _units(_split(y[:unknowns])[0])
+        for pair in range(count):
+            line = len(corners) + pair
+            found[line, 2 * pair], found[line, 2 * pair + 1] = -towards[pair].real, -towards[pair].imag
+            found[line, 2 * count + pair] = 1.0
         return found
 
     heights = [float(np.max(term.at(x))) for term in terms]
@@ -211,11 +226,10 @@ def _by_quadratics(
         options={"ftol": 1e-15, "maxiter": 100},
     )
     better = np.clip(found.x[:unknowns], low, high)
-    return within(better, most) if np.isfinite(better).all() else x
+    return _inside(better, high) if np.isfinite(better).all() else x
 
 
-def within(x: Array, most: Array) -> Array:
-    """Pairs that are too long made as long as they may be."""
-    length = np.hypot(x[::2], x[1::2])
-    share = np.where(length > most, most / np.where(length > 0.0, length, 1.0), 1.0)
-    return np.asarray(x * np.repeat(share, 2))
+def _units(vectors: Complex | Array) -> Complex:
+    """Unit vectors, zero for zero; of real numbers their signs."""
+    sizes = np.abs(vectors)
+    return np.asarray(vectors / np.where(sizes > 0.0, sizes, 1.0), dtype=np.complex128)
