@@ -57,7 +57,11 @@ def least_effects(turning: Turning, spots: Sequence[Spot], weights: Sequence[flo
     small = [size <= ROUNDING * whole[name] for (name, _weight), size in zip(aim.parts, sizes, strict=True)]
     if any(small):
         raise InputError("weights", _("what they count is zero without counterweights"))
-    found = lightest(turning, spots, aim, sizes)
+    try:
+        found = lightest(turning, spots, aim, sizes)
+    except ArithmeticError:
+        what = _("the search for counterweights fails: effects over the cycle differ too much in size")
+        raise MotionError("", what, _("look for places near a limit, or ask for the full balance")) from None
     bound = None
     # in steady motion the counterweights change the speed itself, so nothing is proved
     proved = found.bound is not None and turning.instants.panels is None

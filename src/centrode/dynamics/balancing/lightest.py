@@ -214,7 +214,7 @@ def _solved(problem: Problem, limits: Array, near: Array | None) -> tuple[Array,
     if problem.convex:
         found = _linear(problem, zero, limits, WIDE, CLOSED, [True] * len(problem.spots))
         x = found.x[: len(zero)]
-        bound = found.bound - problem.pull * WIDE
+        bound = max(found.bound - problem.pull * WIDE, 0.0)
         if problem.value(x) <= found.value + TIGHT * max(found.value, 1e-3):
             return x, bound
         # more inertia than the products have would be better: what was proved is not reached

@@ -151,7 +151,7 @@ class _Planes:
             method="highs",
             options=SOLVER,
         )
-        if found.x is None:  # cannot be: zero unknowns with great heights are always allowed
+        if found.x is None:  # zero unknowns with great heights are always allowed, but numbers may be wild
             raise ArithmeticError(found.message)
         return np.asarray(found.x[: self.unknowns]), np.asarray(found.x[self.unknowns :])
 
