@@ -80,7 +80,7 @@ from .dynamics.force_polygons.result import ForcePolygons as ForcePolygons
 from .study.force_polygons import polygon_about as polygon_about
 from .study.force_polygons import polygon_steps as polygon_steps
 from .study.force_polygons import polygon_rows as polygon_rows
-from .study.force_polygons import balance_rows as balance_rows
+from .study.force_polygons import polygon_balance_rows as polygon_balance_rows
 from .study.force_polygons import polygon_csv as polygon_csv
 from .present import polygon_figures as polygon_figures
 
@@ -102,6 +102,18 @@ from .dynamics.simulation.regime import Regime as Regime
 from .study.simulating import simulation_rows as simulation_rows
 from .study.simulating import regime_rows as regime_rows
 from .present import simulation_figures as simulation_figures
+
+# Shaking forces and counterweights
+from .dynamics.balancing.shaking import shaking as shaking
+from .dynamics.balancing.balance import balance as balance
+from .dynamics.balancing.balance import Balance as Balance
+from .dynamics.balancing.counterweights import Counterweight as Counterweight
+from .study.balancing import balance_rows as balance_rows
+from .study.balancing import balance_effects as balance_effects
+from .study.balancing import balance_steps as balance_steps
+from .present import balance_figures as balance_figures
+from .present import write_balance_csv as write_balance_csv
+from .present import write_harmonics_csv as write_harmonics_csv
 
 # Equations in symbols
 from .equations.derivation import equations as equations

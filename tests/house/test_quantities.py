@@ -65,6 +65,13 @@ def test_every_variable_of_a_motion_is_named() -> None:
     simulated += ["work_of_other_loads", "kinetic_energy", "potential_energy", "energy_residual"]
     simulated += [f"occasion_{name}" for name in ("time", "value", "kind")]
     known |= set(reduced) | set(steady) | set(simulated) | set(reactions)
+    known |= {"shaking_force", "shaking_force_size", "shaking_moment", "inertia_on_drive", "order"}
+    known |= {
+        f"{what}_harmonic_{part}"
+        for what in ("force", "moment")
+        for part in ("cosine", "sine", "amplitude", "phase")
+    }
+    known.add("force_harmonic_greatest")
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

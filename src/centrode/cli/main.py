@@ -16,6 +16,7 @@ import click
 
 import centrode as ct
 from centrode.cli.angles import angles
+from centrode.cli.balance import balance
 from centrode.cli.centres import centres
 from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
@@ -56,6 +57,7 @@ COMMANDS: tuple[click.Command, ...] = (
     region,
     flywheel,
     simulate,
+    balance,
     centres,
     centrodes,
     diagrams,

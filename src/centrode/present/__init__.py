@@ -13,6 +13,8 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.balance_figures import balance_figures
+    from centrode.present.balance_tables import write_balance_csv, write_harmonics_csv
     from centrode.present.centres import centres_figure
     from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
     from centrode.present.centrodes import animate_centrodes, centrodes_figure
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "animate_centrodes",
+    "balance_figures",
     "centres_figure",
     "centrodes_figure",
     "curvature_figure",
@@ -68,6 +71,8 @@ __all__ = [
     "scene_of",
     "simulation_figures",
     "sweep_csv",
+    "write_balance_csv",
+    "write_harmonics_csv",
     "write_centres_csv",
     "write_centrodes_csv",
     "transmission_figure",
@@ -85,6 +90,8 @@ __all__ = [
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "balance_figures": ["balance_figures"],
+        "balance_tables": ["write_balance_csv", "write_harmonics_csv"],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "centrodes": ["animate_centrodes", "centrodes_figure"],
