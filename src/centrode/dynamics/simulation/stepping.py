@@ -244,7 +244,7 @@ class Stepper:
         self.fastest = max(self.fastest, abs(float(y[1])), float(np.sqrt(0.02 * abs(forces[1]) * unit)))
         inertia = float(leg.rows(float(begun[VALUE] + y[0]))[INERTIA])
         energy = max(1e-300, inertia * self.fastest**2)
-        scale = np.array([unit, self.fastest or 1.0, energy, energy, energy])
+        scale = np.array([unit, 1e-2 * self.fastest or 1.0, energy, energy, energy])
         kind = scipy.integrate.Radau if self.stiff else scipy.integrate.DOP853
         limit = self.until.time if end is None else end
         return kind(rates, t, y, limit, rtol=max(self.tolerance, 3e-14), atol=self.tolerance * scale)
