@@ -76,7 +76,8 @@ class Stepper:
         state = np.array([value, rate, *[0.0] * (STATES - 2)])
         self.start = value
         try:
-            self.course.ended = self._run(0.0, state)
+            with np.errstate(all="ignore"):  # steps that lead astray are rejected
+                self.course.ended = self._run(0.0, state)
         except KeyboardInterrupt:
             if not self.course.pieces:
                 raise

@@ -137,8 +137,8 @@ class Tracks:
         low, high = max(low, self.low), min(high, self.high)
         if not low < high:
             return Stretch(np.array([low, low]), np.zeros((1, self.rows.count, NODES)), np.empty(0))
-        jumps = self.rows.reducer.jumps(low, high)
         even = np.linspace(low, high, PANELS + 1)
+        jumps = self.rows.jumps(low, high, even)
         near = np.min(np.abs(even[1:-1, None] - jumps), axis=1, initial=inf) if len(jumps) else inf
         inner = even[1:-1][np.broadcast_to(near > 1e-9 * self.length, PANELS - 1)]
         edges = np.unique(np.concatenate([even[[0, -1]], inner, jumps[(jumps > low) & (jumps < high)]]))
