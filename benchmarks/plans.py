@@ -76,6 +76,12 @@ class Plan:
         return {name: self.outputs[name] for name in self.points}
 
     @property
+    def of_points(self) -> dict[str, Node]:
+        """Coordinates with their derivatives."""
+        stems = tuple(name.rsplit(", ", 1)[0] for name in self.points)
+        return {name: node for name, node in self.outputs.items() if name.startswith(stems)}
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Variables of a mechanism."""
         return tuple(self.dimensions)

@@ -80,11 +80,15 @@ def streamed(plan: Plan, outputs: Mapping[str, Node], relaxed: bool = False) -> 
 
 
 def in_cache(name: str, plan: Plan) -> Row:
-    """All outputs, and positions alone, into a small buffer that is used again; the peer keeps nothing either."""
+    """All outputs, those of points, and positions alone, into a small buffer that is used again.
+
+    The peer keeps nothing either; it has no angles.
+    """
     tasks = _peers(name) if peer.PRESENT and ct.example(name).space == "plane" else {}
     tasks["kernel"], tasks["write"] = streamed(plan, plan.outputs)
     tasks["relaxed"], _ = streamed(plan, plan.outputs, relaxed=True)
     tasks["positions"], _ = streamed(plan, plan.positions)
+    tasks["points"], _ = streamed(plan, plan.of_points)
     times = paired_times(tasks, ROUNDS)
     for run in ("peer motion", "peer positions"):
         if run in times:
@@ -96,6 +100,7 @@ def in_cache(name: str, plan: Plan) -> Row:
             "ns": median(times["kernel"]) * EACH,
             "/ writing": ratio(times, "kernel", "write"),
             "relaxed /": ratio(times, "relaxed", "kernel"),
+            "points alone, ns": median(times["points"]) * EACH,
             "positions alone, ns": median(times["positions"]) * EACH,
             **_over_peer(times),
         },
@@ -109,13 +114,14 @@ def _over_peer(times: Times) -> dict[str, float]:
     return {
         "peer motion /": ratio(times, "peer motion", "kernel"),
         "peer positions /": ratio(times, "peer positions", "kernel"),
+        "peer motion / points": ratio(times, "peer motion", "points"),
         "peer positions / positions": ratio(times, "peer positions", "positions"),
     }
 
 
 def _promised_over_peer(name: str, times: Times) -> list[Promise]:
     promises = []
-    for label, run in (("", "kernel"), (", relaxed", "relaxed")):
+    for label, run in (("", "kernel"), (", relaxed", "relaxed"), (", points without angles", "points")):
         for theirs, bound in OVER_PEER.get(name, {}).items():
             what = f"{name}, written in cache{label}: pylinkage's {theirs.removeprefix('peer ')}, times"
             promises.append(Promise(what, ratio(times, theirs, run), at_least=bound))
@@ -123,11 +129,11 @@ def _promised_over_peer(name: str, times: Times) -> list[Promise]:
 
 
 def _peers(name: str) -> dict[str, Task]:
-    """The peer's compiled functions alone, one mechanism: with velocities and accelerations, and positions."""
+    """The peer's linkage, built and compiled, through one turn: with velocities and accelerations, and positions."""
     mechanism = ct.example(name)
     prepared, motion = ready(mechanism), ct.motion(mechanism, SAMPLES)
     other = peer_of(prepared, prepared.structure.dimensions, motion)
     return {
-        "peer motion": functools.partial(peer.run_batch, [other], SAMPLES),
+        "peer motion": functools.partial(other.motion, SAMPLES),
         "peer positions": functools.partial(other.positions, SAMPLES),
     }

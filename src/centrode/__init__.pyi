@@ -65,8 +65,14 @@ from .study.summary import motion_rows as motion_rows
 
 # Forces
 from .dynamics.reduction import reduce as reduce
+from .dynamics.kinetostatics.reactions import reactions as reactions
 from .study.reducing import reduction_rows as reduction_rows
 from .study.reducing import reduction_parts as reduction_parts
+from .study.joints import joint_table as joint_table
+from .study.reacting import reaction_rows as reaction_rows
+from .study.reacting import reaction_extremes as reaction_extremes
+from .study.reacting import reactions_at_instant as reactions_at_instant
+from .study.reacting import greatest_reaction as greatest_reaction
 
 # Steady motion of a machine
 from .dynamics.steady import steady_motion as steady_motion
@@ -116,10 +122,10 @@ from .equations.integrated import integrate as integrate
 from .study.integrating import closed_motion as closed_motion
 from .study.integrating import integration_rows as integration_rows
 from .study.integrating import integration_failure as integration_failure
-from .study.variants import variants as variants
-from .study.variants import variant_rows as variant_rows
-from .study.variants import variants_summary as variants_summary
-from .study.describing import describe as describe
+from .study.variants.computing import variants as variants
+from .study.variants.computing import variant_rows as variant_rows
+from .study.variants.computing import variants_summary as variants_summary
+from .study.words.describing import describe as describe
 
 # Many mechanisms
 from .sweeps.sweeping import sweep as sweep
@@ -134,6 +140,8 @@ from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
 from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_reduction_csv as write_reduction_csv
+from .present import write_reactions_csv as write_reactions_csv
+from .present import write_joint_table_csv as write_joint_table_csv
 from .present import write_region_csv as write_region_csv
 from .present import write_centres_csv as write_centres_csv
 from .present import write_centrodes_csv as write_centrodes_csv

@@ -15,6 +15,7 @@ from centrode.algebra.expressions import Node, variable
 from centrode.algebra.graph_arrays import run_on_arrays
 from centrode.algebra.machine_code import PRESENT
 from centrode.algebra.reductions import (
+    end_of,
     greatest,
     greatest_with_gradient,
     least,
@@ -110,11 +111,13 @@ def test_reductions_leave_nan_out(run: Runner) -> None:
 
 def test_reductions_with_gradients(run: Runner) -> None:
     value = m.sqrt(t - b) * a * a  # NaN at t = 0, greatest at t = 5, of several there the first
-    red = together(total_with_gradient("sum", value, [a, b]), greatest_with_gradient("hi", value, [a, b]))
+    summed = total_with_gradient("sum", value, [a, b], ["t"])
+    red = together(summed, greatest_with_gradient("hi", value, [a, b]))
     start = [[one] for one in red.start.values()]
-    found = run(Scan(("a", "b"), ("t",), {}, red.state), [[3.0], [1.0]], [[0.0, 2.0, 5.0, 5.0]], start).state[
-        :, 0
-    ]
+    lanes = [[3.0], [1.0]]
+    last = run(Scan(("a", "b"), ("t",), {}, red.state), lanes, [[0.0, 2.0, 5.0, 5.0]], start).state
+    ends = run(end_of(red, ("a", "b")), np.concatenate([lanes, last]), None).outputs[:, 0]
+    found = np.concatenate([ends, last[len(summed.state) :]])[:, 0]
     roots = np.array([1.0, 2.0, 2.0])
     expected = [9 * roots.sum(), 6 * roots.sum(), -4.5 * (1 / roots).sum(), 18.0, 12.0, -2.25]
     assert np.abs(found - expected).max() <= 16 * EPS * 45

@@ -111,7 +111,8 @@ def test_a_run_computes_the_machine(centrode: Centrode, folder: Path) -> None:
     assert "loads and machine" not in done.out
     names = sorted(path.name for path in (folder / "r").iterdir())
     assert names == [
-        "instants.csv", "machine-instants.csv", "machine.csv", "machine.nc", "motion.csv", "motion.nc", "summary.json",
+        "instants.csv", "joints.csv", "machine-instants.csv", "machine.csv", "machine.nc", "motion.csv", "motion.nc",
+        "reactions.csv", "reactions.nc", "summary.json",
     ]  # fmt: skip
     (instant,) = rows(folder / "r" / "machine-instants.csv")
     assert float(instant["turned [deg]"]) == pytest.approx(99.1, abs=1e-9)
@@ -147,8 +148,11 @@ def test_a_run_that_locks_leaves_the_machine_out(centrode: Centrode, folder: Pat
     assert done.code == 3
     assert "note: the machine is left out: the mechanism does not turn fully" in done.out
     assert sorted(path.name for path in (folder / "r").iterdir()) == [
+        "joints.csv",
         "motion.csv",
         "motion.nc",
+        "reactions.csv",
+        "reactions.nc",
         "summary.json",
     ]
     done = centrode("flywheel", "m.toml", "--out", "f")

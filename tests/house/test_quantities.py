@@ -35,6 +35,10 @@ def test_every_variable_of_a_motion_is_named() -> None:
     steady = ["turned", "moment_of_loads", "driving_moment", "work_of_loads", "work_of_drive", "work"]
     steady += ["inertia_of_links", "inertia_slope_of_links", "energy_of_links", "energy_change"]
     steady += [f"drive_{name}{order}" for name in ("speed", "acceleration") for order in ("", "_first_order")]
+    reactions = ["joint_force", "guide_force", "guide_normal", "guide_moment", "gear_moment", "tooth_force"]
+    reactions += [f"rolling_{name}" for name in ("force", "normal", "tangential")]
+    reactions += [f"{of}_{name}" for of in ("inertia", "frame", "shaking") for name in ("force", "moment")]
+    reactions += ["balancing", "determined", "reaction_status", "reaction_loss"]
     centres = (
         "centre",
         "centre_direction",
@@ -60,7 +64,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
     simulated = ["inertia", "moment_of_friction", "power_of_drive", "power_of_loads", "work_of_friction"]
     simulated += ["work_of_other_loads", "kinetic_energy", "potential_energy", "energy_residual"]
     simulated += [f"occasion_{name}" for name in ("time", "value", "kind")]
-    known |= set(reduced) | set(steady) | set(simulated)
+    known |= set(reduced) | set(steady) | set(simulated) | set(reactions)
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

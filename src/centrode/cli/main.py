@@ -27,6 +27,7 @@ from centrode.cli.flywheel import flywheel
 from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
 from centrode.cli.plan import plan
+from centrode.cli.reactions import reactions
 from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.rotatability import rotatability
@@ -47,6 +48,7 @@ COMMANDS: tuple[click.Command, ...] = (
     integrate,
     rotatability,
     reduce,
+    reactions,
     variants,
     limits,
     region,

@@ -21,6 +21,7 @@ from centrode.cli.arguments import (
 )
 from centrode.cli.flywheel import write as write_machine
 from centrode.cli.progress import Progress
+from centrode.cli.reactions import write as write_reactions
 from centrode.errors import MotionError
 from centrode.locale import _, mark
 
@@ -79,6 +80,8 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
         ct.write_motion_netcdf(study.coefficients, folder / "coefficients.nc")
     if study.machine is not None:
         write_machine(mechanism, study.machine, folder, progress, figures=figures)
+    if study.reactions is not None:
+        write_reactions(mechanism, study.reactions, folder)
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
     (folder / "summary.json").write_text(text, encoding="utf-8")
@@ -93,6 +96,8 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
 def summary_text(study: StudyResults, name: str) -> str:
     """What a run prints: structure, range, limits, change points, statuses, worst residual, notes."""
     rows = [*ct.check_rows(study.check), *ct.motion_rows(study)]
+    if study.reactions is not None:
+        rows += ct.greatest_reaction(study.mechanism, study.reactions)
     lines = [_(study.mechanism.title) or name, "", output.table(rows)]
     if study.machine is not None:
         lines += ["", output.table(ct.flywheel_rows(study.mechanism, study.machine.flywheel))]

@@ -8,7 +8,9 @@ from typing import Any, Protocol, TypeAlias
 
 from centrode.algebra.jets import Jet
 from centrode.dynamics.bodies import Centre, Radial
+from centrode.dynamics.pulls import Pull, couple, on_link, on_point
 from centrode.dynamics.states import Place, State
+from centrode.geometry.plane import turned
 from centrode.model.mechanism import FRAME
 
 Number: TypeAlias = Any
@@ -22,6 +24,9 @@ class Coordinate(Protocol):
 
     def slope(self, state: State) -> Jet:
         """Its derivative by the parameter, at held directions, and the derivative of that."""
+
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        """What a load of one unit along it does to points and links: its derivatives by their coordinates."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +42,9 @@ class Turn:
     def slope(self, state: State) -> Jet:
         return (state.angle(self.link) - state.angle(self.base)).slope()
 
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        return couple(self.link, 1.0), couple(self.base, -1.0)
+
 
 @dataclass(frozen=True)
 class Slide:
@@ -49,6 +57,14 @@ class Slide:
 
     def slope(self, state: State) -> Jet:
         return state.slide(self.guide).slope()
+
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        guide = state.mechanism.guide(self.guide)
+        at = place_of(state.point(guide.point))
+        x, y = turned(guide.unit, place_of(state.rotor(guide.on)))
+        # a slider that is a link of its own is what is pushed, and not the pin in it
+        slider = on_point(guide.point, (x, y), at) if guide.link is None else on_link(guide.link, (x, y), at)
+        return slider, on_link(guide.on, (-x, -y), at)
 
 
 @dataclass(frozen=True)
@@ -63,6 +79,9 @@ class Distance:
 
     def slope(self, state: State) -> Jet:
         return self._length(state).slope()
+
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        return _apart(state, self.first, self.second, self._length(state).value)
 
     def _length(self, state: State) -> Jet:
         length: Jet = state.m.sqrt(_squared(state, self.first, self.second))
@@ -81,6 +100,9 @@ class HalfSquare:
 
     def slope(self, state: State) -> Jet:
         return self._half(state).slope()
+
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        return _apart(state, self.first, self.second, 1.0)
 
     def _half(self, state: State) -> Jet:
         return _squared(state, self.first, self.second) * 0.5
@@ -109,6 +131,11 @@ class Component:
         parts = [u.lowered() * x.slope() for u, x in pairs]
         return sum(parts[1:], parts[0])
 
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        force, at = place_of(self._direction(state)), place_of(self._place(state))
+        body = self.at
+        return (on_point(body, force, at) if isinstance(body, str) else on_link(body.link, force, at),)
+
     def _place(self, state: State) -> Place:
         return state.point(self.at) if isinstance(self.at, str) else state.centre(self.at)
 
@@ -122,3 +149,15 @@ class Component:
         x, y = unit
         cosine, sine = state.rotor(self.axes)
         return cosine * x - sine * y, sine * x + cosine * y
+
+
+def place_of(place: Place) -> tuple[Number, Number]:
+    """Coordinates without their derivatives."""
+    return place[0].value, place[1].value
+
+
+def _apart(state: State, first: str, second: str, unit: Number) -> tuple[Pull, ...]:
+    """Two points pushed apart, each with a force of their distance over `unit`."""
+    (x, y), (u, v) = place_of(state.point(first)), place_of(state.point(second))
+    force = (u - x) / unit, (v - y) / unit
+    return on_point(second, force, (u, v)), on_point(first, (-force[0], -force[1]), (x, y))

@@ -16,7 +16,7 @@ from centrode.dynamics.jumps import jumps_of
 from centrode.dynamics.loads import Acting, loads_of
 from centrode.dynamics.masses import Given, Mass, masses_of
 from centrode.dynamics.states import Moving, State
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.branches import Event
 from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
@@ -80,6 +80,19 @@ class Burden:
             what = _("there are neither masses nor loads to reduce")
             raise InputError("", what, _("give links a mass, or [[loads]]"))
         return cls(masses, loads)
+
+    @classmethod
+    def in_plane(cls, mechanism: Mechanism) -> Burden:
+        """The same as forces on links of the plane; NotComputedYet on the sphere, InputError for what is no force."""
+        if mechanism.space == "sphere":
+            what = _("reactions on the sphere are not computed yet")
+            raise NotComputedYet("space", what, _("describe a plane one"))
+        found = cls.of(mechanism)
+        for load in found.loads:
+            if any(effort.works is not None for effort in load.efforts):
+                what = _("a plain sum is no moment in a hinge, so it makes no reactions")
+                raise InputError(load.where, what, _("take form out"))
+        return found
 
     @property
     def links(self) -> tuple[str, ...]:

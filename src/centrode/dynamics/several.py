@@ -38,7 +38,7 @@ def reduced_to_several(solved: Solved, burden: Burden) -> xr.Dataset:
     M_ij = sum m r_i . r_j + I phi_i phi_j with partial derivatives by the drives, [ij, k] = sum m r_ij . r_k + I
     phi_ij phi_k, Q_i = sum F . r_i. Raises InputError for a load whose formula names the drive's value.
     """
-    _refuse_drive_in_formulas(burden)
+    refuse_drive_in_formulas(burden)
     _refuse_rings(burden)
     _check_size(solved, burden)
     found = partials(solved)
@@ -62,7 +62,8 @@ def reduced_to_several(solved: Solved, burden: Burden) -> xr.Dataset:
     return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved))
 
 
-def _refuse_drive_in_formulas(burden: Burden) -> None:
+def refuse_drive_in_formulas(burden: Burden) -> None:
+    """Raise InputError for a load whose formula names the drive's value, where there are several drives."""
     for load in burden.loads:
         if any("q" in effort.amount.uses for effort in load.efforts):
             what = _("its formula names q, and there are several drives")

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 
 from centrode.algebra.jets import Jet
 from centrode.dynamics.coordinates import Coordinate, Turn
+from centrode.dynamics.pulls import Pull
 from centrode.dynamics.states import Place, State
 from centrode.errors import InputError
 from centrode.locale import _
@@ -45,6 +46,9 @@ class Spin:
         parts = [(own - other) * axis for own, other, axis in pairs]
         return sum(parts[1:], parts[0])
 
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        raise NotImplementedError("forces on links are those of the plane")
+
     def _axis(self, state: State) -> Place:
         if isinstance(self.axis, str):
             unit = 1.0 / state.mechanism.sphere_radius
@@ -62,6 +66,9 @@ class Travel:
 
     def slope(self, state: State) -> Jet:
         return Jet((state.m.base.sign(state.rate), 0.0))
+
+    def pulls(self, state: State) -> tuple[Pull, ...]:
+        raise NotImplementedError("no force on a link works along it")
 
 
 def turning_of(mechanism: Mechanism, load: Load, where: str, measured: bool) -> Coordinate:

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from centrode.present.integrations import integration_figures
     from centrode.present.machine_figures import machine_figures
     from centrode.present.plan_drawing import plan_figure
+    from centrode.present.reaction_tables import write_joint_table_csv, write_reactions_csv
     from centrode.present.reading import scene_of
     from centrode.present.reduction_figures import reduction_figures
     from centrode.present.reduction_tables import write_reduction_csv
@@ -68,8 +69,10 @@ __all__ = [
     "transmission_figure",
     "write_coefficients_csv",
     "write_integration_csv",
+    "write_joint_table_csv",
     "write_motion_csv",
     "write_motion_netcdf",
+    "write_reactions_csv",
     "write_reduction_csv",
     "write_region_csv",
     "write_variants",
@@ -93,6 +96,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "plan_drawing": ["plan_figure"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
+        "reaction_tables": ["write_joint_table_csv", "write_reactions_csv"],
         "reading": ["scene_of"],
         "reduction_figures": ["reduction_figures"],
         "reduction_tables": ["write_reduction_csv"],

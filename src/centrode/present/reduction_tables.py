@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -40,15 +40,17 @@ def write_reduction_csv(dataset: xarray.Dataset, path: Path, display: Display | 
     display : Display, optional
         Unit of the drive's angles or lengths; radians and metres if left out. Inertias and moments are SI.
     """
-    write_columns(path, _columns(dataset), dataset["status"], display)
+    write_columns(path, force_columns(dataset, VARIABLES), dataset["status"], display)
 
 
-def _columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.DataArray]]:
+def force_columns(
+    dataset: xarray.Dataset, variables: Sequence[str]
+) -> Iterator[tuple[str, str, xarray.DataArray]]:
     """Header without unit, SI unit and values of every column: "reduced_inertia_part_AB"."""
     yield "time", unit_of(dataset["time"]), dataset["time"]
     for number, name in enumerate(dataset["drive"].values):
         yield f"drive_{name}", drive_units(dataset)[number], dataset["drive_value"].isel(drive=number)
-    for variable in VARIABLES:
+    for variable in variables:
         if variable in dataset:
             yield from _columns_of(dataset[variable], variable)
 

@@ -32,8 +32,8 @@ from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.present.integration_tables import write_integration_csv
 from centrode.present.tables import write_motion_csv
-from centrode.study.variant_tables import Table, Variant, read_variants
-from centrode.study.variants import FAULT, STEPS, VariantResults, VariantRow, computed
+from centrode.study.variants.computing import FAULT, STEPS, VariantResults, VariantRow, computed
+from centrode.study.variants.tables import Table, Variant, read_variants
 from centrode.sweeps.locking import locked
 from centrode.sweeps.store import write_whole
 

@@ -28,6 +28,7 @@ class Structure:
     Attributes
     ----------
     constraints : all of them, drives first; `redundant` those that repeat others at a generic position
+    repeating : (constraint, row), the single equations of these that are left out
     unknowns : moving points and links
     groups : the plan, each group needing only what stands before it
     generic_mobility : unknowns less the rank without drives at a generic position; a mechanism of special
@@ -38,6 +39,7 @@ class Structure:
     dimensions: Dimensions
     constraints: tuple[Constraint, ...]
     redundant: tuple[Constraint, ...]
+    repeating: tuple[tuple[Constraint, int], ...]
     unknowns: tuple[Entity, ...]
     groups: tuple[Group, ...]
     generic_mobility: int
@@ -85,8 +87,9 @@ def structure_of(mechanism: Mechanism) -> Structure:
     mobility = matrix.shape[1] - free_rank
     _check_drives(mechanism, matrix, kept, owners, mobility)
     groups = _groups(mechanism, dimensions.space, unknowns, kept, owners)
-    redundant = _unique([owners[i] for i in range(len(owners)) if not kept[i]])
-    return Structure(mechanism, dimensions, constraints, redundant, unknowns, groups, mobility)
+    repeating = _left_out(owners, kept)
+    redundant = tuple(dict.fromkeys(constraint for constraint, _row in repeating))
+    return Structure(mechanism, dimensions, constraints, redundant, repeating, unknowns, groups, mobility)
 
 
 def _independent(mechanism: Mechanism, matrix: Matrix, owners: Sequence[Constraint]) -> list[bool]:
@@ -166,8 +169,14 @@ def drives_against_mobility(drives: int, mobility: int) -> str:
     ).format(mobility=mobility)
 
 
-def _unique(constraints: Sequence[Constraint]) -> tuple[Constraint, ...]:
-    return tuple(dict.fromkeys(constraints))
+def _left_out(owners: Sequence[Constraint], kept: Sequence[bool]) -> tuple[tuple[Constraint, int], ...]:
+    """Equations that are not kept, each as its constraint and its row there."""
+    first = {constraint: row for row, constraint in reversed([*enumerate(owners)])}
+    return tuple(
+        (owner, row - first[owner])
+        for row, (owner, keep) in enumerate(zip(owners, kept, strict=True))
+        if not keep
+    )
 
 
 def _groups(

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from centrode.dynamics.kinetostatics.moving import pace_of
+from centrode.dynamics.kinetostatics.reactions import reactions_at
+from centrode.dynamics.reducer import Burden
 from centrode.errors import InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
@@ -36,6 +39,7 @@ class StudyResults:
     instants : the motion exactly at the instants the description asks for
     coefficients : kinematic coefficients by each drive, where there are several
     machine : energies, flywheel and real motion, where the description has a machine that can be computed
+    reactions : forces in every joint at the samples, where the description has masses or loads
     scalars : name -> number and SI unit, as `summary.json` holds them
     failure : why the mechanism cannot do what was asked, in a sentence; None if it can
     notes : what a reader should know besides
@@ -48,6 +52,7 @@ class StudyResults:
     instants: xr.Dataset | None
     coefficients: xr.Dataset | None
     machine: MachineResults | None
+    reactions: xr.Dataset | None
     scalars: dict[str, Scalar]
     failure: str | None
     notes: tuple[str, ...]
@@ -64,7 +69,8 @@ def study(
     data = dataset_of(solved)
     words = Words(solved)
     machine, notes = _machine(mechanism, samples)
-    notes = [*_notes(mechanism, solved, words), *notes]
+    reactions, lacking = _reactions(mechanism, solved)
+    notes = [*_notes(mechanism, solved, words), *notes, *lacking]
     return StudyResults(
         mechanism,
         checked,
@@ -72,6 +78,7 @@ def study(
         _at_instants(prepared),
         coefficients_of(solved) if _by_each_drive(solved) else None,
         machine,
+        reactions,
         _scalars(checked, solved) | (flywheel_scalars(machine.flywheel) if machine else {}),
         _failure(solved, words),
         tuple(notes),
@@ -88,6 +95,22 @@ def _machine(mechanism: Mechanism, samples: int | None) -> tuple[MachineResults 
     except (MotionError, NotComputedYet) as missing:
         what = f"{missing.what}; {missing.repair}" if missing.repair else missing.what
         return None, [_("the machine is left out: {reason}").format(reason=what)]
+
+
+def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None, list[str]]:
+    """Reactions of a motion; a note where masses or loads are there, but not complete or not computed yet."""
+    if not mechanism.loads and not any(link.mass or link.inertia for link in mechanism.links.values()):
+        return None, []
+    try:
+        burden = Burden.in_plane(mechanism)
+        return reactions_at(solved, burden, pace_of(solved, burden)), []
+    except (InputError, NotComputedYet) as missing:
+        what = (
+            _("{where}: {what}").format(where=missing.where, what=missing.what)
+            if missing.where
+            else missing.what
+        )
+        return None, [_("reactions are left out: {reason}").format(reason=what)]
 
 
 def _by_each_drive(solved: Solved) -> bool:

@@ -173,7 +173,8 @@ def _function(text: str, machine: Target) -> Loaded:
 
 
 def _address(array: Array) -> int:
-    return int(array.ctypes.data) if array.size else 0
+    # short kernels are called often, and `array.ctypes` makes an object each time
+    return int(array.__array_interface__["data"][0]) if array.size else 0
 
 
 @lru_cache(maxsize=4)

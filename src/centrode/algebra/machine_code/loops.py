@@ -2,8 +2,9 @@
 
 With the steps inside, a block of lanes is taken through all steps and the state stays in registers. With the
 lanes inside, every step runs along all lanes, so that each output is written as one stream; there is no state
-then. What depends on the outer loop alone is computed there. The last block of lanes overlaps the one before,
-so that no lane needs a mask; the caller sees to it that there are as many lanes as a vector has.
+then, and a graph may be computed in stages, one loop behind the other over a piece of the lanes. What depends on
+the outer loop alone is computed there. The last block of lanes overlaps the one before, so that no lane needs a
+mask; the caller sees to it that there are as many lanes as a vector has.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ from centrode.algebra.expressions import Node, variable
 from centrode.algebra.machine_code.language import Block, Code, Value, Vector
 from centrode.algebra.machine_code.operating import Operating
 from centrode.algebra.machine_code.relaxing import behind_decisions
+from centrode.algebra.machine_code.rows import LANE, Rows
+from centrode.algebra.machine_code.stages import Stage, stages_of
 from centrode.algebra.scans import Scan
 
 FUNCTION = "centrode_scan"
@@ -24,6 +27,8 @@ ARGUMENTS = (
     "ptr noalias %outputs", "i64 %output", "i64 %output_row",
 )  # fmt: skip
 """Rows are distances, in numbers, of one row from the next; `output` is that of one output from the next."""
+PIECE = 64
+"""Lanes that a stage goes through before the next one: what waits in between stays in the nearest cache."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +60,7 @@ class _Writer:
         self.code = Code(self.block, shape.vector, shape.has_fma)
         fused = behind_decisions(scan.graph) if shape.relaxed else frozenset()
         self.operating = Operating(self.code, fused)
+        self.rows = Rows(self.block, shape.vector)
 
     def text(self) -> str:
         self._loops()
@@ -73,43 +79,108 @@ class _Writer:
 
     def _loops(self) -> None:
         block, inside = self.block, self.shape.lanes_inside
-        bases = [self._row("%outputs", i, "%output") for i in range(len(self.scan.outputs))]
+        outer = "%step" if inside else "%lane"
+        of_inner = self.scan.parameters if inside else (*self.scan.inputs, *self.scan.state)
+        early = self._independent_of(of_inner)
+        rest = [node for node in self.scan.graph.order if node not in early]
+        stages = stages_of(rest) if inside else [Stage(tuple(rest), ())]
+        left = self._room(stages)
+        bases = [self.rows.row("%outputs", i, "%output") for i in range(len(self.scan.outputs))]
         block.line("br label %outer")
         block.begin("outer")
-        outer_head = len(block.lines)
-        outer = "%step" if inside else "%lane"
-        self._axis(outer)
+        head = len(block.lines)
+        self.rows.stand(outer)
         self._take(outer)
-        early = self._independent_of(
-            self.scan.parameters if inside else (*self.scan.inputs, *self.scan.state)
-        )
         self._compute([node for node in self.scan.graph.order if node in early])
-        before_inner = block.label
-        block.line("br label %inner")
-        block.begin("inner")
-        inner_head = len(block.lines)
-        inner = "%lane" if inside else "%step"
-        self._axis(inner)
-        self._take(inner)
-        places = self._places(bases)
-        self._write([node for node in places if node in early], places)
-        for node in self.scan.graph.order:
-            if node not in early:
-                self.operating.compute(node)
-                # at once: a number that waits to be written takes a register
-                self._write([node] if node in places else [], places)
-        after_inner = block.label
-        self._next(inner, "inner", "outer_end")
+        if len(stages) == 1:
+            self._loop("%lane" if inside else "%step", rest, bases, early)
+        else:
+            self._pieces(stages, bases, early, left)
         block.begin("outer_end")
         self._write_state()
-        self._next(outer, "outer", "end")
+        self.rows.advance(outer, "%lanes" if outer == "%lane" else "%steps", "outer", "end")
         block.begin("end")
         block.line("ret void")
-        # what the loops carry is known only now; the inner head stands further down, so it comes first
-        block.lines[inner_head:inner_head] = [
-            self._carried(inner, before_inner, after_inner), *self._carried_state(before_inner, after_inner),
+        # what a loop carries is known only at its end
+        block.lines[head:head] = [self.rows.carried(outer, "0", "entry", "outer_end")]
+
+    def _loop(self, axis: str, nodes: list[Node], bases: list[Value], early: set[Node]) -> None:
+        """The inner loop, with all that is left to compute."""
+        block = self.block
+        before = block.label
+        block.line("br label %inner")
+        block.begin("inner")
+        head = len(block.lines)
+        self.rows.stand(axis)
+        self._take(axis)
+        places = self._places(bases)
+        self._write([node for node in places if node in early], places)
+        self._compute(nodes, places)
+        after = block.label
+        self.rows.advance(axis, "%lanes" if axis == "%lane" else "%steps", "inner", "outer_end")
+        block.lines[head:head] = [
+            self.rows.carried(axis, "0", before, after), *self._carried_state(before, after)
         ]  # fmt: skip
-        block.lines[outer_head:outer_head] = [self._carried(outer, "entry", "outer_end")]
+
+    def _room(self, stages: list[Stage]) -> dict[Node, int]:
+        """Where on the stack the numbers wait that stages leave for later ones."""
+        left = [node for stage in stages for node in stage.left]
+        if left:
+            self.block.line(f"%waiting = alloca [{PIECE * len(left)} x {self.shape.vector.number}], align 64")
+        return {node: PIECE * i for i, node in enumerate(left)}
+
+    def _pieces(
+        self, stages: list[Stage], bases: list[Value], early: set[Node], left: dict[Node, int]
+    ) -> None:
+        """Lanes piece by piece, with a loop for each stage."""
+        block = self.block
+        before = block.label
+        block.line("br label %piece")
+        block.begin("piece")
+        head = len(block.lines)
+        block.line(f"%piece.next = add i64 %first, {PIECE}")
+        more = block.put("icmp slt i64 %piece.next, %lanes")
+        end = block.put(f"select i1 {more}, i64 %piece.next, i64 %lanes")
+        known = dict(self.operating.values)
+        for i, stage in enumerate(stages):
+            self.operating = self.operating.with_values(known)
+            done = early if i == 0 else set()
+            self._stage(i, stage, end, bases, done, left)
+        block.line(f"br i1 {more}, label %piece, label %outer_end")
+        block.lines[head:head] = [
+            f"  %first = phi i64 [ 0, %{before} ], [ %piece.next, %{block.label} ]"
+        ]  # fmt: skip
+
+    def _stage(
+        self, i: int, stage: Stage, end: Value, bases: list[Value], early: set[Node], left: dict[Node, int]
+    ) -> None:
+        """One stage over one piece of the lanes."""
+        block, lane = self.block, f"%lane{i}"
+        before = block.label
+        block.line(f"br label %stage{i}")
+        block.begin(f"stage{i}")
+        head = len(block.lines)
+        self.rows.stand(lane)
+        self._take(lane)
+        from_first = block.put(f"sub i64 {lane}, %first")
+        own = set(stage.nodes)
+        taken = {x for node in stage.nodes for x in node.arguments}
+        for node, place in left.items():
+            if node in taken and node not in own:
+                self.operating.values[node] = self.rows.read(self._waiting(place, from_first))
+        places = self._places(bases)
+        self._write([node for node in places if node in early], places)
+        self._compute(list(stage.nodes), places)
+        for node in stage.left:
+            self.rows.write(self.operating.value(node), self._waiting(left[node], from_first))
+        after = block.label
+        self.rows.advance(lane, end, f"stage{i}", f"behind{i}")
+        block.begin(f"behind{i}")
+        block.lines[head:head] = [self.rows.carried(lane, "%first", before, after)]
+
+    def _waiting(self, place: int, from_first: Value) -> Value:
+        index = self.block.put(f"add i64 {from_first}, {place}")
+        return self.rows.place("%waiting", index)
 
     def _independent_of(self, names: tuple[str, ...]) -> set[Node]:
         """Nodes that depend on none of the variables of the inner loop."""
@@ -120,82 +191,50 @@ class _Writer:
                 found.add(node)
         return found
 
-    def _compute(self, nodes: list[Node]) -> None:
+    def _compute(self, nodes: list[Node], places: dict[Node, list[Value]] | None = None) -> None:
+        """Nodes in order; outputs are written at once: a number that waits to be written takes a register."""
         for node in nodes:
             self.operating.compute(node)
-
-    def _axis(self, axis: str) -> None:
-        """Where the loop stands: the first lane of a block, moved back at the end."""
-        if axis == "%lane":
-            width, block = self.shape.vector.width, self.block
-            last = block.put(f"sub i64 %lanes, {width}")
-            beyond = block.put(f"icmp sgt i64 %lane, {last}")
-            block.line(f"%at = select i1 {beyond}, i64 {last}, i64 %lane")
+            if places is not None and node in places:
+                self._write([node], places)
 
     def _take(self, axis: str) -> None:
         """Load what belongs to a place of the loop."""
         scan, values = self.scan, self.operating.values
-        if axis == "%step":
+        if not axis.startswith(LANE):
             for i, name in enumerate(scan.inputs):
-                values[variable(name)] = self._everywhere(self._row("%inputs", i, "%input_row"))
+                values[variable(name)] = self.rows.everywhere(
+                    self.rows.place(self.rows.row("%inputs", i, "%input_row"), "%step")
+                )
             if not self.shape.lanes_inside:
                 values.update({variable(name): f"%s{i}" for i, name in enumerate(scan.state)})
             return
         for i, name in enumerate(scan.parameters):
-            values[variable(name)] = self._load(self._row("%parameters", i, "%parameter_row"))
-        self._first = [self._load(self._row("%state", i, "%state_row")) for i in range(len(scan.state))]
+            values[variable(name)] = self._here(self.rows.row("%parameters", i, "%parameter_row"))
+        self._first = [self._here(self.rows.row("%state", i, "%state_row")) for i in range(len(scan.state))]
 
-    def _row(self, array: str, i: int, stride: str) -> Value:
-        offset = self.block.put(f"mul i64 {i}, {stride}")
-        return self._at(array, offset)
-
-    def _at(self, row: Value, index: Value) -> Value:
-        return self.block.put(f"getelementptr {self.shape.vector.number}, ptr {row}, i64 {index}")
-
-    def _load(self, row: Value) -> Value:
-        vector = self.shape.vector
-        return self.block.put(f"load {vector.name}, ptr {self._at(row, '%at')}, align {vector.bits // 8}")
-
-    def _store(self, value: Value, place: Value) -> None:
-        vector = self.shape.vector
-        self.block.line(f"store {vector.name} {value}, ptr {place}, align {vector.bits // 8}")
-
-    def _everywhere(self, row: Value) -> Value:
-        """One number of this step in every lane."""
-        vector, block = self.shape.vector, self.block
-        one = block.put(f"load {vector.number}, ptr {self._at(row, '%step')}, align {vector.bits // 8}")
-        first = block.put(f"insertelement {vector.name} poison, {vector.number} {one}, i32 0")
-        lanes = f"<{vector.width} x i32> zeroinitializer"
-        return block.put(f"shufflevector {vector.name} {first}, {vector.name} poison, {lanes}")
+    def _here(self, row: Value) -> Value:
+        return self.rows.read(self.rows.place(row, self.rows.at))
 
     def _places(self, bases: list[Value]) -> dict[Node, list[Value]]:
         """Where outputs are written."""
         found: dict[Node, list[Value]] = {}
         if bases:
             of_step = self.block.put("mul i64 %step, %output_row")
-            index = self.block.put(f"add i64 {of_step}, %at")
+            index = self.block.put(f"add i64 {of_step}, {self.rows.at}")
             for base, node in zip(bases, self.scan.outputs.values(), strict=True):
-                found.setdefault(node, []).append(self._at(base, index))
+                found.setdefault(node, []).append(self.rows.place(base, index))
         return found
 
     def _write(self, nodes: list[Node], places: dict[Node, list[Value]]) -> None:
         for node in nodes:
             for place in places[node]:
-                self._store(self.operating.value(node), place)
+                self.rows.write(self.operating.value(node), place)
 
     def _write_state(self) -> None:
         for i, node in enumerate(self.scan.state.values()):
-            place = self._at(self._row("%new_state", i, "%new_state_row"), "%at")
-            self._store(self.operating.value(node), place)
-
-    def _next(self, axis: str, again: str, done: str) -> None:
-        width, end = (self.shape.vector.width, "%lanes") if axis == "%lane" else (1, "%steps")
-        self.block.line(f"{axis}.next = add i64 {axis}, {width}")
-        more = self.block.put(f"icmp slt i64 {axis}.next, {end}")
-        self.block.line(f"br i1 {more}, label %{again}, label %{done}")
-
-    def _carried(self, axis: str, before: str, after: str) -> str:
-        return f"  {axis} = phi i64 [ 0, %{before} ], [ {axis}.next, %{after} ]"
+            place = self.rows.place(self.rows.row("%new_state", i, "%new_state_row"), self.rows.at)
+            self.rows.write(self.operating.value(node), place)
 
     def _carried_state(self, before: str, after: str) -> list[str]:
         type_ = self.shape.vector.name

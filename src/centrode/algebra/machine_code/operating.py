@@ -31,6 +31,12 @@ class Operating:
         self.values: dict[Node, Value] = {}
         self._turned: dict[Node, tuple[Value, Value]] = {}
 
+    def with_values(self, values: Mapping[Node, Value]) -> Operating:
+        """Another that knows these values only: those of one loop are not there in the next."""
+        other = Operating(self.code, self.fused)
+        other.values.update(values)
+        return other
+
     def value(self, node: Node) -> Value:
         """The value of a node that is computed, or of a constant."""
         if node.operation == CONSTANT:

@@ -14,7 +14,7 @@ from centrode.locale import _, mark, ngettext, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.rotation import Rotation, rotation_of
 from centrode.study.running import StudyResults, study
-from centrode.study.variant_tables import Table, Variant, read_variants
+from centrode.study.variants.tables import Table, Variant, read_variants
 
 if TYPE_CHECKING:
     import xarray as xr

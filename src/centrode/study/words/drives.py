@@ -5,8 +5,8 @@ from __future__ import annotations
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Drive, Mechanism
 from centrode.quantities import display_unit, typeset_unit
-from centrode.study.roles import Roles
-from centrode.study.word_lists import called
+from centrode.study.words.lists import called
+from centrode.study.words.roles import Roles
 
 # Translators: {link} and {base} are names of links, {pivot} and {point} of points; names do not change.
 DRIVEN = {

@@ -19,7 +19,7 @@ from centrode.model.placing import replace_placed
 from centrode.model.problems import Problem, shown
 from centrode.model.reading import read_file
 from centrode.model.units import to_si
-from centrode.study.variant_columns import NAME, Column, columns_of
+from centrode.study.variants.columns import NAME, Column, columns_of
 
 Table: TypeAlias = str | Path | Sequence[Mapping[str, object]]
 SEPARATORS = ",;\t"

@@ -24,10 +24,10 @@ from centrode.structure.groups import (
 )
 from centrode.structure.plan import Structure
 from centrode.structure.wheel_groups import Train
-from centrode.study.roles import Roles
-from centrode.study.word_lists import called, links_listed
-from centrode.study.words_on_drives import sentence_on_drive
-from centrode.study.words_on_joints import links_at
+from centrode.study.words.drives import sentence_on_drive
+from centrode.study.words.joints import links_at
+from centrode.study.words.lists import called, links_listed
+from centrode.study.words.roles import Roles
 
 # Translators: {link}, {coupler}, {follower} are names of links, {pivot} and {point} of points; names do not change.
 FOLLOWERS = {

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from centrode.kinematics.ready import Ready, ready
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
-from centrode.study.roles import Roles, roles_of
 from centrode.study.rotation import rotation_of
 from centrode.study.wording import value_text
-from centrode.study.words_on_joints import sentences_on_joints
-from centrode.study.words_on_motion import sentences_on_motion
+from centrode.study.words.joints import sentences_on_joints
+from centrode.study.words.motion import sentences_on_motion
+from centrode.study.words.roles import Roles, roles_of
 
 
 def describe(mechanism: Mechanism) -> str:

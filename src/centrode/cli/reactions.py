@@ -1,0 +1,134 @@
+"""`centrode reactions`: forces in every joint and what the drives must give."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import (
+    mechanism_argument,
+    samples_option,
+    start_option,
+    stop_option,
+    written_option,
+)
+from centrode.cli.progress import Progress
+from centrode.errors import InputError, MotionError, Status
+from centrode.locale import _, mark, ngettext
+
+if TYPE_CHECKING:
+    import xarray
+
+MISSING = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
+MOST_INSTANTS = 100
+
+
+@click.command(help=mark("Find the forces in every joint and what the drives must give."))
+@mechanism_argument
+@click.option(
+    "--at",
+    "instants",
+    multiple=True,
+    metavar=mark("VALUE"),
+    help=mark('Only at this value of the drive ("120 deg"), or time ("1 s"); as often as needed.'),
+)
+@click.option(
+    "--steady",
+    is_flag=True,
+    help=mark("At the real speed of a machine in steady motion, not at its mean speed."),
+)
+@written_option
+@samples_option
+@start_option
+@stop_option
+def reactions(
+    mechanism: str,
+    instants: tuple[str, ...],
+    steady: bool,
+    out: Path | None,
+    samples: int | None,
+    start: str | None,
+    stop: str | None,
+) -> None:
+    """Print extremes or instants, write tables where asked; exit code 3 if samples are not reached."""
+    description = ct.load(mechanism)
+    _check(instants, samples, start, stop)
+    places = [ct.range_value(description, text, "--at") for text in instants] or None
+    first = None if start is None else ct.range_value(description, start, "--from")
+    last = None if stop is None else ct.range_value(description, stop, "--to")
+    names: list[str] = []
+    with about(mechanism):
+        if out is None:
+            found = ct.reactions(
+                description, samples, first, last, places, speed="steady" if steady else "mean"
+            )
+        else:
+            with output.output_folder(out) as draft, Progress() as progress:
+                progress.say(_("solving"))
+                found = ct.reactions(
+                    description, samples, first, last, places, speed="steady" if steady else "mean"
+                )
+                progress.say(_("writing tables"))
+                write(description, found, draft)
+                names = sorted(path.name for path in draft.iterdir())
+    click.echo(_(description.title) or mechanism)
+    click.echo("\n" + report(description, found, instants))
+    if out is not None:
+        click.echo("\n" + output.files_in(out, names))
+    _tell_failure(mechanism, found)
+
+
+def _check(instants: tuple[str, ...], samples: int | None, start: str | None, stop: str | None) -> None:
+    """Refuse instants beside a range, and too many of them to print."""
+    if len(instants) > MOST_INSTANTS:
+        raise InputError(
+            "--at",
+            _("{count} instants were asked for").format(count=len(instants)),
+            _("ask for at most {most}").format(most=MOST_INSTANTS),
+        )
+    given = {"--samples": samples, "--from": start, "--to": stop}
+    beside = next((name for name, value in given.items() if instants and value is not None), None)
+    if beside is not None:
+        raise InputError(beside, _("instants are asked for with --at"), _("take one of the two out"))
+
+
+def write(mechanism: ct.Mechanism, found: xarray.Dataset, folder: Path) -> None:
+    """Write reactions and the table of joints into a folder."""
+    ct.write_reactions_csv(found, folder / "reactions.csv", mechanism.display)
+    ct.write_motion_netcdf(found, folder / "reactions.nc")
+    ct.write_joint_table_csv(ct.joint_table(mechanism), folder / "joints.csv")
+
+
+def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, ...]) -> str:
+    """What is printed: what acts, the table of joints, and extremes or instants."""
+    header, joints = ct.joint_table(mechanism)
+    texts = [
+        output.table(ct.reaction_rows(mechanism, found)),
+        output.table(joints, header, right=range(1, len(header))),
+    ]
+    if not instants:
+        header, rows = ct.reaction_extremes(mechanism, found)
+        texts.append(output.table(rows, header, right=(2, 4)))
+    for number, text in enumerate(instants):
+        header, rows = ct.reactions_at_instant(mechanism, found, number)
+        heading = _("at {value}").format(value=text)
+        texts.append(heading + "\n" + output.table(rows, header, right=(2, 3, 4, 5)))
+    return "\n\n".join(texts)
+
+
+def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
+    """Raise MotionError where samples are not reached."""
+    status = found["status"].to_numpy().tolist()
+    missing = sum(code in MISSING for code in status)
+    if missing:
+        what = ngettext(
+            "the mechanism locks: {missing} of {all} samples is not reached",
+            "the mechanism locks: {missing} of {all} samples are not reached",
+            missing,
+        ).format(missing=missing, all=len(status))
+        raise MotionError(mechanism, what, _("ask for a range between the limits, or change the dimensions"))

@@ -1,0 +1,145 @@
+"""Names, units and statuses around the arrays of kinetostatics."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.algebra.jets import Jet
+from centrode.dynamics.kinetostatics.checking import checks_of
+from centrode.dynamics.kinetostatics.finding import Found
+from centrode.dynamics.kinetostatics.totals import totals_of
+from centrode.dynamics.reducer import Burden
+from centrode.errors import Status
+from centrode.kinematics.dataset import (
+    Variable,
+    attributes_of,
+    coordinates_of,
+    judgements_of,
+    labels_of,
+    named,
+    units_of_drives,
+)
+from centrode.kinematics.paths import JETS
+from centrode.kinematics.solve import Solved
+from centrode.model.mechanism import Mechanism
+
+Array: TypeAlias = npt.NDArray[np.float64]
+GEAR_BODIES = ("first", "second", "carrier")
+DIMENSIONS = {
+    "joint_force": ("side", "axis"),
+    "guide_force": ("guide", "axis"),
+    "guide_normal": ("guide",),
+    "guide_moment": ("guide",),
+    "gear_moment": ("gear", "gear_body"),
+    "tooth_force": ("gear", "axis"),
+    "rolling_force": ("rolling", "axis"),
+    "rolling_normal": ("rolling",),
+    "rolling_tangential": ("rolling",),
+    "balancing": ("drive",),
+    "inertia_force": ("link", "axis"),
+    "inertia_moment": ("link",),
+    "frame_force": ("axis",),
+    "frame_moment": (),
+    "shaking_force": ("axis",),
+    "shaking_moment": (),
+}
+
+
+def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
+    """The dataset of `reactions`."""
+    parts = found.parts | totals_of(found)
+    checks = checks_of(found, _rates(solved, found))
+    # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
+    absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
+    undetermined = _masked(parts, found)
+    for values in parts.values():
+        values[absent] = np.nan
+    units = units_of_drives(solved)
+    variables = {
+        name: named(name, ("sample", *DIMENSIONS[name]), values, units[0]) for name, values in parts.items()
+    }
+    if len(set(units)) > 1:
+        variables["balancing"][2]["units"] = ", ".join("N m" if unit == "rad" else "N" for unit in units)
+    if not solved.ready.kinematics.path.by_time:
+        variables["drive_rate"] = named("drive_rate", ("sample",), found.pace.moving.rate.copy(), units[0])
+    variables |= _statuses(solved, found)
+    sides = np.array([side.label not in undetermined for side in found.sides], dtype=np.int8)
+    variables["determined"] = named("determined", ("side",), sides)
+    attributes = attributes_of(solved) | checks
+    attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
+    return xr.Dataset(variables, coords=_coordinates(solved, burden, found), attrs=attributes)
+
+
+def _rates(solved: Solved, found: Found) -> Array:
+    """Speeds of the drives (samples, drives)."""
+    path = solved.ready.kinematics.path
+    if not path.by_time:
+        return found.pace.moving.rate[:, None]
+    time = Jet.variable(solved.span.time, 1)
+    values = path.drive_values(JETS, time).values()
+    speeds = [value.derivative(1) if isinstance(value, Jet) else 0.0 for value in values]
+    return np.stack([np.broadcast_to(speed, solved.span.time.shape) for speed in speeds], axis=-1)
+
+
+def _statuses(solved: Solved, found: Found) -> dict[str, Variable]:
+    motion = judgements_of(solved, ())["status"]
+    flags = {key: motion[2][key] for key in ("flag_values", "flag_meanings")}
+    dimensions, values, attributes = named("reaction_status", ("sample",), found.status)
+    loss = found.forces.system.inverse.loss[0]
+    return {
+        "status": motion,
+        "reaction_status": (dimensions, values, attributes | flags),
+        "reaction_loss": named("reaction_loss", ("sample",), np.minimum(loss, 1.0)),
+    }
+
+
+def _coordinates(solved: Solved, burden: Burden, found: Found) -> dict[str, Any]:
+    known, mechanism = coordinates_of(solved), solved.ready.mechanism
+    wanted = ("time", "drive_value", "drive", "axis", "guide", "rolling")
+    coordinates = {
+        name: known[name] for name in wanted if name in known and (name != "guide" or mechanism.guides)
+    }
+    coordinates["link"] = labels_of(burden.links)
+    coordinates["side"] = labels_of(tuple(side.label for side in found.sides))
+    coordinates["side_point"] = (("side",), np.array([side.point for side in found.sides], dtype=str))
+    coordinates["side_link"] = (("side",), np.array([side.body for side in found.sides], dtype=str))
+    if mechanism.gears:
+        coordinates["gear"] = labels_of(tuple(gear.id for gear in mechanism.gears))
+        coordinates["gear_body"] = labels_of(GEAR_BODIES)
+    return coordinates
+
+
+def _masked(parts: dict[str, Array], found: Found) -> list[str]:
+    """Put NaN where nothing determines a reaction; the names of these."""
+    names = _names(found)
+    said: list[str] = []
+    for part, felt in found.undetermined.items():
+        if part == "balancing":
+            continue  # work tells it, whatever the state of stress
+        for k, mask in enumerate(felt):
+            if np.any(mask):
+                parts[part][:, k] = np.nan
+                said.append(names[part][k])
+    return list(dict.fromkeys(said))
+
+
+def _names(found: Found) -> dict[str, list[str]]:
+    mechanism: Mechanism = found.forces.system.scheme.structure.mechanism
+    guides = [guide.id for guide in mechanism.guides]
+    gears = [f"gear {gear.id}" for gear in mechanism.gears]
+    wheels = [f"rolling {wheel.id}" for wheel in mechanism.rolling]
+    return {
+        "joint_force": [side.label for side in found.sides],
+        "guide_force": [f"guide {guide}" for guide in guides],
+        "guide_normal": [f"guide {guide}" for guide in guides],
+        "guide_moment": [f"moment of guide {guide}" for guide in guides],
+        "gear_moment": gears,
+        "tooth_force": gears,
+        "rolling_force": wheels,
+        "rolling_normal": wheels,
+        "rolling_tangential": wheels,
+    }

@@ -1,0 +1,67 @@
+"""How the drive moves while reactions are asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.dynamics.reducer import Burden, Reducer
+from centrode.dynamics.several import refuse_drive_in_formulas
+from centrode.dynamics.solution import solution_of
+from centrode.dynamics.states import Moving
+from centrode.dynamics.steady import turned_at
+from centrode.kinematics.ready import Ready
+from centrode.kinematics.solve import Solved
+from centrode.kinematics.spans import Span, is_uniform
+from centrode.model.mechanism import Mechanism
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Pace:
+    """Speed and acceleration of the path's parameter at samples, and whose they are.
+
+    Attributes
+    ----------
+    acceleration : (n)
+    source : "drive", "machine" or "steady"
+    """
+
+    moving: Moving
+    acceleration: Array
+    source: str
+
+
+def pace_of(solved: Solved, burden: Burden) -> Pace:
+    """As `reduce` takes it: the mean speed of a machine, where the drive has a constant speed; else the drive's own."""
+    span, prepared = solved.span, solved.ready
+    path = prepared.kinematics.path
+    if path.by_time:
+        refuse_drive_in_formulas(burden)
+    if path.by_time or prepared.mechanism.machine is None or not is_uniform(path):
+        return _along(span, "drive")
+    moving = Reducer(prepared, burden).moving(span.parameter)
+    return Pace(moving, np.zeros(len(span.parameter)), "machine")
+
+
+def steady_span(
+    mechanism: Mechanism, samples: int | None, at: npt.ArrayLike | None
+) -> tuple[Ready, Span, Pace]:
+    """Samples of a machine in steady motion, with the real speed of its drive; raises as `steady_motion` does."""
+    found = solution_of(mechanism)
+    turned, cycle, speed = turned_at(found, samples, at), found.cycle, found.speed
+    span = Span(
+        speed.time(turned),
+        cycle.value(turned),
+        cycle.sense * speed.at(turned),
+        cycle.sense * speed.acceleration(turned),
+    )
+    return found.prepared, span, _along(span, "steady")
+
+
+def _along(span: Span, source: str) -> Pace:
+    return Pace(Moving(span.time, span.parameter, span.rate), span.second_rate, source)

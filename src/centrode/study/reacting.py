@@ -1,0 +1,218 @@
+"""What is said of reactions: what acts, how fast, what is determined, three checks, and the extremes of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.dynamics.masses import massless_links
+from centrode.errors import Status
+from centrode.kinematics.several_drives.holding import unit_of_value
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.quantities import status_word
+from centrode.study.wording import value_text
+
+if TYPE_CHECKING:
+    import xarray
+
+Rows: TypeAlias = list[tuple[str, str]]
+Table: TypeAlias = tuple[list[str], list[list[str]]]
+Array: TypeAlias = npt.NDArray[np.float64]
+CHECKS = ("equilibrium_residual", "frame_residual", "power_residual")
+ROUNDING = 1e-12
+"""Components below this share of the greatest force or moment are shown as zero."""
+
+
+def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
+    """Masses, speed, statuses, what is not determined, and the worst residuals of three checks."""
+    massless = ", ".join(massless_links(mechanism))
+    rows = [
+        (_("drives"), ", ".join(found["drive"].to_numpy())),
+        (_("links with mass"), ", ".join(found["link"].to_numpy()) or _("none")),
+        (_("massless links"), massless or _("none")),
+        *_speed(mechanism, found),
+        (_("samples"), _counts(found["reaction_status"].to_numpy())),
+    ]
+    if found.attrs["undetermined"]:
+        names = found.attrs["undetermined"].split("; ")
+        rows.append((_("not determined"), ", ".join(map(_said, names))))
+    if "tooth_force" in found:
+        absent = np.isnan(found["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
+        gears = ", ".join(found["gear"].to_numpy()[absent])
+        known = np.isfinite(found["gear_moment"].to_numpy()).any()
+        if gears and known:
+            rows.append((_("no tooth force"), _("{gears}: nothing tells the radii").format(gears=gears)))
+    texts = (_("equilibrium of links"), _("sum over the frame"), _("power balance"))
+    words = (
+        _("off by {share:.1e} of the greatest force"),
+        _("off by {share:.1e} of the greatest force from the rates of momentum"),
+        _("off by {share:.1e} of the greatest power from virtual work"),
+    )
+    for text, word, name in zip(texts, words, CHECKS, strict=True):
+        rows.append((text, word.format(share=found.attrs[name])))
+    return rows
+
+
+def _said(name: str) -> str:
+    """The name of a reaction in the language of the reader; datasets name it in English."""
+    for start, text in (
+        ("moment of guide ", _("guide {name}, moment")),
+        ("guide ", _("guide {name}")),
+        ("gear ", _("gear {name}")),
+        ("rolling ", _("wheel {name}")),
+    ):
+        if name.startswith(start):
+            return text.format(name=name.removeprefix(start))
+    return name
+
+
+def _counts(status: npt.NDArray[np.int8]) -> str:
+    counts = [(Status(code), int(np.sum(status == code))) for code in np.unique(status)]
+    return f"{len(status)}: " + ", ".join(f"{status_word(which)} {number}" for which, number in counts)
+
+
+def _speed(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
+    if "drive_rate" not in found:
+        return []
+    unit = unit_of_value(mechanism, mechanism.drives[0])
+    rates = found["drive_rate"].to_numpy()
+    low, high = (f"{rate:.6g} {unit}/s" for rate in (np.min(rates), np.max(rates)))
+    speed = low if low == high else _("{first} to {last}").format(first=low, last=high)
+    text = {
+        "machine": _("{speed}, the mean speed of the machine"),
+        "steady": _("{speed}, the real speed of the machine"),
+        "drive": "{speed}",
+    }[found.attrs["rate_from"]]
+    return [(_("speed of the drive"), text.format(speed=speed))]
+
+
+def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
+    """Header and rows: least and greatest of each reaction over the samples, and where; forces by their magnitude."""
+    header = [_("reaction"), _("unit"), _("least"), _("at"), _("greatest"), _("at")]
+    rows = []
+    for label, unit, values in _reactions(found):
+        size = np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values
+        known = np.flatnonzero(np.isfinite(size))
+        if not len(known):
+            rows.append([label, unit, _("not determined"), "", "", ""])
+            continue
+        low, high = (int(known[which(size[known])]) for which in (np.argmin, np.argmax))
+        noise = ROUNDING * float(np.max(np.abs(size[known])))
+        cells = []
+        for k in (low, high):
+            still = abs(float(size[high] - size[low])) <= noise
+            cells += [_number(float(size[k]), noise), "" if still else _place(mechanism, found, k)]
+        rows.append([label, unit, *cells])
+    return header, rows
+
+
+def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
+    """The joint force that is greatest over the samples, in one row; none where none is determined."""
+    size = np.hypot(*np.moveaxis(found["joint_force"].to_numpy(), -1, 0))
+    if not np.isfinite(size).any():
+        return []
+    sample, side = np.unravel_index(np.nanargmax(size), size.shape)
+    text = _("{side}: {force:.6g} N at {place}").format(
+        side=found["side"].to_numpy()[side],
+        force=size[sample, side],
+        place=_place(mechanism, found, int(sample)),
+    )
+    return [(_("greatest joint force"), text)]
+
+
+def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: int = 0) -> Table:
+    """Header and rows of all reactions at one sample: components, magnitude and direction, or the one number."""
+    header = [_("reaction"), _("unit"), "x", "y", _("magnitude"), _("direction, deg")]
+    rows = []
+    for label, unit, values in _reactions(found):
+        here = values[sample]
+        if not np.all(np.isfinite(here)):
+            rows.append([label, unit, "", "", _missing(found, sample), ""])
+            continue
+        noise = ROUNDING * float(np.nanmax(np.abs(values)))
+        if values.ndim == 1:
+            rows.append([label, unit, "", "", _number(float(here), noise), ""])
+            continue
+        size, direction = float(np.hypot(*here)), float(np.degrees(np.arctan2(here[1], here[0])))
+        components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
+        still = size <= noise
+        rows.append([label, unit, *components, _number(size, noise), "" if still else f"{direction:.2f}"])
+    return header, rows
+
+
+def _missing(found: xarray.Dataset, sample: int) -> str:
+    """Why a reaction has no number: the status, or that nothing determines it."""
+    status = Status(int(found["reaction_status"].to_numpy()[sample]))
+    return _("not determined") if status in (Status.OK, Status.CUT_OFF) else status_word(status)
+
+
+def _reactions(found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
+    """Name, unit and values (samples) or (samples, 2) of everything that a table of reactions shows."""
+    yield from _hinges(found)
+    for variable, dimension, text in (
+        ("guide_normal", "guide", _("guide {name}, normal")),
+        ("guide_moment", "guide", _("guide {name}, moment")),
+        ("gear_moment", "gear", _("gear {name}, on {body}")),
+        ("tooth_force", "gear", _("gear {name}, teeth")),
+        ("rolling_normal", "rolling", _("wheel {name}, normal")),
+        ("rolling_tangential", "rolling", _("wheel {name}, tangential")),
+        ("balancing", "drive", _("drive {name} gives")),
+    ):
+        if variable in found:
+            yield from _of(found[variable], dimension, text)
+    yield _("force on the frame"), "N", found["frame_force"].to_numpy()
+    yield _("moment on the frame"), "N m", found["frame_moment"].to_numpy()
+
+
+def _of(values: xarray.DataArray, dimension: str, text: str) -> Iterator[tuple[str, str, Array]]:
+    units = str(values.attrs["units"]).split(", ")
+    for number, name in enumerate(values[dimension].to_numpy().tolist()):
+        one, unit = values.sel({dimension: name}), units[number % len(units)]
+        if "gear_body" in values.dims:
+            for body in values["gear_body"].to_numpy().tolist():
+                words = {"first": _("the first"), "second": _("the second"), "carrier": _("the carrier")}
+                yield text.format(name=name, body=words[body]), unit, one.sel(gear_body=body).to_numpy()
+        elif not np.isnan(one.to_numpy()).all() or "axis" not in one.dims:
+            yield text.format(name=name), unit, one.to_numpy()
+
+
+def _hinges(found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
+    """Sides of hinges; of two that are action and reaction one, named after both bodies."""
+    points, bodies = found["side_point"].to_numpy(), found["side_link"].to_numpy()
+    values = found["joint_force"].to_numpy()
+    said = {"frame": _("frame")}
+    for point in dict.fromkeys(points.tolist()):
+        sides = np.flatnonzero(points == point)
+        names = [said.get(str(bodies[k]), str(bodies[k])) for k in sides]
+        if len(sides) == 2 and _opposite(values[:, sides[0]], values[:, sides[1]]):
+            yield (
+                _("{point}: {other} on {body}").format(point=point, other=names[1], body=names[0]),
+                "N",
+                values[:, sides[0]],
+            )
+            continue
+        for k, name in zip(sides, names, strict=True):
+            yield _("{point}: pin on {body}").format(point=point, body=name), "N", values[:, k]
+
+
+def _opposite(one: Array, other: Array) -> bool:
+    size = np.nanmax(np.abs(one), initial=0.0)
+    return bool(np.array_equal(np.isnan(one), np.isnan(other))) and bool(
+        np.nanmax(np.abs(one + other), initial=0.0) <= ROUNDING * size
+    )
+
+
+def _number(value: float, noise: float) -> str:
+    return f"{0.0 if abs(value) <= noise else value:.6g}"
+
+
+def _place(mechanism: Mechanism, found: xarray.Dataset, sample: int) -> str:
+    """The drive's value at a sample, or with several drives the time."""
+    if len(mechanism.drives) > 1:
+        return f"{float(found['time'].to_numpy()[sample]):.6g} s"
+    unit = unit_of_value(mechanism, mechanism.drives[0])
+    return value_text(float(found["drive_value"].to_numpy()[sample, 0]), unit, mechanism.display)

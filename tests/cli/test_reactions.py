@@ -1,0 +1,250 @@
+"""`centrode reactions`: what it prints and writes, how it ends; reactions as part of a run."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+
+import centrode as ct
+
+Centrode = Callable[..., Any]
+
+PUSHED = """\
+title = "Pushed"
+[frame.points]
+O = [0, 0]
+[links.OA]
+length = 0.1
+[links.AB]
+length = 0.4
+[links.piston]
+points = ["B"]
+mass = 2
+[[guides]]
+point = "B"
+on = "frame"
+through = "O"
+direction = [1, 0]
+link = "piston"
+[[drives]]
+link = "OA"
+speed = "300 rpm"
+[[loads]]
+kind = "force"
+guide = "B"
+value = "-2 kN"
+[assembly]
+sides = { B = "ahead" }
+"""
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_press(centrode: Centrode, folder: Path) -> None:
+    done = centrode("reactions", "six-bar-press", "--samples", 37, "--out", "result")
+    assert (done.code, done.err) == (0, "")
+    assert done.rows["massless links"] == "OA"
+    assert done.rows["speed of the drive"] == "-6.80678 rad/s, the mean speed of the machine"
+    assert done.rows["samples"] == "37: ok 37"
+    assert "not determined" not in done.rows
+    assert sorted(path.name for path in (folder / "result").iterdir()) == [
+        "joints.csv",
+        "reactions.csv",
+        "reactions.nc",
+    ]
+    expected = ct.reactions(ct.example("six-bar-press"), samples=37)
+    rows = rows_of(folder / "result" / "reactions.csv")
+    for column, values in (
+        ("balancing_OA [N m]", expected.balancing.sel(drive="OA")),
+        ("joint_force_A/AB_x [N]", expected.joint_force.sel(side="A/AB", axis="x")),
+        ("guide_normal_H [N]", expected.guide_normal.sel(guide="H")),
+        ("shaking_moment [N m]", expected.shaking_moment),
+    ):
+        assert [float(row[column]) for row in rows] == values.values.tolist()
+    assert {row["status"] for row in rows} == {"ok"}
+    degrees = [math.degrees(q) for q in expected.drive_value.values[:, 0]]
+    assert [float(row["drive_OA [deg]"]) for row in rows] == pytest.approx(degrees, rel=1e-15)
+    with xr.open_dataset(folder / "result" / "reactions.nc", engine="scipy") as read:
+        assert read.joint_force.values.tolist() == expected.joint_force.values.tolist()
+
+
+def test_the_table_of_joints_of_the_source(centrode: Centrode, folder: Path) -> None:
+    """The coursework's own table, with its two slips put right: link 3 at B and the frame at C."""
+    source = {
+        "1 OA": "1 1 0 0 0 0 0",
+        "2 AB": "0 -1 1 0 0 0 0",
+        "3 CD": "0 0 -1 1 1 0 0",
+        "4 DH": "0 0 0 0 -1 1 0",
+        "5 slider": "0 0 0 0 0 -1 1",
+        "0 frame": "-1 0 0 -1 0 0 -1",
+    }
+    done = centrode("reactions", "six-bar-press", "--samples", 2, "--out", "result")
+    with (folder / "result" / "joints.csv").open(encoding="utf-8", newline="") as file:
+        header, *rows = list(csv.reader(file))
+    assert header == ["link", "O", "A", "B", "C", "D", "H", "guide H"]
+    assert {row[0]: " ".join(row[1:]) for row in rows} == source
+    assert {label: " ".join(text.split()) for label, text in done.rows.items() if label in source} == source
+
+
+def test_hinges_of_several_links_and_wheels_have_columns_of_their_own() -> None:
+    header, rows = ct.joint_table(ct.example("planetary-gear-train"))
+    assert [one for one in header if one.startswith("gear")]
+    table = [[int(cell) for cell in row[1:]] for row in rows]
+    assert all(sorted(column) == [-1, *[0] * (len(rows) - 2), 1] for column in zip(*table, strict=True))
+    header, _rows = ct.joint_table(ct.example("slider-between-cranks"))
+    assert header[1:] == ["O", "A", "C", "B", "D", "guide C"]
+
+
+def test_instants(centrode: Centrode) -> None:
+    done = centrode("reactions", "six-bar-press", "--at", "120 deg", "--at", "2 rad")
+    assert (done.code, done.err) == (0, "")
+    assert "\nat 120 deg\n" in done.out
+    assert "\nat 2 rad\n" in done.out
+    found = ct.reactions(ct.example("six-bar-press"), at=[math.radians(120)])
+    force = found.joint_force.sel(side="A/OA").values[0]
+    row = next(line for line in done.out.splitlines() if line.startswith("A: AB on OA"))
+    x, y, size, direction = (float(cell) for cell in row.split()[-4:])
+    assert (x, y) == (float(f"{force[0]:.6g}"), float(f"{force[1]:.6g}"))
+    assert size == float(f"{math.hypot(*force):.6g}")
+    assert direction == pytest.approx(math.degrees(math.atan2(force[1], force[0])), abs=0.0051)
+
+
+def test_a_dead_point_is_told_in_words(centrode: Centrode, folder: Path) -> None:
+    text = ct.example_text("parallelogram") + '\n[[loads]]\nkind = "force"\npoint = "B"\nvector = [1, 2]\n'
+    (folder / "p.toml").write_text(text)
+    done = centrode("reactions", "p.toml", "--at", "0 deg")
+    assert (done.code, done.err) == (0, "")
+    assert done.rows["samples"] == "1: singular 1"
+    assert "nan" not in done.out
+    line = next(line for line in done.out.splitlines() if line.startswith("drive"))
+    assert line
+    assert [line for line in done.out.splitlines() if "N m" in line and "singular" in line]
+    done = centrode("reactions", "p.toml", "--samples", 9)
+    assert done.code == 0
+    assert "nan" not in done.out
+
+
+def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> None:
+    text = ct.example_text("rolling-wheel-rod") + '\n[[loads]]\nkind = "torque"\nlink = "wheel"\nvalue = 3\n'
+    (folder / "w.toml").write_text(text)
+    done = centrode("reactions", "w.toml", "--samples", 5, "--out", "result")
+    assert done.code == 0, done
+    assert done.rows["not determined"] == "C/wheel, guide C, wheel wheel"
+    assert "nan" not in done.out
+    assert {row["rolling_normal_wheel [N]"] for row in rows_of(folder / "result" / "reactions.csv")} == {""}
+
+
+def test_the_real_speed_of_a_machine(centrode: Centrode) -> None:
+    done = centrode("reactions", "six-bar-press", "--steady", "--samples", 13)
+    assert done.code == 0, done
+    assert done.rows["speed of the drive"].endswith("the real speed of the machine")
+    done = centrode("reactions", "six-bar-press", "--steady", "--from", "0 deg")
+    assert done.code == 2
+    assert "whole cycle" in done.err
+
+
+def test_several_drives_have_a_row_each(centrode: Centrode, folder: Path) -> None:
+    text = ct.example_text("two-link-arm").replace("[links.OA]", "[links.OA]\nmass = 2\nshape = 'rod'")
+    (folder / "arm.toml").write_text(text)
+    done = centrode("reactions", "arm.toml", "--samples", 5)
+    assert done.code == 0, done
+    assert sum(line.startswith("drive ") and " gives " in line for line in done.out.splitlines()) == 2
+    assert "speed of the drive" not in done.rows
+
+
+def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
+    text = ct.example_text("slider-between-cranks-locked")
+    (folder / "locked.toml").write_text(text.replace("[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"))
+    done = centrode("reactions", "locked.toml", "--out", "result")
+    assert done.code == 3
+    assert "not reached" in done.err
+    assert (folder / "result" / "reactions.csv").is_file()
+    assert "nan" not in done.out
+
+
+@pytest.mark.parametrize(
+    ("change", "arguments", "reason"),
+    [
+        (("mass = 2\n", "mass = -2\n"), (), "mass must not be negative"),
+        (("length = 0.4", "length = 0.4\nmass = 1"), (), "no moment of inertia"),
+        (('value = "-2 kN"', 'value = "-2 m"'), (), "value"),
+        (
+            ('kind = "force"\nguide = "B"', 'kind = "friction"\nguide = "B"'),
+            (),
+            "value must not be negative",
+        ),
+        (("", ""), ("--samples", "0"), "samples"),
+        (("", ""), ("--samples", "999999"), "ask for at most"),
+        (("", ""), ("--at", "3 m"), "--at"),
+        (("", ""), ("--at", "x"), "--at"),
+        (("", ""), ("--at", "1 rad", "--samples", "5"), "take one of the two out"),
+        (("", ""), ("--at", "1 rad") * 101, "101 instants"),
+        (("", ""), ("--from", "nan"), "--from"),
+        (("", ""), ("--steady",), "[machine]"),
+    ],
+)
+def test_wrong_input_ends_with_2(
+    centrode: Centrode, folder: Path, change: tuple[str, str], arguments: tuple[str, ...], reason: str
+) -> None:
+    (folder / "m.toml").write_text(PUSHED.replace(*change) if change[0] else PUSHED)
+    done = centrode("reactions", "m.toml", *arguments, "--out", "result")
+    assert done.code == 2, done
+    assert reason in done.err
+    assert "Traceback" not in done.err
+    assert not (folder / "result").exists()
+
+
+def test_a_mechanism_without_masses_and_loads_is_refused(centrode: Centrode) -> None:
+    done = centrode("reactions", "crank-rocker")
+    assert done.code == 2
+    assert "neither masses nor loads" in done.err
+    assert "give links a mass" in done.err
+
+
+def test_the_sphere_is_refused(centrode: Centrode) -> None:
+    done = centrode("reactions", "spherical-four-bar")
+    assert done.code == 2
+    assert "on the sphere are not computed yet" in done.err
+
+
+def test_a_run_writes_reactions(centrode: Centrode, folder: Path) -> None:
+    (folder / "m.toml").write_text(PUSHED)
+    done = centrode("run", "m.toml", "--out", "r", "--samples", 5, "--no-figures")
+    assert (done.code, done.err) == (0, "")
+    assert done.rows["greatest joint force"].startswith("O/OA: 2148.04 N at")
+    assert {"joints.csv", "reactions.csv", "reactions.nc"} <= {path.name for path in (folder / "r").iterdir()}
+    assert len(rows_of(folder / "r" / "reactions.csv")) == 5
+
+
+def test_a_run_says_why_reactions_are_left_out(centrode: Centrode, folder: Path) -> None:
+    """Masses that are not complete do not hinder the motion."""
+    (folder / "m.toml").write_text(PUSHED.replace("length = 0.4", "length = 0.4\nmass = 1"))
+    done = centrode("run", "m.toml", "--out", "r", "--samples", 5, "--no-figures")
+    assert (done.code, done.err) == (0, "")
+    assert "note: reactions are left out: [links.AB]: it has a mass and turns" in done.out
+    assert not (folder / "r" / "reactions.csv").exists()
+    done = centrode("run", "crank-rocker", "--out", "s", "--samples", 5, "--no-figures")
+    assert "reactions" not in done.out
+    assert not (folder / "s" / "reactions.csv").exists()
+
+
+def test_friction_by_a_coefficient_and_plain_sums_are_refused(centrode: Centrode, folder: Path) -> None:
+    example = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
+    link = list(ct.example("crank-rocker").links)[-1]
+    for keys, message in (
+        ("coefficient = 0.1", "friction by a coefficient needs the reactions"),
+        ('quadratic = 0.1\nform = "plain sum"', "a plain sum is no moment in a hinge"),
+    ):
+        (folder / "r.toml").write_text(example.replace('"DB"', f'"{link}"') + keys + "\n")
+        done = centrode("reactions", "r.toml")
+        assert done.code == 2
+        assert message in done.err

@@ -1,0 +1,175 @@
+"""Reactions of random mechanisms: equilibrium of every body, sums of the frame, virtual work, gradients."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import centrode as ct
+from burdened import burdened
+from centrode.dynamics.kinetostatics.scheme import Scheme
+from centrode.dynamics.reducer import Burden
+from centrode.dynamics.states import Moving, State
+from centrode.kinematics.ready import ready
+from centrode.kinematics.solve import asked_span, solve
+from growing import KINDS, descriptions, grown, mechanism_of
+from growing_higher import HIGHER, grown_higher
+from mechanisms import EPS
+from newton_euler import FRAME, Balance, dot, vector
+
+Array = npt.NDArray[np.float64]
+WIDTH = 0.3
+OPERATIONS = 256
+"""Roundings in one sum of forces, with those of the sines of turned directions and of accelerations."""
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def asked(
+    parts: dict[str, Any], seed: int, speed: float = -1.7
+) -> tuple[ct.Mechanism, xr.Dataset, xr.Dataset]:
+    """A burdened mechanism with its motion and its reactions near the initial position."""
+    parts = burdened(parts, seed)
+    parts["drives"][0]["speed"] = speed
+    mechanism = mechanism_of(parts)
+    initial = ready(mechanism).kinematics.path.initial
+    ends: Any = {"samples": 7, "start": initial - WIDTH, "stop": initial + WIDTH}
+    return mechanism, ct.motion(mechanism, **ends), ct.reactions(mechanism, **ends)
+
+
+def bound(mechanism: ct.Mechanism, balance: Balance) -> Array:
+    """What rounding may leave of a sum of forces: of each summand, and of accelerations."""
+    return OPERATIONS * size_of(mechanism) * EPS * balance.greatest()
+
+
+def size_of(mechanism: ct.Mechanism) -> int:
+    """Number of equations."""
+    return Scheme.of(ready(mechanism).structure).size
+
+
+def condition_of(found: xr.Dataset, mechanism: ct.Mechanism) -> Array:
+    """Condition numbers: `reaction_loss` is their square times the number of equations times EPS."""
+    return np.asarray(np.sqrt(found.reaction_loss.to_numpy() / (size_of(mechanism) * EPS)))
+
+
+def worst_condition(found: xr.Dataset, mechanism: ct.Mechanism) -> float:
+    return float(np.max(condition_of(found, mechanism)[found.reaction_status.to_numpy() == 0]))
+
+
+def check(parts: dict[str, Any], seed: int) -> int:
+    """Everything that holds of one random mechanism; how many samples had reactions."""
+    mechanism, motion, found = asked(parts, seed)
+    good = found.reaction_status.to_numpy() == 0
+    assert np.isfinite(found.joint_force.to_numpy()[good]).all() or found.attrs["undetermined"]
+    assert not np.isfinite(found.joint_force.to_numpy()[found.reaction_status.to_numpy() == 3]).any()
+    if not good.any():
+        return 0
+    for residual in ("equilibrium_residual", "frame_residual", "power_residual"):
+        assert (
+            found.attrs[residual] <= OPERATIONS * size_of(mechanism) * worst_condition(found, mechanism) * EPS
+        )
+    if found.attrs["undetermined"]:
+        return 0
+    with np.errstate(all="ignore"):
+        balance, outer = Balance.of(mechanism, motion, found), Balance.of_outer(mechanism, motion, found)
+        limit = bound(mechanism, balance)
+    in_equilibrium(balance, good, limit)
+    frame_bears_the_rest(balance, outer, good, limit)
+    equals_virtual_work(mechanism, found, good)
+    return int(good.sum())
+
+
+def in_equilibrium(balance: Balance, good: Array, limit: Array) -> None:
+    for body in balance.acting:
+        if body == FRAME:
+            continue
+        force, moment = balance.missing(body)
+        assert (abs(force) <= limit)[good].all(), body
+        if not body.startswith("pin"):
+            assert (abs(moment) <= limit)[good].all(), body
+
+
+def frame_bears_the_rest(balance: Balance, outer: Balance, good: Array, limit: Array) -> None:
+    """The frame bears what acts on it, which is all loads less the rates of momentum and of its moment."""
+    force, moment = balance.missing(FRAME) if FRAME in balance.acting else (0.0, 0.0)
+    assert (abs(vector(balance.found.frame_force) - force) <= limit)[good].all()
+    assert (abs(balance.found.frame_moment.to_numpy() - moment) <= limit)[good].all()
+    sums = [outer.missing(body) for body in outer.acting]
+    assert (abs(vector(balance.found.frame_force) - sum(f for f, _m in sums)) <= limit)[good].all()
+    assert (abs(balance.found.frame_moment.to_numpy() - sum(m for _f, m in sums)) <= limit)[good].all()
+
+
+def equals_virtual_work(mechanism: ct.Mechanism, found: xr.Dataset, good: Array) -> None:
+    """J q'' + J' q'^2 / 2 - M, to the rounding that the conditioning of the equations leaves."""
+    ends = found.drive_value.to_numpy()[:, 0]
+    reduced = ct.reduce(mechanism, len(ends), float(ends[0]), float(ends[-1]))
+    rate = reduced.drive_rate.to_numpy()
+    wanted = reduced.reduced_inertia_slope.to_numpy() * rate**2 / 2 - reduced.reduced_moment.to_numpy()
+    size, condition = size_of(mechanism), condition_of(found, mechanism)
+    greatest = np.max(abs(found.joint_force.to_numpy()), axis=(1, 2)) * max(scale_of(mechanism), 1.0)
+    greatest = np.maximum(greatest, abs(wanted))
+    difference = abs(found.balancing.to_numpy()[:, 0] - wanted)
+    assert (difference <= OPERATIONS * size * EPS * condition * greatest)[good].all()
+
+
+def scale_of(mechanism: ct.Mechanism) -> float:
+    return float(ready(mechanism).structure.dimensions.scale)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(3))
+def test_every_kind_of_group(kind: str, seed: int) -> None:
+    assert check(grown(["RRR", kind], seed), seed + 100) >= 1
+
+
+@settings(max_examples=15, deadline=None)
+@given(descriptions(), SEEDS)
+def test_random_mechanisms(parts: dict[str, Any], seed: int) -> None:
+    check(parts, seed)
+
+
+@pytest.mark.parametrize("kind", HIGHER)
+def test_groups_of_higher_class(kind: str) -> None:
+    assert check(grown_higher([kind], 5), 7) >= 1
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_pulls_of_a_coordinate_do_its_slope(seed: int) -> None:
+    """Forces of one unit along a coordinate, times the velocities of what they act on, are its derivative."""
+    kinds = [KINDS[(seed + k) % len(KINDS)] for k in range(3)]
+    mechanism = mechanism_of(burdened(grown(kinds, seed), seed))
+    prepared = ready(mechanism)
+    initial = prepared.kinematics.path.initial
+    solved = solve(prepared, asked_span(prepared, 5, initial - 0.05, initial + 0.05))
+    span = solved.span
+    state = State.of(solved, Moving(span.time, span.parameter, span.rate))
+    for load in Burden.of(mechanism).loads:
+        for effort in load.efforts:
+            done: Any = 0.0
+            size: Any = 0.0
+            for pull in effort.coordinate.pulls(state):
+                velocity, omega = velocities(state, pull)
+                force = pull.force[0] + 1j * pull.force[1]
+                done = done + dot(force + 0j * velocity, velocity) + pull.moment * omega
+                size = size + abs(force) * abs(velocity) + abs(pull.moment * omega)
+            slope = effort.coordinate.slope(state).value
+            wrong = abs(done - slope) > OPERATIONS * EPS * (size + state.scale)
+            assert not np.any(wrong & np.isfinite(slope)), load.label
+
+
+def velocities(state: State, pull: Any) -> tuple[Any, Any]:
+    """Velocity of the place where a pull acts, as one of its body, and the body's angular velocity."""
+    if pull.body.kind == "point":
+        x, y = state.point(pull.body.name)
+        return x.derivative(1) + 1j * y.derivative(1), 0.0
+    if pull.body.name == FRAME:
+        return 0.0 * np.asarray(pull.at[0] + 0j), 0.0
+    x, y = state.point(next(iter(state.mechanism.links[pull.body.name].coordinates)))
+    omega = state.angle(pull.body.name).derivative(1)
+    arm = pull.at[0] - x.value + 1j * (pull.at[1] - y.value)
+    return x.derivative(1) + 1j * y.derivative(1) + 1j * omega * arm, omega
