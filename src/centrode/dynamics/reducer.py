@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import copysign
 from typing import Any, TypeAlias
@@ -168,15 +169,22 @@ class Reducer:
         values = np.atleast_1d(np.asarray(values, dtype=np.float64))
         return reduced(self.burden, *self._state(values, self.moving(values, rate, time), side))
 
-    def jumps(self, first: float, last: float) -> Array:
-        """Values of the drive, in increasing order, at which loads jump or have a kink, between two values."""
+    def jumps(self, first: float, last: float, loads: Sequence[Acting] | None = None) -> Array:
+        """Values of the drive, in increasing order, at which loads jump or have a kink, between two values.
+
+        Of all loads where none are given.
+        """
         low, high = min(first, last), max(first, last)
         if not np.isfinite([low, high]).all():
             raise InputError("jumps", _("the range must be finite"))
         mesh = self._along(np.array([low, high])).mesh
         inner = mesh[(mesh > low) & (mesh < high)]
         nodes = np.concatenate([[low], inner, [high]]) if high > low else np.array([low])
-        return jumps_of(self.burden.loads, lambda x: self._state(x, _sense_only(self, x), 0)[0], nodes)
+        return jumps_of(
+            self.burden.loads if loads is None else loads,
+            lambda x: self._state(x, _sense_only(self, x), 0)[0],
+            nodes,
+        )
 
     @property
     def default_rate(self) -> float | None:
