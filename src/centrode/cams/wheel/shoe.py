@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from centrode.algebra.jets import Jet, quotient
-from centrode.cams.closing import Arc
+from centrode.cams.closed.arcs import Arc
 from centrode.cams.frames import JETS, Array, radius_jet
 from centrode.cams.path import SymmetricPath
 from centrode.cams.searching import extremes

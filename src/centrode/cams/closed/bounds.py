@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from centrode.cams.closed.curves import ReturnCurve
 from centrode.cams.frames import Array, Frames, frames
-from centrode.cams.return_curves import ReturnCurve
 from centrode.cams.searching import Extremes, extremes
 from centrode.errors import InputError
 from centrode.locale import _

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import linprog, minimize
 
-from centrode.cams.bounded import MOST, Bounds
+from centrode.cams.closed.bounds import MOST, Bounds
+from centrode.cams.closed.curves import Ends, ReturnCurve, derivatives
 from centrode.cams.frames import Array
-from centrode.cams.return_curves import Ends, ReturnCurve, derivatives
 
 NODES = 181
 SLACK = 1e-6

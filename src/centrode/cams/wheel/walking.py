@@ -14,10 +14,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from centrode.cams.closing import Arc, ClosedPath
+from centrode.cams.closed.arcs import Arc, ClosedPath
 from centrode.cams.frames import Array
 from centrode.cams.searching import Extremes, extremes
-from centrode.cams.shoe import Shoe, shoe
+from centrode.cams.wheel.shoe import Shoe, shoe
 from centrode.dynamics.quadrature import Panels, Series
 from centrode.errors import InputError
 from centrode.locale import _

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from centrode.cams.bounded import MOST, Bounds, Margins, bends, sizes, slants
-from centrode.cams.closing import Arc, ClosedPath
-from centrode.cams.frames import Array, frames
-from centrode.cams.return_curves import Ends, ReturnCurve, roughness
-from centrode.cams.return_search import Search
+from centrode.cams.closed.arcs import Arc, ClosedPath
+from centrode.cams.closed.bounds import MOST, Bounds, Margins, bends, sizes, slants
+from centrode.cams.closed.curves import Ends, ReturnCurve, roughness
+from centrode.cams.closed.search import Search
+from centrode.cams.frames import frames
 from centrode.cams.searching import Extremes
 from centrode.errors import InputError, MotionError
 from centrode.locale import _

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from centrode.cams.frames import Array
-from centrode.cams.walking import Mover, quadrature_panels
+from centrode.cams.wheel.walking import Mover, quadrature_panels
 from centrode.dynamics.quadrature import NODES
 
 SAMPLES = 181
