@@ -23,6 +23,7 @@ from centrode.cams.profiles.equidistants import (
     signed,
     undercut,
 )
+from centrode.cams.searching import roots
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam_parts import Return
@@ -59,8 +60,10 @@ class CamBody:
 
     @cached_property
     def undercuts(self) -> list[Undercut]:
-        """Where the roller cuts the profile away."""
-        return undercut(self.closed, self.closed.edges, self.roller)
+        """Where the roller cuts the profile away: where it is bent too much, and at outward corners."""
+        found = undercut(self.closed, self.closed.edges, self.roller)
+        corners = [self._corner(number) for number in range(len(self.closed.joints))]
+        return sorted([*found, *(one for one in corners if one is not None)], key=lambda one: one.start)
 
     @cached_property
     def greatest_roller(self) -> tuple[float, float]:
@@ -72,6 +75,23 @@ class CamBody:
         """The same for a groove, whose outer wall has its own hollows."""
         inner, outer = self.greatest_roller, greatest_roller(self.closed, self.closed.edges, "outer")
         return min(inner, outer)
+
+    def _corner(self, number: int) -> Undercut | None:
+        """The stretch about an outward corner of mirror images that the roller does not follow; None elsewhere.
+
+        The profiles before and behind the corner meet on the ray to it.
+        """
+        joint, arc = self.closed.joints[number], self.closed.arcs[number]
+        if self.returned is not None or len(self.closed.arcs) == 1 or joint.kink > -CLOSED:
+            return None
+
+        def beyond(phi: Array) -> Array:
+            off = equidistant(frames(arc.curve, phi), signed(self.roller, "inner"))
+            return np.asarray(off.polar_angle - joint.at)
+
+        inner = roots(beyond, arc.edges)
+        start = inner[-1] if inner else arc.start
+        return Undercut(start, 2.0 * joint.at - start)
 
     @property
     def kinks(self) -> tuple[Joint, ...]:
