@@ -68,7 +68,7 @@ def cam(
         if "body" in results.objects and not _DXF:
             click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
     if results.failures:
-        raise MotionError(cam, "; ".join(results.failures), _("end the range before that angle"))
+        raise MotionError(cam, "; ".join(results.failures))
 
 
 def _text(part: CamPart) -> str:
