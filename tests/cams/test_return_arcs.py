@@ -180,7 +180,7 @@ def test_mirror_images_that_do_not_close_are_refused_with_the_nearest_that_does(
 
 
 def test_a_path_that_is_too_short_is_refused() -> None:
-    with pytest.raises(InputError, match="the working arc goes to 100 deg, the path to 90 deg"):
+    with pytest.raises(InputError, match="the working arc goes from -100 to 100 deg, the path from -90 to 90 deg"):
         working_arc(paper_path(), half=math.radians(100))
 
 
