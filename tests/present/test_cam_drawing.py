@@ -54,11 +54,7 @@ def test_curves_are_those_of_the_dataset_and_the_stall_is_marked() -> None:
     long = cam(range={"to": math.pi})
     data = ct.cam(long, samples=61)
     figure = ct.cam_curves_figure(long, data)
-    assert [axes.get_ylabel() for axes in figure.axes] == [
-        r"$\rho$, mm",
-        r"$\gamma$, deg",
-        "$K$, 1/mm",
-    ] or len(figure.axes) == 3
+    assert [axes.get_ylabel().partition(", ")[2] for axes in figure.axes] == ["mm", "deg", "1/mm"]
     curves = [line for line in lines(figure) if len(line) == 61]
     for curve, name, factor in zip(
         curves,
@@ -88,7 +84,7 @@ def test_differences_are_drawn_with_the_circle_of_convergence() -> None:
     )
 
 
-def test_symmetric_paths_and_dark_ground(tmp_path: object) -> None:
+def test_symmetric_paths_and_dark_ground() -> None:
     both = cam(curvature={"law": "exponential", "k0": 10, "k1": 0.75, "symmetric": True})
     data = ct.cam(both, samples=121)
     figures = ct.cam_figures(both, {"cam-path": data, "cam-routes": ct.cam_routes(both, samples=61)})
