@@ -117,4 +117,4 @@ def varied(cam: Cam, values: Mapping[str, float]) -> Cam:
         if not isinstance(tables.get(table), dict) or not key:
             raise InputError("", _("the cam has no {name}").format(name=shown(path)), nearest(path, tables))
         tables[table][key] = value
-    return Cam.model_validate(tables)
+    return Cam(**tables)

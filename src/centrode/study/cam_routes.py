@@ -69,7 +69,9 @@ def _reach(cam: Cam, found: xr.Dataset) -> str:
     """How far the series converges, and how that is known."""
     units, told = Units(cam), found.attrs
     radius, estimate = told["radius_of_convergence"], told["radius_by_coefficients"]
-    if not math.isfinite(radius):
+    if math.isnan(radius):
+        return _("how far it converges is not known: its coefficients leave the range of numbers")
+    if math.isinf(radius):
         return _("it ends by itself: its coefficients vanish, it converges everywhere")
     x, y = told["singularity"]
     if not math.isfinite(x):
@@ -103,7 +105,7 @@ def _stalls(cam: Cam, found: xr.Dataset) -> Rows:
     if not math.isfinite(told["stall"]):
         return []
     apart = abs(told["stall"] - told["stall_integrated"])
-    return [(_("stall"), _("(b) and (c) find it {apart:.1e} rad apart").format(apart=apart))]
+    return [(_("stall by two routes"), _("(b) and (c) find it {apart:.1e} rad apart").format(apart=apart))]
 
 
 def _scalars(found: xr.Dataset) -> dict[str, Scalar]:
