@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -118,6 +119,12 @@ def cam_body(cam: Cam) -> CamBody:
     MotionError
         No return arc within the bounds was found.
     """
+    return _body(cam)
+
+
+@functools.lru_cache(maxsize=16)
+def _body(cam: Cam) -> CamBody:
+    """What a search may have gone into is kept for whoever asks for the same cam next."""
     if cam.roller is None:
         raise InputError("[roller]", _("a profile needs a roller"), _("give [roller] radius"))
     path, asked = path_of(cam), cam.return_arc or Return()
