@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cam_shapes import EPS, Limacon, paper_path, three_point_curvature
-from centrode.cams.closed.arcs import working_arc
+from centrode.cams.closed.arcs import Arc, ClosedPath, working_arc
 from centrode.cams.closed.designing import designed
 from centrode.cams.frames import frames
 from centrode.cams.path import CirclePath
@@ -147,6 +147,20 @@ def test_a_roller_larger_than_the_hollow_of_a_groove_is_refused_with_the_greates
     assert convex < hollow
     with pytest.raises(InputError, match="undercuts"):
         fitting(curve, edges, convex * 1.01, "inner")
+
+
+def test_a_roller_that_overlaps_the_cam_across_a_waist_is_found() -> None:
+    # at the waist the path is 2 x 12 mm wide: a roller of 15 mm overlaps the profile of the other side by 6 mm
+    arc = Arc("working", Limacon(0.04, 0.028, 2), -math.pi, math.pi)
+    body = CamBody(ClosedPath((arc,)), 0.015)
+    assert body.undercuts == []
+    depth, at = body.overlap
+    # the deepest place is at the waist or beside it
+    assert depth >= 0.006 - 1e-6
+    assert abs(abs(at) - math.pi / 2) < 0.5
+    assert CamBody(ClosedPath((arc,)), 0.008).overlap == (0.0, 0.0)
+    closed = designed(working_arc(paper_path(), legs=4)).closed
+    assert CamBody(closed, ROLLER).overlap == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("radius", [0.0, -0.01, math.nan, math.inf])
