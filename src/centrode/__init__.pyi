@@ -17,8 +17,17 @@ from .model.placing import replace_placed as replace_placed
 
 from .model.schema import mechanism_schema as mechanism_schema
 
+# The description of a cam
+from .model.cams import Cam as Cam
+from .model.cams import varied as varied
+from .model.cam_files import read_cam as read_cam
+from .model.cam_files import parse_cam as parse_cam
+from .model.cam_files import cam_text as cam_text
+from .model.cam_schema import cam_schema as cam_schema
+
 # Built-in mechanisms and classics
 from .model.examples.loading import load as load
+from .model.examples.loading import load_cam as load_cam
 from .model.examples.loading import example as example
 from .model.examples import example_names as example_names
 from .model.examples import example_text as example_text
@@ -114,6 +123,35 @@ from .study.balancing import balance_steps as balance_steps
 from .present import balance_figures as balance_figures
 from .present import write_balance_csv as write_balance_csv
 from .present import write_harmonics_csv as write_harmonics_csv
+
+# Cams
+from .cams.labelled import cam as cam
+from .cams.comparison import cam_routes as cam_routes
+from .cams.described import path_of as path_of
+from .study.cam_results import cam_results as cam_results
+from .present import write_cam_csv as write_cam_csv
+from .present import write_cam_routes_csv as write_cam_routes_csv
+from .present import write_cam_tables as write_cam_tables
+from .present import cam_path_figure as cam_path_figure
+from .present import cam_curves_figure as cam_curves_figure
+from .present import cam_routes_figure as cam_routes_figure
+from .present import cam_figures as cam_figures
+
+# Profiles of cams, walking wheels
+from .cams.profiles.tables import cam_profile as cam_profile
+from .cams.profiles.tables import shoe_profile as shoe_profile
+from .cams.profiles.tables import walking_wheel as walking_wheel
+from .cams.profiles.bodies import cam_body as cam_body
+from .cams.profiles.outlines import cam_outlines as cam_outlines
+from .cams.profiles.outlines import shoe_outlines as shoe_outlines
+from .cams.wheel.rolling import rolling as rolling
+from .present import write_profile_csv as write_profile_csv
+from .present import write_outlines_svg as write_outlines_svg
+from .present import write_outlines_dxf as write_outlines_dxf
+from .present import write_cam_outlines as write_cam_outlines
+from .present import profile_figure as profile_figure
+from .present import walking_figure as walking_figure
+from .present import cam_body_figures as cam_body_figures
 
 # Equations in symbols
 from .equations.derivation import equations as equations

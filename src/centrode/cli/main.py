@@ -17,6 +17,7 @@ import click
 import centrode as ct
 from centrode.cli.angles import angles
 from centrode.cli.balance import balance
+from centrode.cli.cam import cam
 from centrode.cli.centres import centres
 from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
@@ -58,6 +59,7 @@ COMMANDS: tuple[click.Command, ...] = (
     flywheel,
     simulate,
     balance,
+    cam,
     centres,
     centrodes,
     diagrams,

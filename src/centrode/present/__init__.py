@@ -15,6 +15,14 @@ from centrode.locale import _
 if TYPE_CHECKING:
     from centrode.present.balance_figures import balance_figures
     from centrode.present.balance_tables import write_balance_csv, write_harmonics_csv
+    from centrode.present.cam_bodies import cam_body_figures
+    from centrode.present.cam_drawing import (
+        cam_curves_figure,
+        cam_figures,
+        cam_path_figure,
+        cam_routes_figure,
+    )
+    from centrode.present.cam_tables import write_cam_csv, write_cam_routes_csv, write_cam_tables
     from centrode.present.centres import centres_figure
     from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
     from centrode.present.centrodes import animate_centrodes, centrodes_figure
@@ -29,8 +37,13 @@ if TYPE_CHECKING:
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
     from centrode.present.machine_figures import machine_figures
+    from centrode.present.outline_dxf import write_outlines_dxf
+    from centrode.present.outline_files import write_cam_outlines
+    from centrode.present.outline_svg import write_outlines_svg
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.polygon_drawing import polygon_figures
+    from centrode.present.profile_drawing import profile_figure
+    from centrode.present.profile_tables import write_profile_csv
     from centrode.present.reaction_figures import reaction_figures
     from centrode.present.reaction_tables import write_joint_table_csv, write_reactions_csv
     from centrode.present.reading import scene_of
@@ -44,10 +57,16 @@ if TYPE_CHECKING:
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
     from centrode.present.variant_folders import write_variants
+    from centrode.present.walking_drawing import walking_figure
 
 __all__ = [
     "animate_centrodes",
     "balance_figures",
+    "cam_body_figures",
+    "cam_curves_figure",
+    "cam_figures",
+    "cam_path_figure",
+    "cam_routes_figure",
     "centres_figure",
     "centrodes_figure",
     "curvature_figure",
@@ -66,6 +85,7 @@ __all__ = [
     "reduction_figures",
     "plan_figure",
     "polygon_figures",
+    "profile_figure",
     "region_figure",
     "save_figures",
     "scene_of",
@@ -73,9 +93,17 @@ __all__ = [
     "sweep_csv",
     "write_balance_csv",
     "write_harmonics_csv",
+    "write_cam_csv",
+    "write_cam_routes_csv",
+    "write_cam_tables",
     "write_centres_csv",
     "write_centrodes_csv",
     "transmission_figure",
+    "walking_figure",
+    "write_cam_outlines",
+    "write_outlines_dxf",
+    "write_outlines_svg",
+    "write_profile_csv",
     "write_coefficients_csv",
     "write_integration_csv",
     "write_joint_table_csv",
@@ -92,6 +120,9 @@ _attached, __dir__, _names = lazy_loader.attach(
     submod_attrs={
         "balance_figures": ["balance_figures"],
         "balance_tables": ["write_balance_csv", "write_harmonics_csv"],
+        "cam_bodies": ["cam_body_figures"],
+        "cam_drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
+        "cam_tables": ["write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "centrodes": ["animate_centrodes", "centrodes_figure"],
@@ -104,7 +135,12 @@ _attached, __dir__, _names = lazy_loader.attach(
         "figures": ["motion_figures"],
         "machine_figures": ["machine_figures"],
         "instant_drawing": ["diagram_figures"],
+        "outline_dxf": ["write_outlines_dxf"],
+        "outline_files": ["write_cam_outlines"],
+        "outline_svg": ["write_outlines_svg"],
         "plan_drawing": ["plan_figure"],
+        "profile_drawing": ["profile_figure"],
+        "profile_tables": ["write_profile_csv"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
         "polygon_drawing": ["polygon_figures"],
@@ -121,6 +157,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],
         "variant_folders": ["write_variants"],
+        "walking_drawing": ["walking_figure"],
     },
 )
 
