@@ -1,0 +1,33 @@
+"""What every route asks of the start of a path."""
+
+from __future__ import annotations
+
+import math
+
+from centrode.errors import InputError
+from centrode.locale import _
+
+GREATEST_RANGE = 20 * math.pi
+"""Ten turns either way."""
+
+STEEPEST = math.radians(89.0)
+
+
+def check_start(rho0: float, gamma0: float, start: float, stop: float) -> None:
+    """Raise InputError for a start that no path has: radius, pressure angle and range."""
+    if not all(math.isfinite(number) for number in (rho0, gamma0, start, stop)):
+        raise InputError("[start]", _("finite numbers are needed"), _("correct them"))
+    if rho0 <= 0:
+        what = _("the radius at the start has to be positive, got {value:g} m").format(value=rho0)
+        raise InputError("[start] radius", what)
+    if abs(gamma0) > STEEPEST:
+        what = _("the pressure angle at the start has to lie within 89 deg, got {angle:.6g} deg")
+        told = what.format(angle=math.degrees(gamma0))
+        raise InputError("[start] pressure_angle", told, _("at 90 deg the follower stalls"))
+    if not start <= 0.0 <= stop or start == stop:
+        what = _("the range has to hold the start phi = 0, got {start:.6g} to {stop:.6g} deg")
+        told = what.format(start=math.degrees(start), stop=math.degrees(stop))
+        raise InputError("[range]", told, _('write [range] with "from" not above 0 and "to" not below'))
+    if stop - start > GREATEST_RANGE:
+        what = _("the range is longer than {turns:g} turns").format(turns=GREATEST_RANGE / math.tau)
+        raise InputError("[range]", what, _("shorten it"))
