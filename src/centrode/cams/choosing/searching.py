@@ -91,7 +91,7 @@ def kkt_residual(problem: Problem, share: Array) -> tuple[float, dict[str, float
         if name in held:
             held[name] += float(weight)
     own = max(float(np.linalg.norm(slopes[problem.best], axis=1).max()), np.finfo(float).tiny)
-    return float(miss) / max(own, 1.0), {name: weight / top for name, weight in held.items()}
+    return float(miss) / max(own, 1.0), {name: float(weight / abs(top)) for name, weight in held.items()}
 
 
 def _run(problem: Problem, start: Array, elastic: bool) -> Array:

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,7 +87,7 @@ class Mesh:
             for first, last in zip([0.0, *inner], [*inner, end], strict=True):
                 count = math.ceil(abs(last - first) / PANEL)
                 cuts = np.linspace(first, last, count + 1).tolist()
-                found += list(zip(cuts[:-1], cuts[1:], strict=True)) if count else []
+                found += list(pairwise(cuts)) if count else []
         return found
 
 
@@ -118,7 +119,7 @@ def _starts(trials: Sequence[Trial]) -> Array:
 
 
 def _solved(start: Array, curvature: Array, length: float) -> tuple[Array, Array]:
-    """ln rho and gamma (nodes, designs) over a panel, from their values at its beginning."""
+    """Logarithm of rho, and gamma (nodes, designs) over a panel, from their values at its beginning."""
     matrix = length * _integration()
     u = np.broadcast_to(start[0], curvature.shape)
     gamma = np.broadcast_to(start[1], curvature.shape)

@@ -1,0 +1,88 @@
+"""Animations: pictures that a drawing function makes one after the other, as one GIF that runs on and on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from PIL import Image
+
+from centrode.present.dark import darkened
+from centrode.present.style import house_style
+
+Array = NDArray[np.float64]
+
+MILLISECONDS = 70
+"""A frame is shown so long."""
+SCREEN_DPI = 90
+COLOURS = 256
+SAMPLES = 6
+"""Frames that the colours of all frames are taken from."""
+
+
+def no_progress(_done: int, _of: int) -> None:
+    """Say nothing."""
+
+
+def loop_places(start: float, period: float, frames: int) -> Array:
+    """Places of the frames of a loop: evenly over a period, without its end, which is the beginning again."""
+    return np.asarray(start + period * np.arange(frames) / frames)
+
+
+def write_animation(
+    path: Path,
+    draw: Callable[[Any], Figure],
+    places: Sequence[Any] | Array,
+    *,
+    milliseconds: int = MILLISECONDS,
+    dark: bool = False,
+    said: Callable[[int, int], None] = no_progress,
+) -> None:
+    """Write an animation (GIF) that starts over at its end; the same pictures give the same bytes.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    draw : callable
+        A figure of a place; all of them of one size. It is called in the house style.
+    places : sequence
+        What `draw` is called with, frame by frame. A loop is without a jump where the picture of the place after
+        the last one is the first picture.
+    milliseconds : int
+        How long a frame is shown.
+    dark : bool
+        Light lines on a dark ground.
+    said : callable
+        Told after each frame how many are done, and of how many.
+    """
+    frames = []
+    with house_style():
+        for number, place in enumerate(places, start=1):
+            frames.append(_picture(draw(place), dark))
+            said(number, len(places))
+    palette = _palette(frames)
+    shown = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    shown[0].save(path, save_all=True, append_images=shown[1:], duration=milliseconds, loop=0)
+
+
+def _picture(figure: Figure, dark: bool) -> Image.Image:
+    figure.set_dpi(SCREEN_DPI)
+    canvas: Any = FigureCanvasAgg(darkened(figure) if dark else figure)
+    canvas.draw()
+    return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+
+
+def _palette(frames: Sequence[Image.Image]) -> Image.Image:
+    """One palette for all frames, so that no colour flickers."""
+    chosen = np.unique(np.linspace(0, len(frames) - 1, SAMPLES).astype(int))
+    width, height = frames[0].size
+    sheet = Image.new("RGB", (width, height * len(chosen)))
+    for row, number in enumerate(chosen):
+        sheet.paste(frames[number], (0, row * height))
+    return sheet.quantize(COLOURS, dither=Image.Dither.NONE)
