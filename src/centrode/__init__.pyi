@@ -17,8 +17,16 @@ from .model.placing import replace_placed as replace_placed
 
 from .model.schema import mechanism_schema as mechanism_schema
 
+# The description of a cam
+from .model.cams import Cam as Cam
+from .model.cams import varied as varied
+from .model.cam_files import read_cam as read_cam
+from .model.cam_files import parse_cam as parse_cam
+from .model.cam_files import cam_text as cam_text
+
 # Built-in mechanisms and classics
 from .model.examples.loading import load as load
+from .model.examples.loading import load_cam as load_cam
 from .model.examples.loading import example as example
 from .model.examples import example_names as example_names
 from .model.examples import example_text as example_text

@@ -50,7 +50,7 @@ class RollerPath(Protocol):
         """The radius and its derivatives by phi (order + 1, n) [m/rad^k]; NaN outside `start` to `stop`."""
 
     def sine(self, phi: Array, order: int = 0) -> Array:
-        """The sine of the pressure angle, eta = sin(gamma),, gamma the pressure angle, and its derivatives (order + 1, n) [1/rad^k]."""
+        """The sine eta of the pressure angle and its derivatives (order + 1, n) [1/rad^k]."""
 
     def pressure_angle(self, phi: Array) -> Array:
         """The pressure angle (n) [rad], tan(gamma) = rho'/rho: positive where the follower rises."""
