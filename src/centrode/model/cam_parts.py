@@ -40,6 +40,7 @@ MOST_TERMS = 2000
 
 MOST_LEGS = 24
 MINIMISED = ("size", "stress", "pressure_angle")
+MEASURED = (*MINIMISED, "lift", "gap")
 
 
 class Curvature(Part):
@@ -173,6 +174,8 @@ class Contact(Part):
         `roller` is of the cam's material if left out.
     admissible : float [Pa]
         Greatest contact stress.
+    outer : bool
+        The roller leans on the outer wall of a groove.
     """
 
     force: Annotated[float, quantity("force", positive)]
@@ -180,6 +183,7 @@ class Contact(Part):
     cam: Material
     roller: Material | None = None
     admissible: Stress | None = None
+    outer: Flag = False
 
 
 class Choose(Part):
@@ -192,6 +196,10 @@ class Choose(Part):
     minimise : one of `MINIMISED`
     stress : float [Pa], pressure_angle : float [rad], size : float [m]
         Greatest admissible ones; the stress is that of the contact if left out, the size the greatest rho.
+    lift, gap : float [m]
+        Least ones: of rho at the end over that at phi = 0, and of the ground between the prints of two shoes.
+    trade_off : one of `MEASURED`
+        Its bound is moved, to show what it costs in what is made least.
     """
 
     parameters: Annotated[FrozenMap[str, tuple[float, float]], PlainValidator(read_parameters)]
@@ -199,6 +207,11 @@ class Choose(Part):
     stress: Stress | None = None
     pressure_angle: Steepness | None = None
     size: Size | None = None
+    lift: Size | None = None
+    gap: Size | None = None
+    trade_off: Annotated[
+        Literal["size", "stress", "pressure_angle", "lift", "gap"] | None, choice(*MEASURED)
+    ] = None
 
 
 class CamStudy(Part):

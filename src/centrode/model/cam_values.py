@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Annotated
 
 from pydantic import PlainValidator
@@ -83,6 +84,9 @@ PARAMETERS = {
 }
 """What may be chosen, and the kinds of quantity it may be."""
 
+POINT = re.compile(r"curvature\.points\.[1-9]\d{0,4}")
+"""The curvature at one of a spline's points, counted from 1, may be chosen too."""
+
 
 def read_parameters(value: object) -> FrozenMap[str, tuple[float, float]]:
     """Names of `PARAMETERS`, each with its least and greatest value in SI."""
@@ -96,10 +100,11 @@ def read_parameters(value: object) -> FrozenMap[str, tuple[float, float]]:
 
 
 def _read_parameter(key: object) -> str:
-    if isinstance(key, str) and key in PARAMETERS:
+    if isinstance(key, str) and (key in PARAMETERS or POINT.fullmatch(key)):
         return key
     what = _("{name} cannot be chosen").format(name=shown(key))
-    known = _("known are: {names}").format(names=", ".join(PARAMETERS))
+    names = ", ".join([*PARAMETERS, "curvature.points.1"])
+    known = _("known are: {names}").format(names=names)
     raise Problem(what, (likely(key, PARAMETERS) if isinstance(key, str) else "") or known)
 
 
@@ -108,7 +113,7 @@ def _read_bounds(name: str, pair: object) -> tuple[float, float]:
         what = _("expected {form}, got {value}").format(form=_("[least, greatest]"), value=shown(pair))
         raise Problem(what, at=(name,))
     try:
-        low, high = (_of_kinds(end, PARAMETERS[name]) for end in pair)
+        low, high = (_of_kinds(end, PARAMETERS.get(name, ("curvature",))) for end in pair)
     except Problem as problem:
         raise Problem(problem.what, problem.repair, (name,)) from None
     if not low < high:

@@ -76,9 +76,11 @@ def _lift(tried: Tried, _contact: Contact | None) -> Array:
 
 
 def _gap(tried: Tried, _contact: Contact | None) -> Array:
-    """Ground between the prints of two shoes: 2 H' cos(phi) at the end of the working arc, both halves alike."""
-    held = np.clip(tried.gamma[-1:], -STEEPEST, STEEPEST)
-    return np.asarray(-2 * tried.rho[-1:] * np.tan(held) * np.cos(tried.phi[-1]))
+    """Ground between the prints of two shoes: H' cos(phi) at the end of the working arc less that at its start."""
+    held = np.clip(tried.gamma, -STEEPEST, STEEPEST)
+    ahead = tried.rho * np.tan(held) * np.cos(tried.phi)[:, None]
+    behind = -ahead[-1:] if tried.mirrored else ahead[:1]
+    return np.asarray(behind - ahead[-1:])
 
 
 def _sharp(tried: Tried, _contact: Contact | None) -> Array:

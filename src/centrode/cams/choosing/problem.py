@@ -100,15 +100,12 @@ class Problem:
         """Measures (m,) with their signs, over their scales, and slopes (m, n) by the places in the box."""
         key = share.tobytes() + bytes(str(len(self.more)), "ascii")
         if self._known is None or self._known[0] != key:
-            count = len(share)
-            steps = STEP * np.eye(count)
-            lanes = np.concatenate([share[None], share + steps, share - steps])
+            lanes, weights = _differences(share)
             tried = self.family.paths(lanes, self.phi)
             values, slopes = {}, {}
             for name, measure in self._measures.items():
                 found = measure.of(tried, self.family.contact) / self.scale(name)
-                values[name] = found[:, 0]
-                slopes[name] = (found[:, 1 : 1 + count] - found[:, 1 + count :]) / (2 * STEP)
+                values[name], slopes[name] = found[:, 0], found @ weights
             self._known = (key, values, slopes)
         return self._known[1], self._known[2]
 
@@ -147,3 +144,23 @@ class Problem:
                 for name, one in self._measures.items()
             }
         return self._sizes
+
+
+def _differences(share: Array) -> tuple[Array, Array]:
+    """Places in the box (2 n + 1, n), and weights (2 n + 1, n) that make slopes of the values there.
+
+    Both neighbours where there is room, else two on the side of the box: a parameter must not leave its range.
+    """
+    count = len(share)
+    near = np.where(share < STEP, 1.0, np.where(share > 1 - STEP, -1.0, 0.0))
+    first, second = np.where(near, near, 1.0), np.where(near, 2 * near, -1.0)
+    unit = np.eye(count)
+    lanes = np.concatenate([share[None], share + STEP * first * unit, share + STEP * second * unit])
+    weights = np.concatenate(
+        [
+            (-1.5 * near)[None],
+            np.diag(np.where(near, 2.0 * near, 0.5)),
+            np.diag(np.where(near, -0.5 * near, -0.5)),
+        ]
+    )
+    return lanes, weights / STEP

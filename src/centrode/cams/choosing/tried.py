@@ -62,6 +62,8 @@ class Tried:
     gamma : (n, designs) [rad]
     curvature : (n, designs) [1/m]
     roller_radius : (designs,) [m]
+    mirrored : bool
+        The paths go on to negative angles as their own mirror image.
     """
 
     phi: Array
@@ -69,14 +71,16 @@ class Tried:
     gamma: Array
     curvature: Array
     roller_radius: Array
+    mirrored: bool = False
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Angles from 0 to both ends of the range, cut into panels of Chebyshev points."""
+    """Angles from 0 to both ends of the range [rad], cut at the law's breaks and into panels of Chebyshev points."""
 
     ends: tuple[float, float]
     breaks: tuple[float, ...] = ()
+    mirrored: bool = False
 
     @property
     def panels(self) -> list[tuple[float, float]]:
@@ -111,7 +115,8 @@ def paths_of(trials: Sequence[Trial], mesh: Mesh, phi: Array) -> Tried:
     at_zero = phi == 0
     rho[at_zero], gamma[at_zero] = np.exp(started[0]), started[1]
     curvature = np.stack([trial.curvature(phi) for trial in trials], axis=1)
-    return Tried(phi, rho, gamma, curvature, np.array([trial.roller_radius for trial in trials]))
+    rollers = np.array([trial.roller_radius for trial in trials])
+    return Tried(phi, rho, gamma, curvature, rollers, mesh.mirrored)
 
 
 def _starts(trials: Sequence[Trial]) -> Array:
