@@ -27,7 +27,7 @@ def family(end: float = END, contact: Contact | None = CONTACT) -> Family:
         low=np.array([5.0, -1.0, 0.03]),
         high=np.array([40.0, 2.0, 0.09]),
         trial=lambda p: Trial(lambda phi: p[0] * np.exp(p[1] * phi), float(p[2]), 0.0, 0.015),
-        mesh=Mesh((0.0, end)),
+        mesh=Mesh((0.0, end), mirrored=True),
         contact=contact,
     )
 

@@ -38,7 +38,7 @@ def chosen() -> Choice:
 
 @pytest.mark.parametrize("end", [0.3, math.pi / 4, math.pi / 2, -1.2])
 def test_tried_paths_are_the_paths(end: float) -> None:
-    """The iteration leaves some rounding of each of its sums over 15 nodes, in some 16 panels."""
+    """The iteration leaves some rounding of each of its sums over 21 nodes, in a few panels."""
     designs = np.array([[10.0, 0.75, 0.05], [20.0, 0.0, 0.05], [14.0, -0.4, 0.06]])
     phi = np.linspace(min(0, end), max(0, end), 23)
     trials = [Trial(lambda at, p=p: p[0] * np.exp(p[1] * at), float(p[2]), 0.0, 0.015) for p in designs]
@@ -47,7 +47,7 @@ def test_tried_paths_are_the_paths(end: float) -> None:
         k0, k1, radius = design
         path = path_of(design, end) if end > 0 else path_of((k0, -k1, radius), -end)  # its mirror image
         sign = 1 if end > 0 else -1
-        room = 16 * 15 * 8 * EPS
+        room = 16 * 21 * 8 * EPS
         np.testing.assert_allclose(tried.rho[:, column], path.radius(sign * phi)[0], rtol=room)
         np.testing.assert_allclose(tried.gamma[:, column], sign * path.pressure_angle(sign * phi), atol=room)
 
@@ -112,7 +112,7 @@ def test_one_parameter_has_a_root() -> None:
         np.array([5.0]),
         np.array([25.0]),
         lambda p: Trial(lambda phi: p[0] + 0 * phi, 0.05, 0.0, 0.015),
-        Mesh((0.0, END)),
+        Mesh((0.0, END), mirrored=True),
         CONTACT,
     )
     found = choose(one, np.array([10.0]), "size", {"gap": 0.01})
@@ -141,16 +141,16 @@ def test_what_cannot_be_kept_is_missed_by_the_least() -> None:
 
 def test_the_front_is_not_beaten() -> None:
     bounds = {"gap": 0.015, "pressure_angle": math.radians(25)}
-    front = trade_off(family(), START, "size", "stress", bounds, points=7)
+    front = trade_off(family(), START, "size", "stress", bounds, points=5)
     size, stress = front.values("size"), front.values("stress")
-    assert len(size) == 7
+    assert len(size) == 5
     assert (np.diff(stress) > 0).all()
     assert (np.diff(size) < 0).all()
     for design in front.designs:
         assert excess(measured(np.array(list(design.parameters.values()))), bounds) <= 1e-8
     rng = np.random.default_rng(11)
     low, high = family().low, family().high
-    for _trial in range(400):
+    for _trial in range(150):
         values = measured(low + rng.random(3) * (high - low), angles=61)
         if excess(values, bounds) > 0 or not stress[0] < values["stress"] < stress[-1]:
             continue

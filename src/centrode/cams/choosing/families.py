@@ -66,7 +66,7 @@ def family_of(cam: Cam) -> Family:
 
 def start_of(cam: Cam, family: Family) -> Array:
     """The parameters' values in the description itself."""
-    return np.array([_value(cam, name) for name in family.names])
+    return np.array([given_value(cam, name) for name in family.names])
 
 
 def bounds_of(cam: Cam) -> dict[str, float]:
@@ -111,7 +111,8 @@ def _with_law(cam: Cam, given: Mapping[str, float]) -> Cam:
     return cam.model_copy(update={"curvature": cam.curvature.model_copy(update=found)})
 
 
-def _value(cam: Cam, name: str) -> float:
+def given_value(cam: Cam, name: str) -> float:
+    """Number in SI of a description at a path such as "curvature.k0"."""
     table, _dot, key = name.partition(".")
     if POINT.fullmatch(name):
         assert cam.curvature.points is not None

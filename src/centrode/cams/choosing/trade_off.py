@@ -15,7 +15,7 @@ from centrode.cams.choosing.problem import Family
 Array = NDArray[np.float64]
 
 POINTS = 15
-FEW = 4
+FEW = 2
 """Starts of the searches along the front, besides those from its neighbours."""
 
 

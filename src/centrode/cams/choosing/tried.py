@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-DEGREE = 14
+DEGREE = 20
 """Of the polynomial in each panel."""
-PANEL = 0.2
+PANEL = 0.45
 """Greatest length of a panel [rad]."""
 STEEPEST = math.radians(75)
 """Pressure angles are held below this, so that every design has a path: one that gets there is not admissible."""
@@ -100,23 +100,24 @@ def paths_of(trials: Sequence[Trial], mesh: Mesh, phi: Array) -> Tried:
 
     Errors of smooth laws stay near rounding; a law with knots needs them among the mesh's breaks.
     """
-    designs = len(trials)
-    rho, gamma = np.empty((2, len(phi), designs))
-    started = _starts(trials)
-    states = {0.0: started}
-    for first, last in mesh.panels:
-        nodes = first + (last - first) * _unit_nodes()
-        bent = np.stack([trial.curvature(nodes) for trial in trials], axis=1)
+    rho, gamma = np.empty((2, len(phi), len(trials)))
+    start = _starts(trials)
+    states = {0.0: start}
+    panels = mesh.panels
+    nodes = [first + (last - first) * _unit_nodes() for first, last in panels]
+    everywhere = np.concatenate([*nodes, phi])
+    curvature = np.stack([trial.curvature(everywhere) for trial in trials], axis=1)
+    for number, (first, last) in enumerate(panels):
+        bent = curvature[number * (DEGREE + 1) : (number + 1) * (DEGREE + 1)]
         u, angle = _solved(states[first], bent, last - first)
         states[last] = np.stack([u[-1], angle[-1]])
         inside = (phi >= min(first, last)) & (phi <= max(first, last))
         matrix = _between((phi[inside] - first) / (last - first))
         rho[inside], gamma[inside] = np.exp(matrix @ u), matrix @ angle
     at_zero = phi == 0
-    rho[at_zero], gamma[at_zero] = np.exp(started[0]), started[1]
-    curvature = np.stack([trial.curvature(phi) for trial in trials], axis=1)
+    rho[at_zero], gamma[at_zero] = np.exp(start[0]), start[1]
     rollers = np.array([trial.roller_radius for trial in trials])
-    return Tried(phi, rho, gamma, curvature, rollers, mesh.mirrored)
+    return Tried(phi, rho, gamma, curvature[len(panels) * (DEGREE + 1) :], rollers, mesh.mirrored)
 
 
 def _starts(trials: Sequence[Trial]) -> Array:
@@ -153,14 +154,18 @@ def _unit_nodes() -> Array:
 def _integration() -> Array:
     """Integrals from 0 to each node, of a polynomial given at the nodes."""
     x = 2 * _unit_nodes() - 1
-    to_coefficients = np.linalg.inv(np.polynomial.chebyshev.chebvander(x, DEGREE))
-    sums = np.polynomial.chebyshev.chebint(to_coefficients, axis=0, lbnd=-1)
+    sums = np.polynomial.chebyshev.chebint(_to_coefficients(), axis=0, lbnd=-1)
     matrix = 0.5 * np.polynomial.chebyshev.chebvander(x, DEGREE + 1) @ sums
     matrix[0] = 0.0
     return np.asarray(matrix)
 
 
+@cache
+def _to_coefficients() -> Array:
+    """Chebyshev coefficients of a polynomial given at the nodes."""
+    return np.asarray(np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * _unit_nodes() - 1, DEGREE)))
+
+
 def _between(places: Array) -> Array:
     """Values at places (n,) on [0, 1] of the polynomial given at the nodes."""
-    to_coefficients = np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * _unit_nodes() - 1, DEGREE))
-    return np.asarray(np.polynomial.chebyshev.chebvander(2 * places - 1, DEGREE) @ to_coefficients)
+    return np.asarray(np.polynomial.chebyshev.chebvander(2 * places - 1, DEGREE) @ _to_coefficients())
