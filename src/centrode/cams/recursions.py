@@ -24,8 +24,8 @@ def system_series(
     """
     radii, sines, cosines = [rho], [eta], [cosine]
     for n in range(len(curvature)):
-        bent: Number = 0.0
-        climb: Number = 0.0
+        bent: Number = 0
+        climb: Number = 0
         for i in range(n + 1):
             bent = bent + radii[i] * curvature[n - i]
             climb = climb + radii[i] * sines[n - i]
@@ -40,7 +40,7 @@ def system_series(
 def next_cosine(a: Sequence[Number], b: Sequence[Number]) -> Number:
     """b_(m+1) from a_0 ... a_(m+1) and b_0 ... b_m: formulas (24) for even m and (25) for odd m."""
     m = len(b) - 1
-    total: Number = 0.0
+    total: Number = 0
     if m % 2 == 0:
         for i in range(m // 2 + 1):
             total = total - a[i] * a[m + 1 - i]
@@ -78,7 +78,7 @@ def general_series(
     """
     a, b, k = [a_0, a_1], [b_0], curvature
     for n in range(terms - 1):
-        total: Number = 0.0
+        total: Number = 0
         for i in range(n + 1):
             total = total + (i + 1) * k[i + 1] * ((n - i + 1) * a[n - i + 1] - b[n - i])
             total = total - k[i] * a[n - i]
@@ -108,8 +108,8 @@ def arc_series(
         turning.append(rates[n] - curvature(angles)[n])
         angles.append(rates[n] / (n + 1))
         radii.append(sines[n] / (n + 1))
-        up: Number = 0.0
-        down: Number = 0.0
+        up: Number = 0
+        down: Number = 0
         for i in range(n + 1):
             up = up + cosines[i] * turning[n - i]
             down = down - sines[i] * turning[n - i]
