@@ -44,7 +44,7 @@ class Stressed:
     cam_radius : (n,) [m]
         Radius of curvature of the cam where the roller leans on it; negative where it is hollow.
     greatest, greatest_by_source : Greatest
-        Of the pressure and of the source's stress over the whole path [Pa].
+        Of the pressure and of the source's stress [Pa].
     """
 
     phi: Array
@@ -55,7 +55,9 @@ class Stressed:
     greatest_by_source: Greatest
 
 
-def stress_along(path: RollerPath, contact: Contact, phi: Array) -> Stressed:
+def stress_along(
+    path: RollerPath, contact: Contact, phi: Array, ends: tuple[float, float] | None = None
+) -> Stressed:
     """Contact of the roller with the cam along its path.
 
     Parameters
@@ -64,7 +66,10 @@ def stress_along(path: RollerPath, contact: Contact, phi: Array) -> Stressed:
     contact : Contact
     phi : (n,) [rad]
         Angles between the path's ends.
+    ends : (from, to) [rad]
+        Where the greatest stress is looked for; the whole path if left out.
     """
+    ends = ends or (path.start, path.stop)
     gamma, curvature = _state(path, phi)
     radius = contact.roller_radius
     with np.errstate(divide="ignore"):
@@ -74,14 +79,14 @@ def stress_along(path: RollerPath, contact: Contact, phi: Array) -> Stressed:
         strip=pressed(contact, gamma, curvature),
         by_source=source_stress(contact, gamma, curvature),
         cam_radius=cam,
-        greatest=greatest_along(path, lambda at: pressed(contact, *_state(path, at)).pressure),
-        greatest_by_source=greatest_along(path, lambda at: source_stress(contact, *_state(path, at))),
+        greatest=greatest_along(ends, lambda at: pressed(contact, *_state(path, at)).pressure),
+        greatest_by_source=greatest_along(ends, lambda at: source_stress(contact, *_state(path, at))),
     )
 
 
-def greatest_along(path: RollerPath, value: Callable[[Array], Array]) -> Greatest:
-    """Greatest value over a path of a function of angles (n,) [rad]; NaN where it is known nowhere."""
-    phi = np.linspace(path.start, path.stop, ANGLES)
+def greatest_along(ends: tuple[float, float], value: Callable[[Array], Array]) -> Greatest:
+    """Greatest value between two angles [rad] of a function of angles (n,) [rad]; NaN where it is known nowhere."""
+    phi = np.unique(np.append(np.linspace(*ends, ANGLES), np.clip(0.0, *ends)))
     values = value(phi)
     if not np.isfinite(values).any():
         return Greatest(float("nan"), float("nan"))
