@@ -85,6 +85,11 @@ from .study.machines import flywheel_rows as flywheel_rows
 from .study.machines import flywheel_scalars as flywheel_scalars
 from .present import machine_figures as machine_figures
 
+# Cams
+from .cams.labelled import cam as cam
+from .cams.comparison import cam_routes as cam_routes
+from .cams.described import path_of as path_of
+
 # Equations in symbols
 from .equations.derivation import equations as equations
 from .present import equations_text as equations_text

@@ -210,6 +210,27 @@ _ALL = (
     Quantity("transmission_angle", "μ", "rad", mark("transmission angle")),
     Quantity("pressure_angle", "α", "rad", mark("pressure angle")),
     Quantity("carrier_angle", "φ", "rad", mark("angle of the carrier")),
+    Quantity("path_radius", "ρ", "m", mark("radius of the roller's path")),
+    Quantity("path_radius_slope", "ρ′", "m/rad", mark("slope of the radius of the roller's path")),
+    Quantity(
+        "path_radius_second", "ρ″", "m/rad^2", mark("second derivative of the radius of the roller's path")
+    ),
+    Quantity("cam_pressure_angle", "γ", "rad", mark("pressure angle of the cam")),
+    Quantity("pressure_sine", "η", "1", mark("sine of the pressure angle")),
+    Quantity("pressure_sine_slope", "η′", "1/rad", mark("slope of the sine of the pressure angle")),
+    Quantity(
+        "pressure_sine_second", "η″", "1/rad^2", mark("second derivative of the sine of the pressure angle")
+    ),
+    Quantity("pressure_cosine", "λ", "1", mark("cosine of the pressure angle")),
+    Quantity("law_curvature", "K", "1/m", mark("curvature that the law gives")),
+    Quantity("law_curvature_slope", "K′", "1/m/rad", mark("slope of the curvature that the law gives")),
+    Quantity("drawn_curvature", "k", "1/m", mark("curvature of the drawn path")),
+    Quantity("roller_centre", "A", "m", mark("centre of the roller")),
+    Quantity("radius_by_slope", "ρ_16", "m", mark("radius by formula (16)")),
+    Quantity("parting", "Δρ_16", "m", mark("radius by formula (16) less that by (15)")),
+    Quantity("foretold_error", "Δρ_N", "m", mark("error of the series that its next terms foretell")),
+    Quantity("series_error", "Δρ_a", "m", mark("radius by the series less that by steps")),
+    Quantity("routes_difference", "Δρ_c", "m", mark("integrated radius less that by steps")),
     Quantity("contact_stress", "σ", "Pa", mark("contact stress")),
     Quantity("contact_stress_by_source", "σ_K", "Pa", mark("contact stress by the source's formula")),
     Quantity("contact_shear", "τ", "Pa", mark("greatest shear below the contact")),
