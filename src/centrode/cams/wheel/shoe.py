@@ -15,8 +15,9 @@ from functools import cached_property
 import numpy as np
 
 from centrode.algebra.jets import Jet, quotient
-from centrode.cams.closing import Arc
+from centrode.cams.closed.arcs import Arc
 from centrode.cams.frames import JETS, Array, radius_jet
+from centrode.cams.path import SymmetricPath
 from centrode.cams.searching import extremes
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
@@ -35,7 +36,7 @@ class Shoe:
     Attributes
     ----------
     arc : Arc
-        Working arc, -half to half.
+        Working arc, -half to half; the shoe is as symmetric as the path over it.
     height : float [m]
         Of the hub over the ground, R0 + r + C.
     """
@@ -78,17 +79,19 @@ class Shoe:
         radius, slope = self.arc.curve.radius(phi, 1)
         with np.errstate(divide="ignore", invalid="ignore"):
             share = slope / np.sin(phi)
-        near = np.abs(phi) < self._near
-        share[near] = np.polynomial.polynomial.polyval(np.abs(phi[near]), self._share)
+        near = np.abs(phi) <= self._near
+        inner = np.abs(phi[near]) if 0.0 in self.arc.breaks else phi[near]
+        share[near] = np.polynomial.polynomial.polyval(inner, self._share)
         cosine = np.cos(phi)
         return share * cosine - radius, self.height - share * cosine**2
 
     @cached_property
     def least_bend(self) -> tuple[float, float]:
         """The least radius of curvature [m] of the profile and where [rad]."""
-        edges = (0.0, *(one for one in self.arc.breaks if one > 0.0), self.half)
         found = extremes(
-            self.bend, lambda phi: np.asarray(self.support(phi, 1)[1] + self.support(phi, 3)[3]), edges
+            self.bend,
+            lambda phi: np.asarray(self.support(phi, 1)[1] + self.support(phi, 3)[3]),
+            self.arc.edges,
         )
         return found.least, found.at_least
 
@@ -107,10 +110,12 @@ class Shoe:
 
     @cached_property
     def _near(self) -> float:
-        """How far the series is good to rounding."""
+        """How far the series is good to rounding: to no side where the law breaks at 0 without symmetry."""
+        if 0.0 in self.arc.breaks and not isinstance(self.arc.curve, SymmetricPath):
+            return 0.0
         last, first = abs(self._share[-1]), abs(self._share[0]) or 1.0
         reach = (np.finfo(float).eps * first / last) ** (1.0 / TERMS) if last else NEAR
-        return float(min(NEAR, reach, *(one for one in self.arc.breaks if one > 0.0)))
+        return float(min(NEAR, reach, *(abs(one) for one in self.arc.breaks if one)))
 
 
 def shoe(arc: Arc, height: float) -> Shoe:
@@ -119,22 +124,22 @@ def shoe(arc: Arc, height: float) -> Shoe:
     Parameters
     ----------
     arc : Arc
-        Symmetric about phi = 0, less than a quarter turn to each side.
+        From -half to half, less than a quarter turn to each side.
     height : float [m]
         Of the hub over the ground.
 
     Raises
     ------
     InputError
-        gamma is not zero at phi = 0, where the contact would jump across the shoe; the arc is not symmetric or
-        reaches a quarter turn; the height does not exceed the path's radius.
+        gamma is not zero at phi = 0, where the contact would jump across the shoe (the paper's Y2 is infinite
+        there); the arc is not as asked; the height does not exceed the path's radius.
     MotionError
         The shoe would have a cusp: the message tells the least height without one.
     """
     if abs(arc.start + arc.stop) > LEVEL or arc.stop >= math.pi / 2:
         raise InputError(
             "",
-            _("a shoe belongs to a symmetric arc of less than 90 deg to each side"),
+            _("a shoe belongs to equal arcs of less than 90 deg to both sides"),
             _("take three legs or more"),
         )
     radius, slope = arc.curve.radius(np.zeros(1), 1)[:, 0]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from centrode.cams.closed.curves import ReturnCurve
 from centrode.cams.frames import Array, Frames, frames
-from centrode.cams.return_curves import ReturnCurve
 from centrode.cams.searching import Extremes, extremes
 from centrode.errors import InputError
 from centrode.locale import _
@@ -34,6 +34,8 @@ class Bounds:
         No inward bend anywhere.
     least_hollow : float [m]
         Least radius of curvature where the path bends away from the centre; of no use with `convex`.
+    pressure_angle : float [rad]
+        Greatest pressure angle, without sign.
     """
 
     least_radius: float = 0.0
@@ -41,11 +43,15 @@ class Bounds:
     least_bend: float = 0.0
     convex: bool = True
     least_hollow: float = 0.0
+    pressure_angle: float = math.pi / 2
 
     def __post_init__(self) -> None:
         lengths = (self.least_radius, self.greatest_radius, self.least_bend, self.least_hollow)
         if any(math.isnan(one) or one < 0 for one in lengths) or math.isinf(self.least_radius):
             raise InputError("[return]", _("bounds are positive lengths"), _("correct them"))
+        if not 0 < self.pressure_angle <= math.pi / 2:
+            what = _("a greatest pressure angle lies between 0 and 90 deg")
+            raise InputError("[return] pressure_angle", what, _("correct it"))
         if self.least_radius >= self.greatest_radius:
             what = _("the least radius is not smaller than the greatest")
             raise InputError("[return]", what, _("exchange or widen them"))
@@ -79,11 +85,14 @@ class Bounds:
             Of the finite bounds, in units of the scale.
         """
         bend, slopes = _curvature(rho, moving)
+        steep = math.tan(self.pressure_angle) if self.pressure_angle < math.pi / 2 else math.inf
+        slant, slanting = rho[1] / rho[0], (moving[:, 1] - moving[:, 0] * rho[1] / rho[0]) / rho[0]
         found, gradients = [], []
         for value, gradient, low, high in (
             # a polar radius has to stay positive whatever is asked for
             (rho[0], moving[:, 0], max(self.least_radius / scale, 1e-3), self.greatest_radius / scale),
             (bend, slopes, self.least_curvature * scale, self.greatest_curvature * scale),
+            (slant, slanting, -steep, steep),
         ):
             if math.isfinite(low):
                 found.append(value - low)
@@ -102,6 +111,8 @@ class Margins:
     ----------
     radius : (least, greatest) [m]
     curvature : (least, greatest) [1/m]
+    pressure_angle : float [rad]
+        The greatest, without sign.
     places : tuple of float [rad]
         Where these lie.
     """
@@ -109,20 +120,23 @@ class Margins:
     bounds: Bounds
     radius: tuple[float, float]
     curvature: tuple[float, float]
+    pressure_angle: float
     places: tuple[float, ...]
 
     @staticmethod
     def along(curve: ReturnCurve, bounds: Bounds) -> Margins:
         """The extremes of a whole arc."""
-        size, bend = sizes(curve), bends(curve)
-        places = (size.at_least, size.at_greatest, bend.at_least, bend.at_greatest)
-        return Margins(bounds, (size.least, size.greatest), (bend.least, bend.greatest), places)
+        size, bend, slant = sizes(curve), bends(curve), slants(curve)
+        places = tuple(at for one in (size, bend, slant) for at in (one.at_least, one.at_greatest))
+        steepest = max(-slant.least, slant.greatest)
+        return Margins(bounds, (size.least, size.greatest), (bend.least, bend.greatest), steepest, places)
 
     @staticmethod
     def at(frame: Frames, bounds: Bounds) -> Margins:
         """The values at one place."""
         size, bend = float(frame.radius[0]), float(frame.curvature[0])
-        return Margins(bounds, (size, size), (bend, bend), (float(frame.phi[0]),))
+        steepness = abs(float(frame.pressure_angle[0]))
+        return Margins(bounds, (size, size), (bend, bend), steepness, (float(frame.phi[0]),))
 
     def broken(self) -> str:
         """Which bounds are broken and by how much, in words; empty if none is."""
@@ -143,6 +157,10 @@ class Margins:
             if not bounds.convex:
                 text = _("the radius of the hollow falls to {value} mm, the bound is {bound} mm")
             words.append(text.format(value=value, bound=_mm(bounds.least_hollow)))
+        if self.pressure_angle > bounds.pressure_angle + TOLERANCE:
+            text = _("the pressure angle grows to {value:.5g} deg, the bound is {bound:.5g} deg")
+            steep = math.degrees(self.pressure_angle), math.degrees(bounds.pressure_angle)
+            words.append(text.format(value=steep[0], bound=steep[1]))
         return "; ".join(words)
 
 
@@ -158,6 +176,17 @@ def bends(curve: ReturnCurve) -> Extremes:
     return extremes(
         lambda phi: frames(curve, phi).curvature, lambda phi: frames(curve, phi).curvature_slope, edges
     )
+
+
+def slants(curve: ReturnCurve) -> Extremes:
+    """Extremes of the pressure angle [rad] over an arc."""
+
+    def slope(phi: Array) -> Array:
+        frame = frames(curve, phi)  # gamma' = 1 - K ds/dphi
+        return np.asarray(1.0 - frame.curvature * frame.speed)
+
+    edges = (curve.ends.start, curve.ends.stop)
+    return extremes(lambda phi: frames(curve, phi).pressure_angle, slope, edges)
 
 
 def _mm(length: float) -> str:

@@ -14,10 +14,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from centrode.cams.closing import Arc, ClosedPath
+from centrode.cams.closed.arcs import Arc, ClosedPath
 from centrode.cams.frames import Array
 from centrode.cams.searching import Extremes, extremes
-from centrode.cams.shoe import Shoe, shoe
+from centrode.cams.wheel.shoe import Shoe, shoe
 from centrode.dynamics.quadrature import Panels, Series
 from centrode.errors import InputError
 from centrode.locale import _
@@ -96,7 +96,8 @@ class Mover:
     def travel(self, phi: Array) -> Array:
         """Travel of the hub [m] while the standing leg turns from 0 to phi (n) [rad], the paper's (2)."""
         phi = np.asarray(phi, dtype=np.float64)
-        return self.height * phi + np.sign(phi) * self._lift.integral(np.abs(phi))
+        lift = self._lift.integral(np.append(phi, 0.0))
+        return np.asarray(self.height * phi + (lift[:-1] - lift[-1]))
 
     def rate(self, phi: Array) -> Array:
         """dX/dphi (n) [m/rad] of the hub over the standing leg's angle, the paper's (5)."""
@@ -109,7 +110,8 @@ class Mover:
     @cached_property
     def step(self) -> float:
         """Travel of the hub over one leg [m]."""
-        return 2.0 * float(self.travel(np.array([self.half]))[0])
+        back, forth = self.travel(np.array([-self.half, self.half]))
+        return float(forth - back)
 
     @property
     def print_length(self) -> float:
@@ -119,18 +121,18 @@ class Mover:
     @property
     def print_gap(self) -> float:
         """From the end of a footprint to the beginning of the next [m]; negative where they overlap."""
-        return -2.0 * float(self.touch(np.array([self.half]))[0])
+        first, last = self.touch(np.array([-self.half, self.half]))
+        return float(first - last)
 
     @cached_property
     def rates(self) -> Extremes:
         """Least and greatest dX/dphi [m/rad]: how unevenly the hub travels."""
-        edges = (0.0, *(one for one in self.shoe.arc.breaks if one > 0.0), self.half)
 
         def slope(phi: Array) -> Array:
             _radius, first, second = self.shoe.arc.curve.radius(phi, 2)
             return np.asarray(second * np.sin(phi) + first * np.cos(phi))
 
-        return extremes(self.rate, slope, edges)
+        return extremes(self.rate, slope, self.shoe.arc.edges)
 
     @property
     def unevenness(self) -> float:
@@ -153,20 +155,19 @@ class Mover:
 
     @cached_property
     def _lift(self) -> Series:
-        """H' sin phi over half the working arc."""
-        panels = quadrature_panels(self.shoe.arc, self.half)
+        """H' sin phi over the working arc."""
+        panels = quadrature_panels(self.shoe.arc)
         slope = self.shoe.arc.curve.radius(panels.nodes, 1)[1]
         return panels.series(slope * np.sin(panels.nodes))
 
 
-def quadrature_panels(arc: Arc, stop: float) -> Panels:
-    """Panels from phi = 0 to an angle, ending at the breaks of an arc."""
-    ends = [0.0, *(one for one in arc.breaks if 0.0 < one < stop), stop]
+def quadrature_panels(arc: Arc) -> Panels:
+    """Panels over an arc, ending at its breaks."""
     pieces = [
         np.linspace(low, high, 1 + max(1, math.ceil((high - low) / PANEL)))[:-1]
-        for low, high in pairwise(ends)
+        for low, high in pairwise(arc.edges)
     ]
-    return Panels(np.append(np.concatenate(pieces), stop))
+    return Panels(np.append(np.concatenate(pieces), arc.stop))
 
 
 def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> Mover:
@@ -175,7 +176,7 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> Mover:
     Parameters
     ----------
     closed : ClosedPath
-        Its first arc is the working arc; it is symmetric and holds +-pi/legs.
+        Its first arc is the working arc; it holds +-pi/legs.
     legs : int
         3 to 24.
     post : float [m]

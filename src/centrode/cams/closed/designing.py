@@ -6,24 +6,20 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
 
-from centrode.cams.bounded import MOST, Bounds, Margins, bends, sizes
-from centrode.cams.closing import Arc, ClosedPath
-from centrode.cams.frames import Array, frames
-from centrode.cams.return_curves import Ends, ReturnCurve, derivatives, roughness
+from centrode.cams.closed.arcs import Arc, ClosedPath
+from centrode.cams.closed.bounds import MOST, Bounds, Margins, bends, sizes, slants
+from centrode.cams.closed.curves import Ends, ReturnCurve, roughness
+from centrode.cams.closed.search import Search
+from centrode.cams.frames import frames
 from centrode.cams.searching import Extremes
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 
 __all__ = ["Bounds", "Returned", "designed"]
 
-NODES = 181
-ROUNDS = 6
-"""Times that the worst places between the nodes are added to them."""
-SLACK = 1e-9
-"""Share of a bound by which it may be passed: what is left of the search."""
-ITERATIONS = 300
+ROUNDS = 8
+"""Times that the bounds are tightened by what is missed between the nodes of the search."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +30,8 @@ class Returned:
     ----------
     curve : ReturnCurve
     closed : ClosedPath
-    radius, curvature : Extremes
-        Of the arc: polar radius [m] and curvature [1/m] of the roller's path.
+    radius, curvature, pressure_angle : Extremes
+        Of the arc: polar radius [m] and curvature [1/m] of the roller's path, pressure angle [rad].
     additions : int
         Functions added to the smoothest curve to keep the bounds; 0 where it keeps them by itself.
     roughness : float
@@ -47,6 +43,7 @@ class Returned:
     closed: ClosedPath
     radius: Extremes
     curvature: Extremes
+    pressure_angle: Extremes
     additions: int
     roughness: float
 
@@ -68,9 +65,9 @@ def designed(working: Arc, bounds: Bounds | None = None, *, contact: int = 2) ->
 
     Notes
     -----
-    Joins are exact to rounding; bounds are kept over the whole arc to 1e-9 of themselves. The family has 16
-    functions besides the smoothest curve, found by sequential quadratic programming from it: the best of the
-    family near it, which is not a proof that no other curve exists.
+    Joins are exact to rounding; bounds are kept over the whole arc to 1e-9 of the size. The family has 16 functions
+    besides the smoothest curve, found by sequential quadratic programming from it: the best near it, which is no
+    proof that no other curve exists.
     """
     if contact not in (2, 3):
         raise InputError("", _("a return arc joins in curvature (2) or in its slope as well (3)"))
@@ -109,16 +106,19 @@ def _searched(ends: Ends, bounds: Bounds) -> tuple[tuple[float, ...], float]:
     scale = math.sqrt(ends.at_start[0] * ends.at_stop[0])
     # in these weights, roughness is the sum of squares
     basis = np.linalg.inv(np.linalg.cholesky(roughness(ends, MOST)).T)
-    nodes = np.linspace(ends.start, ends.stop, NODES)
+    search = Search(ends, bounds, basis, scale)
     weights = np.zeros(MOST)
     for _round in range(ROUNDS):
-        search = _Search(ends, bounds, basis, nodes, scale)
-        weights = search.smoothest(search.feasible(weights))
+        weights = search.feasible(weights)
+        possible = search.least(weights) >= 0.0
+        weights = search.smoothest(weights) if possible else weights
         curve = ReturnCurve(ends, tuple((scale * basis @ weights).tolist()))
         margins = Margins.along(curve, bounds)
         if not margins.broken():
             return curve.weights, float(weights @ weights)
-        nodes = np.sort(np.concatenate([nodes, margins.places]))
+        if not possible:
+            break
+        search.between(curve)
     raise MotionError(
         "[return]",
         _("no return arc was found that keeps the bounds; the best one misses them: {broken}").format(
@@ -128,59 +128,6 @@ def _searched(ends: Ends, bounds: Bounds) -> tuple[tuple[float, ...], float]:
     )
 
 
-class _Search:
-    """Constraints at nodes over the weights of the additions, in units of the size of the path."""
-
-    def __init__(self, ends: Ends, bounds: Bounds, basis: Array, nodes: Array, scale: float) -> None:
-        self.bounds, self.scale = bounds, scale
-        self.still = ReturnCurve(ends).radius(nodes, 2) / scale
-        rows = derivatives(ends, nodes, 2, MOST)[-MOST:]
-        self.moving = np.tensordot(basis.T, rows, axes=1)
-
-    def margins(self, weights: Array) -> tuple[Array, Array]:
-        """Margins (m) of all bounds at the nodes and their gradients (m, weights)."""
-        rho = self.still + np.tensordot(weights, self.moving, axes=1)
-        return self.bounds.margins(rho, self.moving, self.scale)
-
-    def feasible(self, weights: Array) -> Array:
-        """Weights whose least margin is positive, else the greatest that is found."""
-        margin = float(self.margins(weights)[0].min())
-        if margin >= SLACK:
-            return weights
-        found = minimize(
-            lambda x: (-x[-1], np.append(np.zeros(MOST), -1.0)),
-            np.append(weights, margin),
-            jac=True,
-            method="SLSQP",
-            bounds=[(None, None)] * MOST + [(None, 1e-3)],
-            constraints={
-                "type": "ineq",
-                "fun": lambda x: self.margins(x[:-1])[0] - x[-1],
-                "jac": lambda x: np.pad(self.margins(x[:-1])[1], ((0, 0), (0, 1)), constant_values=-1.0),
-            },
-            options={"maxiter": ITERATIONS, "ftol": 1e-10},
-        )
-        return np.asarray(found.x[:-1])
-
-    def smoothest(self, weights: Array) -> Array:
-        """From weights that keep the bounds, those with the least sum of squares that do."""
-        if self.margins(weights)[0].min() < 0.0:
-            return weights
-        found = minimize(
-            lambda x: (float(x @ x), 2.0 * x),
-            weights,
-            jac=True,
-            method="SLSQP",
-            constraints={
-                "type": "ineq",
-                "fun": lambda x: self.margins(x)[0] - SLACK,
-                "jac": lambda x: self.margins(x)[1],
-            },
-            options={"maxiter": ITERATIONS, "ftol": 1e-12},
-        )
-        return np.asarray(found.x) if self.margins(found.x)[0].min() > 0.0 else weights
-
-
 def _returned(working: Arc, curve: ReturnCurve, size: float) -> Returned:
     closed = ClosedPath((working, Arc("return", curve, curve.ends.start, curve.ends.stop)))
-    return Returned(curve, closed, sizes(curve), bends(curve), len(curve.weights), size)
+    return Returned(curve, closed, sizes(curve), bends(curve), slants(curve), len(curve.weights), size)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from centrode.cams.frames import Array
-from centrode.cams.walking import Mover, quadrature_panels
+from centrode.cams.wheel.walking import Mover, quadrature_panels
 from centrode.dynamics.quadrature import NODES
 
 SAMPLES = 181
@@ -34,7 +34,7 @@ class Rolling:
     slip : float
         Greatest speed of the shoe's point at the contact over the speed of the hub.
     shoe_arc, ground : float [m]
-        Arc of the shoe from its middle to its end, and what the contact travels meanwhile.
+        Arc of the shoe, and what the contact travels while it rolls from end to end.
     joint : float [m/rad]
         Jump of the hub's dX/dphi where one leg takes over from another.
     clearance, clearance_at : float [m], [rad]
@@ -107,8 +107,8 @@ def _contact_speed(mover: Mover, phi: Array) -> Array:
 
 
 def _lengths(mover: Mover) -> tuple[float, float]:
-    """Arc of the shoe from its middle to its end, from its points alone; and travel of the contact."""
-    panels = quadrature_panels(mover.shoe.arc, mover.half)
+    """Arc of the shoe, from its points alone; and travel of the contact."""
+    panels = quadrature_panels(mover.shoe.arc)
     points = profile_by_parts(mover, panels.nodes)
     widths = np.diff(panels.edges)[:, None]
     inner = legendre.leggauss(NODES)[0]
@@ -118,8 +118,8 @@ def _lengths(mover: Mover) -> tuple[float, float]:
         slopes = legendre.legder(coefficients, axis=1) * (2.0 / widths)
         rates.append(legendre.legval(inner, slopes.T))
     arc = float(np.sum(panels.weights * np.hypot(*rates).reshape(-1)))
-    end = np.array([mover.half])
-    return arc, float((mover.travel(end) + mover.touch(end))[0])
+    ends = np.array([-mover.half, mover.half])
+    return arc, float(np.diff(mover.travel(ends) + mover.touch(ends))[0])
 
 
 def _clearance(mover: Mover) -> tuple[float, float]:
