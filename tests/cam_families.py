@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from centrode.cams.choosing.problem import Family
 from centrode.cams.choosing.tried import Mesh, Trial
-from centrode.cams.contact import Contact, Material, pressed
+from centrode.cams.contacts.line import Contact, Material, pressed
 from centrode.cams.curvature_laws import ExponentialCurvature
 from centrode.cams.expanded import ExpandedPath, expanded_path
 

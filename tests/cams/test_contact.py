@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from centrode.cams.contact import (
+from centrode.cams.contacts.line import (
     DEEPEST_SHEAR,
     GREATEST_SHEAR,
     Contact,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from centrode.cams.choosing.choice import Choice
 from centrode.cams.choosing.problem import Family
 from centrode.cams.choosing.tried import Mesh, Trial
-from centrode.cams.contact import Contact, Material
+from centrode.cams.contacts.line import Contact, Material
 from centrode.cams.curvature_laws import derivatives
 from centrode.cams.described import law_of
 from centrode.errors import InputError

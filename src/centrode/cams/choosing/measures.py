@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.cams.choosing.tried import STEEPEST, Tried
-from centrode.cams.contact import Contact
+from centrode.cams.contacts.line import Contact
 from centrode.locale import mark
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from centrode.cams.choosing.measures import ALWAYS, MEASURES, Measure
 from centrode.cams.choosing.tried import Mesh, Trial, Tried, paths_of
-from centrode.cams.contact import Contact
+from centrode.cams.contacts.line import Contact
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from centrode.cams.contact import Contact, Pressed, pressed, source_stress
+from centrode.cams.contacts.line import Contact, Pressed, pressed, source_stress
 from centrode.cams.path import RollerPath
 
 Array = NDArray[np.float64]

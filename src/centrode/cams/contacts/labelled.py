@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from centrode.cams.choosing.families import contact_of, working_arc
 from centrode.cams.described import path_of
-from centrode.cams.stressed import stress_along
+from centrode.cams.labelled import status_of
+from centrode.cams.sampled import angles_of
+from centrode.cams.contacts.along import stress_along
 from centrode.errors import InputError
 from centrode.kinematics.dataset import named
-from centrode.kinematics.solve import DEFAULT_SAMPLES
 from centrode.locale import _
 from centrode.model.cams import Cam
 
@@ -48,11 +51,10 @@ def cam_contact(cam: Cam, samples: int | None = None) -> xr.Dataset:
     path = path_of(cam)
     low, high = working_arc(cam)
     ends = max(low, path.start), min(high, path.stop)
-    phi = np.linspace(*ends, samples or cam.study.samples or DEFAULT_SAMPLES)
+    phi = np.linspace(*ends, len(angles_of(cam, samples)))
     looked = (0.0, ends[1]) if cam.curvature.symmetric else ends
     found = stress_along(path, contact, phi, looked)
     values = {
-        "carrier_angle": phi,
         "contact_stress": found.strip.pressure,
         "contact_stress_by_source": found.by_source,
         "contact_shear": found.strip.shear,
@@ -60,7 +62,8 @@ def cam_contact(cam: Cam, samples: int | None = None) -> xr.Dataset:
         "contact_half_width": found.strip.half_width,
         "cam_curvature_radius": found.cam_radius,
     }
-    attributes = {
+    attributes: dict[str, Any] = {
+        "title": cam.title,
         "greatest_stress": found.greatest.value,
         "greatest_stress_at": found.greatest.angle,
         "greatest_stress_by_source": found.greatest_by_source.value,
@@ -69,6 +72,7 @@ def cam_contact(cam: Cam, samples: int | None = None) -> xr.Dataset:
     }
     if cam.contact is not None and cam.contact.admissible is not None:
         attributes["admissible_stress"] = cam.contact.admissible
-    return xr.Dataset(
-        {name: named(name, ("sample",), one) for name, one in values.items()}, attrs=attributes
-    )
+    data = {name: named(name, ("sample",), one) for name, one in values.items()}
+    data["status"] = status_of(path, phi)
+    coordinates = {"carrier_angle": named("carrier_angle", ("sample",), phi)}
+    return xr.Dataset(data, coords=coordinates, attrs=attributes)
