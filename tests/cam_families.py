@@ -41,7 +41,10 @@ def measured(parameters: Array, end: float = END, angles: int = 301) -> dict[str
     """Measures of a design along the path itself; infinite where it stalls or is undercut."""
     path = path_of(parameters, end)
     if path.stop < end:
-        return dict.fromkeys(("stress", "pressure_angle", "size"), math.inf) | {"lift": -math.inf, "gap": -math.inf}
+        return dict.fromkeys(("stress", "pressure_angle", "size"), math.inf) | {
+            "lift": -math.inf,
+            "gap": -math.inf,
+        }
     phi = np.linspace(0.0, end, angles)
     rho, slope = path.radius(phi, 1)
     gamma, curvature = path.pressure_angle(phi), path.curvature(phi)[0]

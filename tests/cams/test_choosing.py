@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from cam_families import CONTACT, END, family, measured, path_of
 from scipy.optimize import brentq
 
+from cam_families import CONTACT, END, family, measured, path_of
 from centrode.cams.choosing.choice import Choice, choose
 from centrode.cams.choosing.measures import MEASURES
 from centrode.cams.choosing.problem import Family

@@ -144,7 +144,7 @@ def varied(cam: Cam, values: Mapping[str, float]) -> Cam:
             _put_point(tables[table], path, value)
         else:
             tables[table][key] = value
-    return Cam.model_validate(tables)
+    return Cam(**tables)
 
 
 def _put_point(curvature: dict[str, Any], path: str, value: float) -> None:

@@ -127,14 +127,18 @@ def _draw_parameter(axes: Axes, found: CamChoice, front: TradeOff, name: str) ->
     letter, index, _unit = parameter_symbol(name)
     factor, unit = shown_as(parameter_unit(found.cam, name), found.cam.display)
     values = factor * np.array([design.parameters[name] for design in front.designs])
-    axes.plot(measure_shown(front.against, found.cam.display)[0] * front.values(front.against), values, color=FRONT)
+    axes.plot(
+        measure_shown(front.against, found.cam.display)[0] * front.values(front.against), values, color=FRONT
+    )
     assert found.cam.choose is not None
     for end in found.cam.choose.parameters[name]:
         low, high = float(values.min()), float(values.max())
         if low - 0.02 * abs(low) <= factor * end <= high + 0.02 * abs(high):
             axes.axhline(factor * end, color=MUTED, linewidth=0.9, linestyle=":")
     chosen = factor * found.choice.chosen.parameters[name]
-    at = measure_shown(front.against, found.cam.display)[0] * found.choice.chosen.measures[front.against].value
+    at = (
+        measure_shown(front.against, found.cam.display)[0] * found.choice.chosen.measures[front.against].value
+    )
     axes.plot([at], [chosen], "D", color=CHOSEN, markersize=5)
     axes.set_ylabel(labelled(formula(letter, index), unit))
     axes.yaxis.set_major_formatter(Decimals())

@@ -14,8 +14,8 @@ from centrode.quantities import display_unit, typeset_unit
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.cams.choosing.chosen import CamChoice
     from centrode.cams.choosing.choice import Design
+    from centrode.cams.choosing.chosen import CamChoice
     from centrode.model.cams import Cam
 
 Rows = list[tuple[str, str]]
@@ -54,9 +54,16 @@ def choice_rows(found: CamChoice) -> Rows:
     """What was chosen, with the measures of the start beside, the bounds that bind, and the proof."""
     choice, cam = found.choice, found.cam
     best = _(MEASURES[choice.best].title)
-    rows = [(_("chosen for the least"), best if choice.admissible else _("{what}, but no design keeps all bounds").format(what=best))]
+    rows = [
+        (
+            _("chosen for the least"),
+            best if choice.admissible else _("{what}, but no design keeps all bounds").format(what=best),
+        )
+    ]
     for name, value in choice.chosen.parameters.items():
-        rows.append((name, _was(_parameter(cam, name, value), _parameter(cam, name, choice.start.parameters[name]))))
+        rows.append(
+            (name, _was(_parameter(cam, name, value), _parameter(cam, name, choice.start.parameters[name])))
+        )
     for name in choice.chosen.measures:
         rows.append((_(MEASURES[name].title), _measure(cam, choice.chosen, choice.start, name)))
     return [*rows, *_ending_rows(found)]
@@ -82,11 +89,18 @@ def _ending_rows(found: CamChoice) -> Rows:
         return [*rows, (_("missed by the nearest design"), missed_text(found))]
     for name, by in choice.binding.items():
         moved = _("1 % more of it changes the best value by {change:+.3g} %")
-        rows.append((_("binds: {measure}").format(measure=_(MEASURES[name].title)), moved.format(change=-MEASURES[name].sign * by)))
+        rows.append(
+            (
+                _("binds: {measure}").format(measure=_(MEASURES[name].title)),
+                moved.format(change=-MEASURES[name].sign * by),
+            )
+        )
     near = _("{admissible} of {all} neighbours keep the bounds, none is better")
     if proof.gain > 0:
         near = _("{admissible} of {all} neighbours keep the bounds, one is better by {gain:.2g}")
-    rows.append((_("looked at"), near.format(admissible=proof.admissible, all=proof.neighbours, gain=proof.gain)))
+    rows.append(
+        (_("looked at"), near.format(admissible=proof.admissible, all=proof.neighbours, gain=proof.gain))
+    )
     return rows
 
 
@@ -94,8 +108,10 @@ def _bound(facts: dict[str, float]) -> str:
     admissible = facts.get("admissible_stress")
     if admissible is None:
         return ""
-    told = _(", admissible {stress:.5g} MPa") if facts["greatest_stress"] <= admissible else _(
-        ", more than the admissible {stress:.5g} MPa"
+    told = (
+        _(", admissible {stress:.5g} MPa")
+        if facts["greatest_stress"] <= admissible
+        else _(", more than the admissible {stress:.5g} MPa")
     )
     return told.format(stress=MEGA * admissible)
 

@@ -32,9 +32,7 @@ def contact_of(cam: Cam) -> Contact | None:
     first = Material(cam.contact.cam.elasticity, cam.contact.cam.poisson)
     other = cam.contact.roller
     second = first if other is None else Material(other.elasticity, other.poisson)
-    return Contact(
-        cam.contact.force, cam.contact.width, cam.roller.radius, first, second, cam.contact.outer
-    )
+    return Contact(cam.contact.force, cam.contact.width, cam.roller.radius, first, second, cam.contact.outer)
 
 
 def working_arc(cam: Cam) -> tuple[float, float]:
@@ -56,12 +54,13 @@ def family_of(cam: Cam) -> Family:
         raise InputError("[choose]", what, _("write a table [choose] with parameters and bounds"))
     names = tuple(choose.parameters)
     ends = np.array([choose.parameters[name] for name in names], dtype=float)
-    for side in (0, 1):
-        _check_ends(varied(cam, dict(zip(names, ends[:, side].tolist(), strict=True))))
+    _check_ends(cam, dict(choose.parameters))
     low, high = working_arc(cam)
     mirrored = cam.curvature.symmetric
     mesh = Mesh((0.0 if mirrored else low, high), law_of(cam).breaks, mirrored)
-    return Family(names, ends[:, 0], ends[:, 1], lambda values: _trial(cam, names, values), mesh, contact_of(cam))
+    return Family(
+        names, ends[:, 0], ends[:, 1], lambda values: _trial(cam, names, values), mesh, contact_of(cam)
+    )
 
 
 def start_of(cam: Cam, family: Family) -> Array:
@@ -120,11 +119,20 @@ def given_value(cam: Cam, name: str) -> float:
     return float(getattr(getattr(cam, table), key))
 
 
-def _check_ends(cam: Cam) -> None:
-    """Both ends of the box have to be designs: positive numbers, a roller smaller than its path, no stalled start."""
-    if abs(cam.start.pressure_angle) > STEEPEST:
-        what = _("a pressure angle at the start beyond {most:g} deg is not tried").format(
-            most=math.degrees(STEEPEST)
-        )
-        raise InputError("[choose] parameters", what, _("narrow its range"))
-    law_of(cam)
+def _check_ends(cam: Cam, ranges: Mapping[str, tuple[float, float]]) -> None:
+    """The ends of the box have to be designs: positive numbers, a roller smaller than its path, no stalled start."""
+    lows = {name: ends[0] for name, ends in ranges.items()}
+    highs = {name: ends[1] for name, ends in ranges.items()}
+    roller = {name: value for name, value in highs.items() if name == "roller.radius"}
+    for values in (lows, highs, {**lows, **roller}):
+        try:
+            end = varied(cam, values)
+            law_of(end)
+        except InputError as error:
+            what = _("an end of a range is no design: {what}").format(what=error.what)
+            raise InputError("[choose] parameters", what, error.repair) from None
+        if abs(end.start.pressure_angle) > STEEPEST:
+            what = _("a pressure angle at the start beyond {most:g} deg is not tried")
+            raise InputError(
+                "[choose] parameters", what.format(most=math.degrees(STEEPEST)), _("narrow its range")
+            )

@@ -82,9 +82,11 @@ def measures_of(cam: Cam, angles: int) -> dict[str, float]:
         return dict.fromkeys(names, math.nan)
     phi = np.unique(np.append(np.linspace(0.0 if mirrored else low, high, angles), 0.0))
     radius = cam.roller.radius if cam.roller is not None else 0.0
-    columns = [one[:, None] for one in (path.radius(phi)[0], path.pressure_angle(phi), path.curvature(phi)[0])]
-    tried = Tried(phi, *columns, np.array([radius]), mirrored)
-    if not all(np.isfinite(column).all() for column in columns):
+    rho, gamma, curvature = (
+        one[:, None] for one in (path.radius(phi)[0], path.pressure_angle(phi), path.curvature(phi)[0])
+    )
+    tried = Tried(phi, rho, gamma, curvature, np.array([radius]), mirrored)
+    if not np.isfinite(rho * gamma * curvature).all():
         return dict.fromkeys(names, math.nan)
     every = {**MEASURES, **{name: measure for name, (measure, _bound) in ALWAYS.items()}}
     return {name: every[name].sign * float(every[name].of(tried, contact).max()) for name in names}

@@ -103,7 +103,10 @@ def _refined(value: Callable[[Array], Array], phi: Array, known: Array, top: int
     at_node = Greatest(float(known[top]), float(phi[top]))
     low, high = phi[max(top - 1, 0)], phi[min(top + 1, len(phi) - 1)]
     found = minimize_scalar(
-        lambda at: -_finite(value(np.array([at]))[0]), bounds=(low, high), method="bounded", options={"xatol": FINE}
+        lambda at: -_finite(value(np.array([at]))[0]),
+        bounds=(low, high),
+        method="bounded",
+        options={"xatol": FINE},
     )
     inner = Greatest(-float(found.fun), float(found.x))
     return inner if inner.value > at_node.value else at_node

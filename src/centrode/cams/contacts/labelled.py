@@ -9,10 +9,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from centrode.cams.choosing.families import contact_of, working_arc
+from centrode.cams.contacts.along import stress_along
 from centrode.cams.described import path_of
 from centrode.cams.labelled import status_of
 from centrode.cams.sampled import angles_of
-from centrode.cams.contacts.along import stress_along
 from centrode.errors import InputError
 from centrode.kinematics.dataset import named
 from centrode.locale import _
