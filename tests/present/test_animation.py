@@ -74,4 +74,4 @@ def test_colours_that_come_late_are_kept(tmp_path: Path) -> None:
     write_animation(path, coloured, colours)
     for colour, frame in zip(colours, frames(path), strict=True):
         wanted = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
-        assert np.abs(frame[5, 5] - wanted).max() <= 4
+        assert frame[5, 5].tolist() == wanted

@@ -21,6 +21,8 @@ MILLISECONDS = 70
 """A frame is shown so long."""
 SCREEN_DPI = 90
 COLOURS = 256
+EXACT = 48
+"""Of these the commonest of all frames are kept as they are: paper stays white."""
 SAMPLES = 6
 """Frames that the colours of all frames are taken from."""
 
@@ -79,10 +81,26 @@ def _picture(figure: Figure, dark: bool) -> Image.Image:
 
 
 def _palette(frames: Sequence[Image.Image]) -> Image.Image:
-    """One palette for all frames, so that no colour flickers."""
+    """One palette for all frames, so that no colour flickers: the commonest colours as they are, others by median cut."""
     chosen = np.unique(np.linspace(0, len(frames) - 1, SAMPLES).astype(int))
     width, height = frames[0].size
     sheet = Image.new("RGB", (width, height * len(chosen)))
     for row, number in enumerate(chosen):
         sheet.paste(frames[number], (0, row * height))
-    return sheet.quantize(COLOURS, dither=Image.Dither.NONE)
+    counted: Any = sheet.getcolors(sheet.width * sheet.height)
+    common = [colour for _count, colour in sorted(counted, reverse=True)[:EXACT]]
+    cut = sheet.quantize(COLOURS - len(common), dither=Image.Dither.NONE).getpalette() or []
+    chosen_colours = _apart([*common, *zip(*[iter(cut)] * 3, strict=False)])
+    values = [value for colour in chosen_colours for value in colour]
+    values += values[:3] * (COLOURS - len(chosen_colours))
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(values)
+    return palette
+
+
+def _apart(colours: Sequence[tuple[int, ...]]) -> list[tuple[int, ...]]:
+    """The first colour of each cell of four levels: the nearest colour is looked up by cells, and would be any of them."""
+    first: dict[tuple[int, ...], tuple[int, ...]] = {}
+    for colour in colours:
+        first.setdefault(tuple(level // 4 for level in colour), colour)
+    return list(first.values())
