@@ -89,6 +89,14 @@ from .present import machine_figures as machine_figures
 from .cams.labelled import cam as cam
 from .cams.comparison import cam_routes as cam_routes
 from .cams.described import path_of as path_of
+from .study.cam_results import cam_results as cam_results
+from .present import write_cam_csv as write_cam_csv
+from .present import write_cam_routes_csv as write_cam_routes_csv
+from .present import write_cam_tables as write_cam_tables
+from .present import cam_path_figure as cam_path_figure
+from .present import cam_curves_figure as cam_curves_figure
+from .present import cam_routes_figure as cam_routes_figure
+from .present import cam_figures as cam_figures
 
 # Equations in symbols
 from .equations.derivation import equations as equations

@@ -80,7 +80,7 @@ class ExpandedPath(StatePath):
     def stall(self) -> float | None:  # type: ignore[override]
         """Where cos(gamma) = 0 ends the path forwards [rad]; else backwards; None where it does not."""
         ends = [ending.stall.phi for ending in self.endings]
-        return max(ends) if ends else None
+        return float(max(ends)) if ends else None
 
     @property
     def order(self) -> int:

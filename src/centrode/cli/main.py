@@ -16,6 +16,7 @@ import click
 
 import centrode as ct
 from centrode.cli.angles import angles
+from centrode.cli.cam import cam
 from centrode.cli.centres import centres
 from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
@@ -50,6 +51,7 @@ COMMANDS: tuple[click.Command, ...] = (
     limits,
     region,
     flywheel,
+    cam,
     centres,
     centrodes,
     diagrams,

@@ -13,6 +13,13 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.cam_drawing import (
+        cam_curves_figure,
+        cam_figures,
+        cam_path_figure,
+        cam_routes_figure,
+    )
+    from centrode.present.cam_tables import write_cam_csv, write_cam_routes_csv, write_cam_tables
     from centrode.present.centres import centres_figure
     from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
     from centrode.present.centrodes import animate_centrodes, centrodes_figure
@@ -41,6 +48,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "animate_centrodes",
+    "cam_curves_figure",
+    "cam_figures",
+    "cam_path_figure",
+    "cam_routes_figure",
     "centres_figure",
     "centrodes_figure",
     "curvature_figure",
@@ -61,6 +72,9 @@ __all__ = [
     "save_figures",
     "scene_of",
     "sweep_csv",
+    "write_cam_csv",
+    "write_cam_routes_csv",
+    "write_cam_tables",
     "write_centres_csv",
     "write_centrodes_csv",
     "transmission_figure",
@@ -76,6 +90,8 @@ __all__ = [
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "cam_drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
+        "cam_tables": ["write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "centrodes": ["animate_centrodes", "centrodes_figure"],

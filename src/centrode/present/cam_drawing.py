@@ -1,142 +1,196 @@
-"""A cam on paper: roller's path, profile, groove, normals, rollers at the joints, centre."""
+"""Figures of a cam: the roller's path about its centre, curves over the carrier's angle, what parts the routes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle
+from numpy.typing import NDArray
 
-from centrode.cams.frames import frames
-from centrode.cams.profiles.outlines import cam_outlines
-from centrode.locale import _, mark
-from centrode.present.cam_strokes import STROKES, grouped
-from centrode.present.curves import write_legend, write_title
-from centrode.present.shown import labelled, shown_as
-from centrode.present.signs import cross
-from centrode.present.style import INK, MUTED, house_style
+from centrode.locale import _
+from centrode.present.abscissa import Abscissa, angle_ticks
+from centrode.present.curves import Panel, sheet, write_legend, write_title
+from centrode.present.shown import formula, labelled, shown_as
+from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
+from centrode.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    from centrode.cams.profiles.bodies import CamBody
-    from centrode.cams.profiles.outlines import Outline
-    from centrode.model.mechanism import Display
-    from centrode.present.scene import Array
+    from centrode.model.cams import Cam
 
-SAMPLES = 720
-NORMALS = 24
-"""Normals over the turn."""
-MOST_ROLLERS = 12
-ROOM = 0.06
-LAYERS = {
-    "path": mark("path of the roller's centre"),
-    "profile-working": mark("profile, working arc"),
-    "profile-return": mark("profile, return arc"),
-    "groove-working": mark("outer wall, working arc"),
-    "groove-return": mark("outer wall, return arc"),
-}
-UNDERCUT = "#B00020"
+Array = NDArray[np.float64]
+
+CURVES = ("path_radius", "cam_pressure_angle", "law_curvature")
+RAYS = 15.0
+"""Degrees between the rays of the path's figure."""
+
+NORMAL = 0.5
+"""Length of a drawn normal over rho."""
+
+ROUNDING = 1e-17
+"""Differences [m] below this are not drawn."""
 
 
-def cam_figure(
-    body: CamBody, title: str = "", display: Display | None = None, *, groove: bool = False
-) -> Figure:
-    """The cam in its axes: phi = 0 is up, phi grows clockwise.
+def over_carrier(cam: Cam, dataset: xarray.Dataset) -> Abscissa:
+    """The carrier's angle, in the unit of the display."""
+    factor, unit = shown_as("rad", cam.display)
+    phi = dataset["carrier_angle"].to_numpy() * factor
+    order = np.argsort(phi, kind="stable")
+    none = np.zeros(0, dtype=np.intp)
+    quantity = QUANTITIES["carrier_angle"]
+    label = labelled(f"{quantity.title} {formula(quantity.symbol)}", unit)
+    return Abscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
 
-    Parameters
-    ----------
-    body : CamBody
-        Of `cam_body`.
-    title : str
-        Stands below what the figure shows.
-    display : Display, optional
-        Its unit of length; metres if left out.
-    groove : bool
-        Also the outer wall.
-    """
-    factor, unit = shown_as("m", display)
+
+def cam_curves_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
+    """Radius, pressure angle and curvature of a cam's path (`ct.cam`) over the carrier's angle."""
     with house_style():
-        figure = Figure(figsize=(8.4, 6.0), layout="constrained")
+        rows = []
+        for variable in CURVES:
+            quantity = QUANTITIES[variable]
+            factor, unit = shown_as(quantity.unit, cam.display)
+            values = factor * dataset[variable].to_numpy()
+            curves = {quantity.title: values}
+            text = labelled(formula(quantity.symbol), unit)
+            rows.append([Panel(text, unit, curves, pens(curves), legend=False)])
+        figure = sheet(_("Path of the roller's centre"), _(cam.title), rows, over_carrier(cam, dataset))
+        _mark_stall(figure.axes, cam, dataset)
+        return figure
+
+
+def _mark_stall(panels: list[Axes], cam: Cam, dataset: xarray.Dataset) -> None:
+    stall = float(dataset.attrs["stall"])
+    if not math.isfinite(stall):
+        return
+    factor, _unit = shown_as("rad", cam.display)
+    for axes in panels:
+        axes.axvline(stall * factor, color=INK, linewidth=0.9, linestyle=(0, (6, 2, 1.5, 2)))
+    panels[0].annotate(
+        _("stall"), (stall * factor, 1.0), xycoords=("data", "axes fraction"), xytext=(-4, -3),
+        textcoords="offset points", ha="right", va="top", color=INK,
+    )  # fmt: skip
+
+
+def cam_path_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
+    """The path of a cam's roller about its centre, with rays to it and the normals that the pressure angle is from."""
+    with house_style():
+        factor, unit = shown_as("m", cam.display)
+        x, y = (factor * dataset["roller_centre"].sel(axis=axis).to_numpy() for axis in ("x", "y"))
+        width, height = (max(np.nanmax(one), 0.0) - min(np.nanmin(one), 0.0) for one in (x, y))
+        tall = float(np.clip(1.4 + 5.4 * height / max(width, 1e-300), 3.2, 7.2))
+        figure = Figure(figsize=(8.8, tall), layout="constrained")
         axes = figure.subplots()
-        outlines = cam_outlines(body, SAMPLES, groove=groove)
-        keys = draw_outlines(axes, outlines, factor)
-        keys.append((_normals(axes, body, factor, groove), _("normals")))
-        keys.append((_rollers(axes, body, factor), _("roller at the joints")))
-        keys += _undercut(axes, body, factor)
-        extent = factor * max(
-            float(np.ptp(np.concatenate([one.places for one in outlines]), axis=0).max()), 1e-9
+        _draw_rays(axes, dataset, factor)
+        (line,) = axes.plot(x, y, color=PALETTE[0], linewidth=2.0)
+        handles: list[tuple[Artist, str]] = [
+            (line, _("path of the roller's centre")),
+            (Line2D([], [], color=MUTED, linewidth=0.7), _("ray from the cam's centre")),
+            (Line2D([], [], color=PALETTE[1], linewidth=1.1), _("normal of the path")),
+        ]
+        axes.plot([0.0], [0.0], marker="+", markersize=11, color=INK, markeredgewidth=1.4)
+        axes.set_aspect("equal")
+        axes.margins(0.12)
+        for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
+            axis.set_major_formatter(Decimals())
+            axis.set_label_text(labelled(formula(name), unit))
+        write_legend(axes, handles)
+        write_title(figure, _("Path of the roller's centre, and its normals"), _(cam.title))
+        return figure
+
+
+def _draw_rays(axes: Axes, dataset: xarray.Dataset, factor: float) -> None:
+    """Rays from the cam's centre with their angles, and normals of the path: between them is the pressure angle."""
+    phi = dataset["carrier_angle"].to_numpy()
+    radius = factor * dataset["path_radius"].to_numpy()
+    gamma = dataset["cam_pressure_angle"].to_numpy()
+    known = np.isfinite(radius)
+    low, high = np.degrees(phi[known].min()), np.degrees(phi[known].max())
+    greatest = float(radius[known].max())
+    for degrees in np.arange(RAYS * math.ceil(low / RAYS - 1e-9), high + 1e-9, RAYS):
+        nearest = int(np.argmin(np.abs(np.degrees(phi) - degrees) + np.where(known, 0.0, np.inf)))
+        if abs(np.degrees(phi[nearest]) - degrees) > RAYS / 4:
+            continue
+        turn, rho = phi[nearest], radius[nearest]
+        ray = np.array([math.sin(turn), math.cos(turn)])
+        normal = np.array([math.sin(turn - gamma[nearest]), math.cos(turn - gamma[nearest])])
+        inwards = rho * ray - NORMAL * rho * normal
+        x, y = (ray * (rho + 0.075 * greatest)).tolist()
+        axes.plot(*zip((0.0, 0.0), rho * ray, strict=True), color=MUTED, linewidth=0.7)
+        axes.plot(*zip(inwards, rho * ray, strict=True), color=PALETTE[1], linewidth=1.1)
+        axes.text(
+            x, y, f"{degrees:.0f}°".replace("-", "−"), color=GROUND, ha="center", va="center", fontsize=8
         )
-        cross(axes, np.zeros(2), 0.012 * extent, INK)
-        keys.append((Line2D([], [], color=INK, marker="x", linestyle="none"), _("centre of the cam")))
-        finish(axes, labelled("x", unit), labelled("y", unit))
-        write_legend(axes, keys, inches=5.0)
-        write_title(figure, _("Profile of the cam"), title)
-    return figure
 
 
-def draw_outlines(axes: Axes, outlines: Sequence[Outline], factor: float) -> list[tuple[Line2D, str]]:
-    """Draw pieces of outlines in the strokes of their layers; returns entries of a legend."""
-    keys = []
-    for layer, pieces in grouped(outlines).items():
-        for one in pieces:
-            (line,) = axes.plot(*(factor * one.places.T), **STROKES[layer].drawn, zorder=3)
-        keys.append((line, _(LAYERS.get(layer, layer))))
-    return keys
-
-
-def finish(axes: Axes, across: str, up: str) -> None:
-    """Equal scales and some room around."""
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(ROOM)
-    axes.set_xlabel(across)
-    axes.set_ylabel(up)
-
-
-def _normals(axes: Axes, body: CamBody, factor: float, groove: bool) -> Line2D:
-    """Normals from the profile through the roller's centre."""
-    phi = body.closed.start + math.tau * np.arange(NORMALS) / NORMALS
-    frame = frames(body.closed, phi)
-    feet = frame.place - body.roller * frame.normal
-    tips = frame.place + body.roller * frame.normal if groove else frame.place
-    for foot, tip in zip(factor * feet, factor * tips, strict=True):
-        (line,) = axes.plot(*np.stack([foot, tip], axis=1), color=MUTED, linewidth=0.6, zorder=2)
-    return line
-
-
-def _rollers(axes: Axes, body: CamBody, factor: float) -> Line2D:
-    """Rollers at the ends of the working arc and at kinks, with the angle."""
-    kinks = {joint.at for joint in body.kinks}
-    ends = {body.closed.arcs[0].stop, body.closed.stop} if len(body.closed.arcs) > 1 else {body.closed.stop}
-    joints = sorted(kinks | ends)[:MOST_ROLLERS]
-    frame = frames(body.closed, np.array(joints))
-    for at, place in zip(joints, factor * frame.place, strict=True):
-        axes.add_patch(
-            Circle(
-                (place[0], place[1]), factor * body.roller, fill=False, edgecolor=INK, linewidth=0.9, zorder=4
-            )
+def cam_routes_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
+    """What parts the three routes to a cam's path (`ct.cam_routes`), on a logarithmic scale."""
+    with house_style():
+        factor, unit = shown_as("m", cam.display)
+        abscissa = over_carrier(cam, dataset)
+        figure = Figure(figsize=(8.6, 5.2), layout="constrained")
+        axes = figure.subplots()
+        words = {
+            "parting": _("series: (16) less (15)"),
+            "foretold_error": _("series: foretold by its next terms"),
+            "series_error": _("series less steps"),
+            "routes_difference": _("integrated less steps"),
+        }
+        kept = pens(words)
+        handles = []
+        for name, text in words.items():
+            sizes = np.abs(dataset[name].to_numpy()[abscissa.order])
+            shown = np.where(sizes > ROUNDING, factor * sizes, np.nan)
+            pen = kept[name]
+            (line,) = axes.plot(abscissa.values, shown, color=pen.colour, linestyle=pen.dashes)
+            handles.append((line, text))
+        axes.set_yscale("log")
+        axes.set_ylim(bottom=factor * ROUNDING)
+        axes.set_xlim(float(abscissa.values[0]), float(abscissa.values[-1]))
+        angle_ticks(axes.xaxis, float(abscissa.values[0]), float(abscissa.values[-1]), abscissa.unit, 9)
+        axes.set_xlabel(abscissa.label)
+        axes.set_ylabel(labelled(formula("|Δρ|").replace("ρ", r"\rho "), unit))
+        _mark_circle(axes, cam, dataset)
+        write_legend(axes, handles)
+        title = _("Differences of the radius, series cut after {last}").format(
+            last=f"$a_{{{int(dataset.attrs['terms'])}}}$"
         )
-        axes.plot(*place, marker="+", color=INK, markersize=5, markeredgewidth=0.8, zorder=5)
-        _name(axes, at, place, factor * body.roller)
-    return Line2D([], [], color=INK, marker="o", markerfacecolor="none", linestyle="none", markersize=8)
+        write_title(figure, title, _(cam.title))
+        return figure
 
 
-def _name(axes: Axes, at: float, place: Array, room: float) -> None:
-    """The angle of a joint, outside its roller."""
-    away = place * (1.0 + 1.25 * room / float(np.hypot(*place)))
-    degrees = math.degrees(math.remainder(at, math.tau))
-    axes.update_datalim([tuple(away * 1.1)])
-    side = "left" if away[0] >= 0 else "right"
-    axes.text(away[0], away[1], f"{degrees:.4g}°", fontsize=8.5, color=INK, ha=side, va="center", zorder=6)
+def _mark_circle(axes: Axes, cam: Cam, dataset: xarray.Dataset) -> None:
+    """Where the series ends to converge."""
+    factor, _unit = shown_as("rad", cam.display)
+    radius = float(dataset.attrs["radius_of_convergence"]) * factor
+    low, high = axes.get_xlim()
+    for place in (-radius, radius):
+        if low < place < high:
+            axes.axvline(place, color=INK, linewidth=0.9, linestyle=(0, (6, 2, 1.5, 2)))
+            axes.annotate(
+                _("circle of convergence"), (place, 0.34), xycoords=("data", "axes fraction"),
+                xytext=(-4 if place > 0 else 12, 0), textcoords="offset points", rotation=90, ha="right", va="center",
+                color=INK, fontsize=8.5,
+            )  # fmt: skip
 
 
-def _undercut(axes: Axes, body: CamBody, factor: float) -> list[tuple[Line2D, str]]:
-    """Stretches where the roller cuts the profile away, over everything."""
-    line = None
-    for stretch in body.undercuts:
-        phi = np.linspace(stretch.start, stretch.stop, 200)
-        (line,) = axes.plot(*(factor * body.profile(phi).place.T), color=UNDERCUT, linewidth=2.4, zorder=5)
-    return [] if line is None else [(line, _("undercut"))]
+CAM_FIGURES: Mapping[str, tuple[str, Callable[[Cam, xarray.Dataset], Figure]]] = {
+    "cam-path": ("cam-path", cam_path_figure),
+    "cam-curves": ("cam-path", cam_curves_figure),
+    "cam-routes": ("cam-routes", cam_routes_figure),
+}
+"""Figures of a cam's results: name of the file -> name of the dataset, and what draws it."""
+
+
+def cam_figures(cam: Cam, datasets: Mapping[str, xarray.Dataset]) -> dict[str, Figure]:
+    """Figures of a cam by name, of those datasets that are there."""
+    return {
+        name: draw(cam, datasets[source])
+        for name, (source, draw) in CAM_FIGURES.items()
+        if source in datasets
+    }

@@ -1,46 +1,72 @@
-"""Profiles of cams and shoes as CSV."""
+"""Tables of a cam: its path, and the three routes to it."""
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator
-from itertools import product
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.present.shown import shown_as
-from centrode.present.tables import field, unit_of
+from centrode.present.tables import columns_of, unit_of, write_columns
 
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.mechanism import Display
+    from centrode.model.cams import Cam
+
+Column = tuple[str, str, "xarray.DataArray"]
+
+PATH = (
+    "path_radius",
+    "path_radius_slope",
+    "path_radius_second",
+    "cam_pressure_angle",
+    "pressure_sine",
+    "pressure_sine_slope",
+    "pressure_sine_second",
+    "pressure_cosine",
+    "law_curvature",
+    "law_curvature_slope",
+    "drawn_curvature",
+    "roller_centre",
+)
+ROUTES = (
+    "path_radius",
+    "pressure_sine",
+    "pressure_sine_slope",
+    "radius_by_slope",
+    "parting",
+    "foretold_error",
+    "series_error",
+    "routes_difference",
+)
 
 
-def write_profile_csv(dataset: xarray.Dataset, path: Path, display: Display | None = None) -> None:
-    """Write a profile as CSV: UTF-8, one line end everywhere, numbers that read back bit for bit.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        Of `cam_profile` or `shoe_profile`.
-    display : Display, optional
-        Units of lengths and angles; SI and radians if left out.
-    """
-    headers, columns = [], []
-    for header, values in _columns(dataset):
-        factor, shown = shown_as(unit_of(values), display)
-        headers.append(f"{header} [{shown}]" if shown else header)
-        columns.append((values if factor == 1.0 else values * factor).values.tolist())
-    with Path(path).open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(headers)
-        writer.writerows(map(field, row) for row in zip(*columns, strict=True))
+def write_cam_csv(cam: Cam, dataset: xarray.Dataset, path: str | Path) -> None:
+    """Write a cam's path (`ct.cam`) as CSV in the units of its display, one row a sample."""
+    write_columns(path, _columns(dataset, PATH), dataset["status"], cam.display)
 
 
-def _columns(dataset: xarray.Dataset) -> Iterator[tuple[str, xarray.DataArray]]:
-    """One column for each variable, or each axis of places, in the order of the dataset."""
-    for name, values in dataset.data_vars.items():
-        dims = [str(dim) for dim in values.dims if dim != "sample"]
-        for labels in product(*(values[dim].values.tolist() for dim in dims)):
-            yield "_".join([str(name), *map(str, labels)]), values.sel(dict(zip(dims, labels, strict=True)))
+def write_cam_routes_csv(cam: Cam, dataset: xarray.Dataset, path: str | Path) -> None:
+    """Write the three routes to a cam's path (`ct.cam_routes`) as CSV in the units of its display."""
+    write_columns(path, _columns(dataset, ROUTES), dataset["status"], cam.display)
+
+
+def _columns(dataset: xarray.Dataset, variables: tuple[str, ...]) -> Iterator[Column]:
+    angle = dataset["carrier_angle"]
+    yield "carrier_angle", unit_of(angle), angle
+    for variable in variables:
+        yield from columns_of(dataset[variable], variable)
+
+
+CAM_TABLES: Mapping[str, Callable[[Cam, xarray.Dataset, Path], None]] = {
+    "cam-path": write_cam_csv,
+    "cam-routes": write_cam_routes_csv,
+}
+"""How each dataset of a cam's results is written, by the name of its file."""
+
+
+def write_cam_tables(cam: Cam, datasets: Mapping[str, xarray.Dataset], folder: Path) -> None:
+    """Write a CSV of each of a cam's datasets (`CamPart.datasets`) into a folder."""
+    for name, data in datasets.items():
+        if name in CAM_TABLES:
+            CAM_TABLES[name](cam, data, folder / f"{name}.csv")

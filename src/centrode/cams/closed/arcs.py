@@ -82,7 +82,8 @@ class Joint:
 class ClosedPath:
     """Arcs end to end over one turn; angles outside are reduced to it.
 
-    At a joint value and derivatives are those of the arc behind it.
+    At a joint value and derivatives are those of the arc behind it. A single arc may be shorter than a turn: then the
+    path is open, it has no joints, and there is nothing beyond its ends.
     """
 
     arcs: tuple[Arc, ...]
@@ -94,6 +95,11 @@ class ClosedPath:
     @property
     def stop(self) -> float:
         return self.arcs[-1].stop
+
+    @property
+    def whole(self) -> bool:
+        """Whether it goes round a whole turn."""
+        return abs(self.stop - self.start - math.tau) < 1e3 * ROUNDING
 
     @property
     def edges(self) -> tuple[float, ...]:
@@ -116,20 +122,24 @@ class ClosedPath:
         turns = np.floor((given - self.start) / math.tau)
         # what lies within the turn keeps its digits
         places = np.where((given >= self.start) & (given <= self.stop), given, given - math.tau * turns)
-        places = np.clip(places, self.start, self.stop)
+        slack = 1e3 * ROUNDING
+        inside = (places >= self.start - slack) & (places <= self.stop + slack)
+        places = np.where(inside, np.clip(places, self.start, self.stop), np.nan)
         ends = [arc.stop for arc in self.arcs[:-1]]
         return places, np.searchsorted(ends, places, side="right")
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
         """Where arcs meet; the last one closes the turn."""
+        if not self.whole:
+            return ()
         behind = (*self.arcs[1:], self.arcs[0])
         return tuple(_joint(one, two) for one, two in zip(self.arcs, behind, strict=True))
 
     @property
     def greatest_kink(self) -> float:
         """The greatest kink of a joint [rad], without sign."""
-        return max(abs(joint.kink) for joint in self.joints)
+        return max((abs(joint.kink) for joint in self.joints), default=0.0)
 
 
 def _joint(one: Arc, two: Arc) -> Joint:

@@ -39,11 +39,12 @@ CLOSED = 1e-9
 
 @dataclass(frozen=True)
 class CamBody:
-    """A cam with its closed path.
+    """A cam with the path of its roller's centre.
 
     Attributes
     ----------
     closed : ClosedPath
+        Open where the description asks for no return arc.
     roller : float [m]
         Radius of the roller.
     returned : Returned or None
@@ -105,11 +106,11 @@ class CamBody:
         for joint in self.closed.joints:
             here = frames(self.closed, np.array([joint.at])).curvature[0]
             jumps.append(abs(joint.curvature_jump / here))
-        return float(max(jumps))
+        return float(max(jumps, default=0.0))
 
 
 def cam_body(cam: Cam) -> CamBody:
-    """The cam of a description.
+    """The cam of a description: closed by its return arc, open where it has neither that nor a mover.
 
     Raises
     ------
@@ -121,8 +122,9 @@ def cam_body(cam: Cam) -> CamBody:
     if cam.roller is None:
         raise InputError("[roller]", _("a profile needs a roller"), _("give [roller] radius"))
     path, asked = path_of(cam), cam.return_arc or Return()
-    if cam.return_arc is None and cam.mover is None and path.stop - path.start >= math.tau * (1 - CLOSED):
-        return CamBody(_whole_turn(path), cam.roller.radius)
+    if cam.return_arc is None and cam.mover is None:
+        whole = path.stop - path.start >= math.tau * (1 - CLOSED)
+        return CamBody(_whole_turn(path) if whole else ClosedPath((working_arc(path),)), cam.roller.radius)
     working = working_of(cam, path)
     if asked.kind == "mirrored":
         return CamBody(mirrored(working), cam.roller.radius)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import xarray as xr
 
+from centrode.cams.closed.arcs import ClosedPath
 from centrode.cams.frames import Array, frames
 from centrode.cams.profiles.bodies import CamBody, cam_body
 from centrode.cams.wheel.shoe import Shoe
@@ -19,6 +20,8 @@ from centrode.model.cams import Cam
 
 DEFAULT_SAMPLES = 361
 AXES = ["x", "y"]
+SAME = 1e-9
+"""Angles [rad] that are nearer than this are one."""
 
 
 def cam_profile(cam: Cam, samples: int | None = None, *, groove: bool = False) -> xr.Dataset:
@@ -48,11 +51,7 @@ def cam_profile(cam: Cam, samples: int | None = None, *, groove: bool = False) -
 def profile_dataset(body: CamBody, samples: int, *, groove: bool = False) -> xr.Dataset:
     """`cam_profile` of a body."""
     closed = body.closed
-    even = np.linspace(closed.start, closed.stop, samples)
-    joints = np.array([joint.at for joint in closed.joints[:-1]])
-    # a joint that a sample lies on to rounding is the joint
-    apart = np.abs(even[:, None] - joints).min(axis=1, initial=math.inf) > 1e-9
-    phi = np.sort(np.concatenate([even[apart], joints]))
+    phi = _angles(closed, samples)
     frame, inner = frames(closed, phi), body.profile(phi)
     _places, arcs = closed.located(phi)
     kinds = np.array([arc.kind for arc in closed.arcs])
@@ -60,17 +59,25 @@ def profile_dataset(body: CamBody, samples: int, *, groove: bool = False) -> xr.
         "carrier_angle": named("carrier_angle", ("sample",), phi),
         "part": ("sample", kinds[arcs]),
         "roller_centre": named("roller_centre", ("sample", "axis"), frame.place),
-        "roller_centre_radius": named("roller_centre_radius", ("sample",), frame.radius),
+        "path_radius": named("path_radius", ("sample",), frame.radius),
         "profile": named("profile", ("sample", "axis"), inner.place),
         "profile_radius": named("profile_radius", ("sample",), inner.polar_radius),
         "profile_angle": named("profile_angle", ("sample",), inner.polar_angle),
-        "profile_pressure_angle": named("profile_pressure_angle", ("sample",), frame.pressure_angle),
-        "path_bend": named("path_bend", ("sample",), frame.curvature),
+        "cam_pressure_angle": named("cam_pressure_angle", ("sample",), frame.pressure_angle),
+        "path_curvature": named("path_curvature", ("sample",), frame.curvature),
         "profile_bend": named("profile_bend", ("sample",), inner.bend),
     }
     if groove:
         variables["groove"] = named("groove", ("sample", "axis"), body.profile(phi, "outer").place)
     return xr.Dataset(variables, coords={"axis": AXES}, attrs={"roller": body.roller})
+
+
+def _angles(closed: ClosedPath, samples: int) -> Array:
+    """Evenly spaced angles and the joints; a joint that a sample lies on to rounding is the joint."""
+    even = np.linspace(closed.start, closed.stop, samples)
+    joints = np.array([joint.at for joint in closed.joints[:-1]])
+    apart = np.abs(even[:, None] - joints).min(axis=1, initial=math.inf) > SAME
+    return np.sort(np.concatenate([even[apart], joints]))
 
 
 def shoe_profile(cam: Cam, samples: int | None = None) -> xr.Dataset:

@@ -15,7 +15,7 @@ from scipy.interpolate import make_interp_spline
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.present.cam_strokes import STROKES, grouped
+from centrode.present.outline_strokes import STROKES, grouped
 
 if TYPE_CHECKING:
     from centrode.cams.profiles.outlines import Outline

@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from centrode.present.cam_strokes import STROKES, grouped
+from centrode.present.outline_strokes import STROKES, grouped
 
 if TYPE_CHECKING:
     from centrode.cams.profiles.outlines import Outline
