@@ -68,8 +68,8 @@ def write_animation(
         for number, place in enumerate(places, start=1):
             frames.append(_picture(draw(place), dark))
             said(number, len(places))
-    palette = _palette(frames)
-    shown = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    colours = _palette(frames)
+    shown = [_in_colours(frame, colours) for frame in frames]
     shown[0].save(path, save_all=True, append_images=shown[1:], duration=milliseconds, loop=0)
 
 
@@ -80,8 +80,8 @@ def _picture(figure: Figure, dark: bool) -> Image.Image:
     return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
 
-def _palette(frames: Sequence[Image.Image]) -> Image.Image:
-    """One palette for all frames, so that no colour flickers: the commonest colours as they are, others by median cut."""
+def _palette(frames: Sequence[Image.Image]) -> Array:
+    """One palette (n, 3) for all frames, so that no colour flickers: the commonest colours as they are, others cut."""
     chosen = np.unique(np.linspace(0, len(frames) - 1, SAMPLES).astype(int))
     width, height = frames[0].size
     sheet = Image.new("RGB", (width, height * len(chosen)))
@@ -90,17 +90,16 @@ def _palette(frames: Sequence[Image.Image]) -> Image.Image:
     counted: Any = sheet.getcolors(sheet.width * sheet.height)
     common = [colour for _count, colour in sorted(counted, reverse=True)[:EXACT]]
     cut = sheet.quantize(COLOURS - len(common), dither=Image.Dither.NONE).getpalette() or []
-    chosen_colours = _apart([*common, *zip(*[iter(cut)] * 3, strict=False)])
-    values = [value for colour in chosen_colours for value in colour]
-    values += values[:3] * (COLOURS - len(chosen_colours))
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(values)
-    return palette
+    return np.array([*common, *zip(*[iter(cut)] * 3, strict=False)], dtype=float)[:COLOURS]
 
 
-def _apart(colours: Sequence[tuple[int, ...]]) -> list[tuple[int, ...]]:
-    """The first colour of each cell of four levels: the nearest colour is looked up by cells, and would be any of them."""
-    first: dict[tuple[int, ...], tuple[int, ...]] = {}
-    for colour in colours:
-        first.setdefault(tuple(level // 4 for level in colour), colour)
-    return list(first.values())
+def _in_colours(frame: Image.Image, colours: Array) -> Image.Image:
+    """A frame in the nearest colours of the palette; pillow's own search is by cells of four levels."""
+    levels = np.asarray(frame).astype(np.int64)
+    packed = (levels[..., 0] << 16) + (levels[..., 1] << 8) + levels[..., 2]
+    each, where = np.unique(packed, return_inverse=True)
+    places = np.stack([each >> 16, each >> 8 & 255, each & 255], axis=1)
+    nearest = np.argmin(((places[:, None] - colours[None]) ** 2).sum(axis=2), axis=1)
+    picture = Image.fromarray(nearest[where].reshape(packed.shape).astype(np.uint8))
+    picture.putpalette(colours.astype(int).reshape(-1).tolist())
+    return picture
