@@ -1,156 +1,121 @@
-"""A cam's contact and what was chosen for it, in sentences and rows."""
+"""What was chosen for a cam, in words: parameters, measures, the bounds that bind, the proof."""
 
 from __future__ import annotations
 
-from math import degrees, isfinite
-from typing import TYPE_CHECKING
-
-import numpy as np
-
+from centrode.cams.choosing.chosen import CamChoice, choose_cam
 from centrode.cams.choosing.measures import MEASURES
 from centrode.locale import _, ngettext
-from centrode.quantities import display_unit, typeset_unit
+from centrode.model.cams import Cam
+from centrode.study.cam_said import Asked, CamPart, Rows, Table, Units
+from centrode.study.scalars import Scalar
 
-if TYPE_CHECKING:
-    import xarray
-
-    from centrode.cams.choosing.choice import Design
-    from centrode.cams.choosing.chosen import CamChoice
-    from centrode.model.cams import Cam
-
-Rows = list[tuple[str, str]]
 MEGA = 1e-6
+UNITS = {
+    "curvature.k1": "1/rad",
+    "start.radius": "m",
+    "roller.radius": "m",
+    "start.pressure_angle": "rad",
+}
+"""SI units of parameters; others are curvatures."""
 
 
-def contact_rows(cam: Cam, contact: xarray.Dataset) -> Rows:
-    """The greatest contact stress by both formulas, and the strip there."""
-    facts = contact.attrs
-    if not isfinite(facts["greatest_stress"]):
-        return [(_("contact stress"), _("the cam is undercut all along"))]
-    sign = "±" if cam.curvature.symmetric and facts["greatest_stress_at"] else ""
-    told = _("{stress:.5g} MPa at {sign}{angle:.5g} deg").format(
-        stress=MEGA * facts["greatest_stress"], sign=sign, angle=degrees(facts["greatest_stress_at"])
+def choice_part(cam: Cam, asked: Asked) -> CamPart | None:
+    """What `[choose]` asks for; nothing where the description has none."""
+    if cam.choose is None:
+        return None
+    found = choose_cam(cam, front=asked.front)
+    choice = found.choice
+    scalars = {
+        f"chosen.{name}": Scalar(value, parameter_unit(cam, name))
+        for name, value in choice.chosen.parameters.items()
+    }
+    for name, judged in choice.chosen.measures.items():
+        scalars[f"chosen.{name}"] = Scalar(judged.value, MEASURES[name].unit)
+    failures = () if choice.admissible else (_("no design keeps all bounds: ") + missed_text(found),)
+    tables = (_parameters(found), _measures(found))
+    return CamPart(
+        _("Chosen parameters"), choice_rows(found), scalars, {}, tables, failures, {"choice": found}
     )
-    rows = [
-        (_("greatest contact stress"), told + _bound(facts)),
-        ("", _source(facts)),
-    ]
-    at = int(np.nanargmax(contact["contact_stress"].to_numpy()))
-    strip = _("strip of {width:.4g} mm, greatest shear {shear:.4g} MPa at a depth of {depth:.4g} mm")
-    rows.append(
-        (
-            "",
-            strip.format(
-                width=2e3 * float(contact["contact_half_width"][at]),
-                shear=MEGA * float(contact["contact_shear"][at]),
-                depth=1e3 * float(contact["contact_depth"][at]),
-            ),
-        )
-    )
-    return rows
 
 
 def choice_rows(found: CamChoice) -> Rows:
-    """What was chosen, with the measures of the start beside, the bounds that bind, and the proof."""
-    choice, cam = found.choice, found.cam
+    """What was made best, how the search ended, the bounds that bind, and the proof.
+
+    Parameters
+    ----------
+    found : CamChoice
+        Of `choose_cam`.
+    """
+    choice = found.choice
     best = _(MEASURES[choice.best].title)
+    agree = ngettext("{n} of {of} search ended there", "{n} of {of} searches ended there", choice.searches)
     rows = [
-        (
-            _("chosen for the least"),
-            best if choice.admissible else _("{what}, but no design keeps all bounds").format(what=best),
-        )
+        (_("made least"), best),
+        (_("searches"), agree.format(n=min(choice.agreeing, choice.searches), of=choice.searches)),
     ]
-    for name, value in choice.chosen.parameters.items():
-        rows.append(
-            (name, _was(_parameter(cam, name, value), _parameter(cam, name, choice.start.parameters[name])))
-        )
-    for name in choice.chosen.measures:
-        rows.append((_(MEASURES[name].title), _measure(cam, choice.chosen, choice.start, name)))
-    return [*rows, *_ending_rows(found)]
+    if choice.at_ends:
+        rows.append((_("at an end of its range"), ", ".join(choice.at_ends)))
+    if not choice.admissible:
+        told = _("no design keeps all bounds; the nearest misses {bounds}").format(bounds=missed_text(found))
+        return [*rows, (_("result"), told)]
+    for name, by in choice.binding.items():
+        moved = _("with 1 % more of it the best value changes by {change:+.3g} %")
+        label = _("binds: {measure}").format(measure=_(MEASURES[name].title))
+        rows.append((label, moved.format(change=-MEASURES[name].sign * by)))
+    return [*rows, *_proof(found)]
 
 
 def missed_text(found: CamChoice) -> str:
     """By how much the nearest design misses its bounds: "contact stress by 12.3 %"."""
-    misses = found.choice.chosen.misses
-    each = [
-        _("{measure} by {part:.3g} %").format(measure=_(MEASURES[name].title), part=100 * by)
-        for name, by in misses.items()
-    ]
-    return ", ".join(each)
+    each = _("{measure} by {part:.3g} %")
+    return ", ".join(
+        each.format(measure=_(MEASURES[name].title), part=100 * by)
+        for name, by in found.choice.chosen.misses.items()
+    )
 
 
-def _ending_rows(found: CamChoice) -> Rows:
-    choice, proof = found.choice, found.proof
-    agree = ngettext("{n} of {of} search ended there", "{n} of {of} searches ended there", choice.searches)
-    rows = [(_("searches"), agree.format(n=min(choice.agreeing, choice.searches), of=choice.searches))]
-    if choice.at_ends:
-        rows.append((_("at the end of its range"), ", ".join(choice.at_ends)))
-    if not choice.admissible:
-        return [*rows, (_("missed by the nearest design"), missed_text(found))]
-    for name, by in choice.binding.items():
-        moved = _("1 % more of it changes the best value by {change:+.3g} %")
-        rows.append(
-            (
-                _("binds: {measure}").format(measure=_(MEASURES[name].title)),
-                moved.format(change=-MEASURES[name].sign * by),
-            )
-        )
-    near = _("{admissible} of {all} neighbours keep the bounds, none is better")
+def parameter_unit(cam: Cam, name: str) -> str:
+    """SI unit of a parameter: that of k1 depends on the law."""
+    if name == "curvature.k1" and cam.curvature.law == "linear":
+        return "1/m/rad"
+    return UNITS.get(name, "1/m")
+
+
+def _proof(found: CamChoice) -> Rows:
+    proof = found.proof
+    kept = _("kept along the path itself, to {excess:.0e} of them").format(excess=max(proof.excess, 1e-9))
+    near = _("{admissible} of {all} near by keep the bounds, none of them is better")
     if proof.gain > 0:
-        near = _("{admissible} of {all} neighbours keep the bounds, one is better by {gain:.2g}")
-    rows.append(
-        (_("looked at"), near.format(admissible=proof.admissible, all=proof.neighbours, gain=proof.gain))
-    )
-    return rows
+        near = _("{admissible} of {all} near by keep the bounds, one is better by {gain:.2g} of the value")
+    told = near.format(admissible=proof.admissible, all=proof.neighbours, gain=proof.gain)
+    return [(_("bounds"), kept), (_("other designs"), told)]
 
 
-def _bound(facts: dict[str, float]) -> str:
-    admissible = facts.get("admissible_stress")
-    if admissible is None:
-        return ""
-    told = (
-        _(", admissible {stress:.5g} MPa")
-        if facts["greatest_stress"] <= admissible
-        else _(", more than the admissible {stress:.5g} MPa")
-    )
-    return told.format(stress=MEGA * admissible)
+def _parameters(found: CamChoice) -> Table:
+    units = Units(found.cam)
+    chosen, start = found.choice.chosen.parameters, found.choice.start.parameters
+    assert found.cam.choose is not None
+    lines: list[tuple[str, ...]] = []
+    for name, value in chosen.items():
+        unit = parameter_unit(found.cam, name)
+        low, high = found.cam.choose.parameters[name]
+        lines.append((name, *(units.text(one, unit) for one in (value, start[name], low, high))))
+    return Table(_("Parameters"), (_("parameter"), _("chosen"), _("start"), _("from"), _("to")), lines)
 
 
-def _source(facts: dict[str, float]) -> str:
-    return _("{stress:.5g} MPa by the source's formula, with 0.418").format(
-        stress=MEGA * facts["greatest_stress_by_source"]
-    )
-
-
-def _measure(cam: Cam, chosen: Design, start: Design, name: str) -> str:
-    judged = chosen.measures[name]
-    told = _was(_shown(cam, name, judged.value), _shown(cam, name, start.measures[name].value))
-    if judged.bound is None:
-        return told
-    limit = _("{told}; at least {bound}") if MEASURES[name].least else _("{told}; at most {bound}")
-    return limit.format(told=told, bound=_shown(cam, name, judged.bound))
-
-
-def _was(now: str, before: str) -> str:
-    return _("{now} (start {before})").format(now=now, before=before)
+def _measures(found: CamChoice) -> Table:
+    lines: list[tuple[str, ...]] = []
+    for name, judged in found.choice.chosen.measures.items():
+        bound = ""
+        if judged.bound is not None:
+            told = _("at least {value}") if MEASURES[name].least else _("at most {value}")
+            bound = told.format(value=_shown(found.cam, name, judged.bound))
+        before = _shown(found.cam, name, found.choice.start.measures[name].value)
+        lines.append((_(MEASURES[name].title), _shown(found.cam, name, judged.value), before, bound))
+    return Table(_("Measures"), (_("measure"), _("chosen"), _("start"), _("bound")), lines)
 
 
 def _shown(cam: Cam, name: str, value: float) -> str:
     """A value of a measure with its unit."""
     unit = MEASURES[name].unit
-    if unit == "Pa":
-        return f"{MEGA * value:.6g} MPa"
-    return _in_units(cam, value, unit)
-
-
-def _parameter(cam: Cam, name: str, value: float) -> str:
-    units = {"start.radius": "m", "roller.radius": "m", "start.pressure_angle": "rad"}
-    slope = "1/m/rad" if cam.curvature.law == "linear" else "1/rad"
-    unit = units.get(name, slope if name == "curvature.k1" else "1/m")
-    return _in_units(cam, value, unit)
-
-
-def _in_units(cam: Cam, value: float, unit: str) -> str:
-    angle = "rad" if "/rad" in unit else cam.display.angle
-    factor, shown = display_unit(unit, cam.display.length, angle)
-    return f"{factor * value:.6g} {typeset_unit(shown)}"
+    return f"{MEGA * value:.6g} MPa" if unit == "Pa" else Units(cam).text(value, unit)

@@ -34,7 +34,11 @@ class CamChoice:
 
 
 def choose_cam(
-    cam: Cam, points: int = POINTS, said: Callable[[int, int], None] = lambda _done, _of: None
+    cam: Cam,
+    points: int = POINTS,
+    *,
+    front: bool = True,
+    said: Callable[[int, int], None] = lambda _done, _of: None,
 ) -> CamChoice:
     """Choose the parameters that `[choose]` names, so that its bounds are kept and one measure is least.
 
@@ -44,6 +48,8 @@ def choose_cam(
         With `[choose]`.
     points : int
         Of the front, where `trade_off` names a measure.
+    front : bool
+        Also the front.
     said : callable
         Told how many of the front's points are done, and of how many.
 
@@ -62,7 +68,7 @@ def choose_cam(
     start, best, bounds = start_of(cam, family), cam.choose.minimise, bounds_of(cam)
     choice = choose(family, start, best, bounds)
     chosen = chosen_cam(cam, choice)
-    against, front = cam.choose.trade_off, None
-    if against is not None:
-        front = trade_off(family, start, best, against, bounds, points, said)
-    return CamChoice(chosen, choice, prove(chosen, bounds, best), front)
+    against = cam.choose.trade_off
+    wanted = front and against is not None
+    found = trade_off(family, start, best, against or "", bounds, points, said) if wanted else None
+    return CamChoice(chosen, choice, prove(chosen, bounds, best), found)
