@@ -98,6 +98,22 @@ from .present import cam_curves_figure as cam_curves_figure
 from .present import cam_routes_figure as cam_routes_figure
 from .present import cam_figures as cam_figures
 
+# Profiles of cams, walking wheels
+from .cams.profiles.tables import cam_profile as cam_profile
+from .cams.profiles.tables import shoe_profile as shoe_profile
+from .cams.profiles.tables import walking_wheel as walking_wheel
+from .cams.profiles.bodies import cam_body as cam_body
+from .cams.profiles.outlines import cam_outlines as cam_outlines
+from .cams.profiles.outlines import shoe_outlines as shoe_outlines
+from .cams.wheel.rolling import rolling as rolling
+from .present import write_profile_csv as write_profile_csv
+from .present import write_outlines_svg as write_outlines_svg
+from .present import write_outlines_dxf as write_outlines_dxf
+from .present import write_cam_outlines as write_cam_outlines
+from .present import profile_figure as profile_figure
+from .present import walking_figure as walking_figure
+from .present import cam_body_figures as cam_body_figures
+
 # Equations in symbols
 from .equations.derivation import equations as equations
 from .present import equations_text as equations_text

@@ -13,6 +13,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.cam_bodies import cam_body_figures
     from centrode.present.cam_drawing import (
         cam_curves_figure,
         cam_figures,
@@ -34,7 +35,12 @@ if TYPE_CHECKING:
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
     from centrode.present.machine_figures import machine_figures
+    from centrode.present.outline_dxf import write_outlines_dxf
+    from centrode.present.outline_files import write_cam_outlines
+    from centrode.present.outline_svg import write_outlines_svg
     from centrode.present.plan_drawing import plan_figure
+    from centrode.present.profile_drawing import profile_figure
+    from centrode.present.profile_tables import write_profile_csv
     from centrode.present.reading import scene_of
     from centrode.present.reduction_figures import reduction_figures
     from centrode.present.reduction_tables import write_reduction_csv
@@ -45,9 +51,11 @@ if TYPE_CHECKING:
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
     from centrode.present.variant_folders import write_variants
+    from centrode.present.walking_drawing import walking_figure
 
 __all__ = [
     "animate_centrodes",
+    "cam_body_figures",
     "cam_curves_figure",
     "cam_figures",
     "cam_path_figure",
@@ -68,6 +76,7 @@ __all__ = [
     "motion_table",
     "reduction_figures",
     "plan_figure",
+    "profile_figure",
     "region_figure",
     "save_figures",
     "scene_of",
@@ -78,6 +87,11 @@ __all__ = [
     "write_centres_csv",
     "write_centrodes_csv",
     "transmission_figure",
+    "walking_figure",
+    "write_cam_outlines",
+    "write_outlines_dxf",
+    "write_outlines_svg",
+    "write_profile_csv",
     "write_coefficients_csv",
     "write_integration_csv",
     "write_motion_csv",
@@ -90,6 +104,7 @@ __all__ = [
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "cam_bodies": ["cam_body_figures"],
         "cam_drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
         "cam_tables": ["write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
         "centres": ["centres_figure"],
@@ -104,7 +119,12 @@ _attached, __dir__, _names = lazy_loader.attach(
         "figures": ["motion_figures"],
         "machine_figures": ["machine_figures"],
         "instant_drawing": ["diagram_figures"],
+        "outline_dxf": ["write_outlines_dxf"],
+        "outline_files": ["write_cam_outlines"],
+        "outline_svg": ["write_outlines_svg"],
         "plan_drawing": ["plan_figure"],
+        "profile_drawing": ["profile_figure"],
+        "profile_tables": ["write_profile_csv"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
         "reading": ["scene_of"],
@@ -117,6 +137,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],
         "variant_folders": ["write_variants"],
+        "walking_drawing": ["walking_figure"],
     },
 )
 

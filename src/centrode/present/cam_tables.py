@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from centrode.present.profile_tables import write_profile_csv
 from centrode.present.tables import columns_of, unit_of, write_columns
 
 if TYPE_CHECKING:
@@ -61,6 +62,8 @@ def _columns(dataset: xarray.Dataset, variables: tuple[str, ...]) -> Iterator[Co
 CAM_TABLES: Mapping[str, Callable[[Cam, xarray.Dataset, Path], None]] = {
     "cam-path": write_cam_csv,
     "cam-routes": write_cam_routes_csv,
+    "cam-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
+    "shoe-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
 }
 """How each dataset of a cam's results is written, by the name of its file."""
 

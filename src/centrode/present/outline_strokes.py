@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from centrode.present.style import PALETTE
-
 if TYPE_CHECKING:
     from centrode.cams.profiles.outlines import Outline
 
@@ -35,13 +33,16 @@ class Stroke:
         return {"color": self.colour, "linewidth": points * 1.4, "linestyle": dashes}
 
 
+BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#8A8A8A"
+"""Colours of figures (style), said here anew: files for machines are written without a library for figures."""
+
 STROKES: Mapping[str, Stroke] = {
-    "path": Stroke("#8A8A8A", 0.25, (4.0, 1.0, 0.6, 1.0), 8),
-    "profile-working": Stroke(PALETTE[0], 0.5, (), 5),
-    "profile-return": Stroke(PALETTE[1], 0.5, (3.0, 1.2), 1),
-    "groove-working": Stroke(PALETTE[0], 0.35, (), 4),
-    "groove-return": Stroke(PALETTE[1], 0.35, (3.0, 1.2), 30),
-    "shoe": Stroke(PALETTE[2], 0.5, (), 3),
+    "path": Stroke(GREY, 0.25, (4.0, 1.0, 0.6, 1.0), 8),
+    "profile-working": Stroke(BLUE, 0.5, (), 5),
+    "profile-return": Stroke(VERMILION, 0.5, (3.0, 1.2), 1),
+    "groove-working": Stroke(BLUE, 0.35, (), 4),
+    "groove-return": Stroke(VERMILION, 0.35, (3.0, 1.2), 30),
+    "shoe": Stroke(GREEN, 0.5, (), 3),
 }
 
 

@@ -15,8 +15,8 @@ from matplotlib.patches import Circle
 from centrode.cams.frames import frames
 from centrode.cams.profiles.outlines import cam_outlines
 from centrode.locale import _, mark
-from centrode.present.outline_strokes import STROKES, grouped
 from centrode.present.curves import write_legend, write_title
+from centrode.present.outline_strokes import STROKES, grouped
 from centrode.present.shown import labelled, shown_as
 from centrode.present.signs import cross
 from centrode.present.style import INK, MUTED, house_style
@@ -42,7 +42,7 @@ LAYERS = {
 UNDERCUT = "#B00020"
 
 
-def cam_figure(
+def profile_figure(
     body: CamBody, title: str = "", display: Display | None = None, *, groove: bool = False
 ) -> Figure:
     """The cam in its axes: phi = 0 is up, phi grows clockwise.

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from centrode.model.cams import Cam
 from centrode.study.cam_path import path_part
+from centrode.study.cam_profile import profile_part
 from centrode.study.cam_routes import routes_part
 from centrode.study.cam_said import Asked, CamPart
+from centrode.study.cam_walking import walking_part
 from centrode.study.scalars import Scalar
 
 
@@ -26,6 +28,8 @@ class MakesPart(Protocol):
 PARTS: Mapping[str, MakesPart] = {
     "path": path_part,
     "routes": routes_part,
+    "profile": profile_part,
+    "walking": walking_part,
 }
 """Parts by name, in the order in which they are computed and shown."""
 
@@ -43,12 +47,19 @@ class CamResults:
         return {name: one for part in self.parts.values() for name, one in part.scalars.items()}
 
     @property
+    def objects(self) -> dict[str, Any]:
+        """What drawings need besides the datasets."""
+        return {name: one for part in self.parts.values() for name, one in part.objects.items()}
+
+    @property
     def failures(self) -> list[str]:
         """What the cam cannot do of what was asked."""
         return [one for part in self.parts.values() for one in part.failures]
 
 
-def cam_results(cam: Cam, samples: int | None = None, terms: int | None = None) -> CamResults:
+def cam_results(
+    cam: Cam, samples: int | None = None, terms: int | None = None, *, groove: bool = False
+) -> CamResults:
     """Everything about the cam of a description.
 
     Parameters
@@ -58,12 +69,14 @@ def cam_results(cam: Cam, samples: int | None = None, terms: int | None = None) 
         Evenly spaced over the range; the description's own number, else 361.
     terms : int
         Of the power series; the description's own number, else 20.
+    groove : bool
+        Also the outer wall of a groove that the roller runs in.
 
     Raises
     ------
     InputError
         What `ct.cam` and `ct.cam_routes` refuse.
     """
-    asked = Asked(samples, terms)
+    asked = Asked(samples, terms, groove)
     found = {name: make(cam, asked) for name, make in PARTS.items()}
     return CamResults(cam, {name: part for name, part in found.items() if part is not None})

@@ -18,10 +18,11 @@ Rows: TypeAlias = list[tuple[str, str]]
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked for besides the description: numbers of samples and of terms of the series."""
+    """What is asked for besides the description: numbers of samples and of terms of the series, a groove."""
 
     samples: int | None = None
     terms: int | None = None
+    groove: bool = False
 
 
 @dataclass(frozen=True)

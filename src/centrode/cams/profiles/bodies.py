@@ -19,6 +19,7 @@ from centrode.cams.profiles.equidistants import (
     Side,
     Undercut,
     equidistant,
+    fitting,
     greatest_roller,
     signed,
     undercut,
@@ -71,11 +72,9 @@ class CamBody:
         """The radius [m] that the roller has to stay below, and where [rad]."""
         return greatest_roller(self.closed, self.closed.edges)
 
-    @cached_property
-    def greatest_roller_in_groove(self) -> tuple[float, float]:
-        """The same for a groove, whose outer wall has its own hollows."""
-        inner, outer = self.greatest_roller, greatest_roller(self.closed, self.closed.edges, "outer")
-        return min(inner, outer)
+    def fit_groove(self) -> None:
+        """Raise InputError where the roller is larger than a hollow, which the outer wall would have to follow."""
+        fitting(self.closed, self.closed.edges, self.roller, "outer")
 
     def _corner(self, number: int) -> Undercut | None:
         """The stretch about an outward corner of mirror images that the roller does not follow; None elsewhere.

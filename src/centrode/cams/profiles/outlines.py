@@ -49,7 +49,14 @@ def cam_outlines(body: CamBody, samples: int, *, groove: bool = False) -> list[O
     ----------
     samples : int
         Spaces between points over the whole turn, about.
+
+    Raises
+    ------
+    InputError
+        The roller is larger than a hollow of the groove.
     """
+    if groove:
+        body.fit_groove()
     found: list[Outline] = []
     for arc, phi in pieces(body.closed.arcs, samples):
         frame = frames(arc.curve, phi)

@@ -43,7 +43,8 @@ def cam_profile(cam: Cam, samples: int | None = None, *, groove: bool = False) -
     Raises
     ------
     InputError, MotionError
-        As the description: no roller, bounds that cannot be kept, a path that does not close.
+        As the description: no roller, one too large for a hollow of the groove, bounds that cannot be kept, a
+        path that does not close.
     """
     return profile_dataset(cam_body(cam), count_of(cam, samples), groove=groove)
 
@@ -68,6 +69,7 @@ def profile_dataset(body: CamBody, samples: int, *, groove: bool = False) -> xr.
         "profile_bend": named("profile_bend", ("sample",), inner.bend),
     }
     if groove:
+        body.fit_groove()
         variables["groove"] = named("groove", ("sample", "axis"), body.profile(phi, "outer").place)
     return xr.Dataset(variables, coords={"axis": AXES}, attrs={"roller": body.roller})
 
