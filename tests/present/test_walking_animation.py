@@ -45,7 +45,13 @@ def test_the_animation_is_written(tmp_path: Path) -> None:
     for dark in (False, True):
         path = tmp_path / f"{dark}.gif"
         animate_walking(
-            walking_wheel(cam), path, cam.title, cam.display, frames=4, dark=dark, said=lambda *at: said.append(at)
+            walking_wheel(cam),
+            path,
+            cam.title,
+            cam.display,
+            frames=4,
+            dark=dark,
+            said=lambda *at: said.append(at),
         )
         with Image.open(path) as picture:
             assert picture.n_frames == 4

@@ -66,6 +66,12 @@ def trade_off_figure(found: CamChoice) -> Figure | None:
     return figure
 
 
+def choice_figures(found: CamChoice) -> dict[str, Figure]:
+    """The figure of a choice's front by name, where there is one."""
+    figure = trade_off_figure(found)
+    return {} if figure is None else {"cam-choice": figure}
+
+
 def parameter_symbol(name: str) -> tuple[str, str, str]:
     """Letter, index and SI unit of a parameter; a spline's points are numbered."""
     if name.startswith("curvature.points."):

@@ -12,8 +12,8 @@ from centrode.present.cam_choice import measure_shown, parameter_unit
 from centrode.present.shown import shown_as
 
 if TYPE_CHECKING:
-    from centrode.cams.choosing.chosen import CamChoice
     from centrode.cams.choosing.choice import Design
+    from centrode.cams.choosing.chosen import CamChoice
 
 
 def write_choice(found: CamChoice, folder: Path) -> None:
@@ -40,9 +40,12 @@ def write_choice(found: CamChoice, folder: Path) -> None:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(headers)
         for word, design in _designs(found):
-            values = [design.parameters[name] * factor for name, (factor, _) in zip(names, shown, strict=True)]
+            values = [
+                design.parameters[name] * factor for name, (factor, _) in zip(names, shown, strict=True)
+            ]
             values += [
-                design.measures[name].value * factor for name, (factor, _) in zip(measures, units, strict=True)
+                design.measures[name].value * factor
+                for name, (factor, _) in zip(measures, units, strict=True)
             ]
             writer.writerow([word, *values, "no" if design.misses else "yes"])
     if found.choice.admissible:

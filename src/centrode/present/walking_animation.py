@@ -29,7 +29,7 @@ def animate_walking(
     title: str = "",
     display: Display | None = None,
     *,
-    frames: int = FRAMES,
+    frames: int | None = None,
     dark: bool = False,
     said: Callable[[int, int], None] = no_progress,
 ) -> None:
@@ -48,14 +48,14 @@ def animate_walking(
     display : Display, optional
         Its unit of length; metres if left out.
     frames : int
-        Of a step.
+        Of a step; 36 if left out.
     dark : bool
         Light lines on a dark ground.
     said : callable
         Told after each frame how many are done, and of how many.
     """
     factor, _unit = shown_as("m", display)
-    places = loop_places(-wheel.half, math.tau / wheel.legs, frames)
+    places = loop_places(-wheel.half, math.tau / wheel.legs, frames or FRAMES)
     write_animation(path, lambda turned: _drawn(wheel, turned, factor, title), places, dark=dark, said=said)
 
 

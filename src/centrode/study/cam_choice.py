@@ -31,7 +31,10 @@ def choice_part(cam: Cam, asked: Asked) -> CamPart | None:
     }
     for name, judged in choice.chosen.measures.items():
         scalars[f"chosen.{name}"] = Scalar(judged.value, MEASURES[name].unit)
-    failures = () if choice.admissible else (_("no design keeps all bounds: ") + missed_text(found),)
+    failures: tuple[str, ...] = ()
+    if not choice.admissible:
+        what = _("no design keeps all bounds; the nearest misses {bounds}").format(bounds=missed_text(found))
+        failures = (f"{what}; " + _("move a bound, or widen the ranges of the parameters"),)
     tables = (_parameters(found), _measures(found))
     return CamPart(
         _("Chosen parameters"), choice_rows(found), scalars, {}, tables, failures, {"choice": found}
@@ -59,7 +62,7 @@ def choice_rows(found: CamChoice) -> Rows:
         told = _("no design keeps all bounds; the nearest misses {bounds}").format(bounds=missed_text(found))
         return [*rows, (_("result"), told)]
     for name, by in choice.binding.items():
-        moved = _("with 1 % more of it the best value changes by {change:+.3g} %")
+        moved = _("a bound greater by 1 % changes the best value by {change:+.3g} %")
         label = _("binds: {measure}").format(measure=_(MEASURES[name].title))
         rows.append((label, moved.format(change=-MEASURES[name].sign * by)))
     return [*rows, *_proof(found)]
@@ -100,7 +103,9 @@ def _parameters(found: CamChoice) -> Table:
         unit = parameter_unit(found.cam, name)
         low, high = found.cam.choose.parameters[name]
         lines.append((name, *(units.text(one, unit) for one in (value, start[name], low, high))))
-    return Table(_("Parameters"), (_("parameter"), _("chosen"), _("start"), _("from"), _("to")), lines)
+    return Table(
+        _("Parameters"), (_("parameter"), _("chosen"), _("start"), _("from"), _("to")), lines, named=True
+    )
 
 
 def _measures(found: CamChoice) -> Table:
@@ -112,7 +117,7 @@ def _measures(found: CamChoice) -> Table:
             bound = told.format(value=_shown(found.cam, name, judged.bound))
         before = _shown(found.cam, name, found.choice.start.measures[name].value)
         lines.append((_(MEASURES[name].title), _shown(found.cam, name, judged.value), before, bound))
-    return Table(_("Measures"), (_("measure"), _("chosen"), _("start"), _("bound")), lines)
+    return Table(_("Measures"), (_("measure"), _("chosen"), _("start"), _("bound")), lines, named=True)
 
 
 def _shown(cam: Cam, name: str, value: float) -> str:

@@ -114,7 +114,8 @@ def _stall(cam: Cam, path: RollerPath) -> tuple[dict[str, Scalar], tuple[str, st
         place = units.angle(path.stall, 9)
         failure = _("the follower stalls at {place}, where the pressure angle is 90 deg").format(place=place)
         row = (_("stall"), _("at {place}, inside the range").format(place=place))
-        return {"cam_stall": Scalar(path.stall, "rad")}, row, (failure,)
+        repair = _("end the range before that angle")
+        return {"cam_stall": Scalar(path.stall, "rad")}, row, (f"{failure}; {repair}",)
     beyond = stall_beyond(cam)
     if beyond is None:
         return {}, (_("stall"), _("none in the range")), ()
