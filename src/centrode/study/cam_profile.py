@@ -22,8 +22,9 @@ def profile_part(cam: Cam, asked: Asked) -> CamPart | None:
     try:
         body = cam_body(cam)
     except MotionError as refusal:
-        rows = [(_("return arc"), refusal.what)]
-        return CamPart(heading, rows, {}, failures=(str(refusal),))
+        return CamPart(
+            heading, [(_("return arc"), _("none"))], {}, failures=(f"{refusal.what}; {refusal.repair}",)
+        )
     units = Units(cam)
     rows = [
         (_("roller"), _("radius {radius}").format(radius=units.text(body.roller))),

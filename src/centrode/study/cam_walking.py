@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from centrode.cams.profiles.tables import count_of, shoe_dataset, walking_wheel
+from centrode.cams.profiles.bodies import cam_body
+from centrode.cams.profiles.tables import count_of, shoe_dataset, wheel_of
 from centrode.cams.wheel.rolling import Rolling, rolling
 from centrode.cams.wheel.walking import Mover
 from centrode.errors import MotionError
@@ -13,6 +14,8 @@ from centrode.model.cams import Cam
 from centrode.study.cam_said import Asked, CamPart, Rows, Units
 from centrode.study.scalars import Scalar
 
+LEAST_ANGLE = 1e-9
+"""Smaller angles [rad] are said to be zero."""
 DUG = 1e-9
 """Share of the hub's height by which a shoe may seem to dig in by rounding."""
 
@@ -23,9 +26,13 @@ def walking_part(cam: Cam, asked: Asked) -> CamPart | None:
         return None
     heading = _("Walking wheel")
     try:
-        wheel = walking_wheel(cam)
+        body = cam_body(cam)
+    except MotionError:  # told of the profile
+        return None
+    try:
+        wheel = wheel_of(cam, body)
     except MotionError as refusal:
-        return CamPart(heading, [(_("shoe"), refusal.what)], {}, failures=(str(refusal),))
+        return CamPart(heading, [(_("shoe"), _("none"))], {}, failures=(f"{refusal.what}; {refusal.repair}",))
     proof, units = rolling(wheel), Units(cam)
     rows = [*_travel(wheel, units), *_shoe(wheel, units), *_proof(wheel, proof, units)]
     dataset = shoe_dataset(wheel, count_of(cam, asked.samples))
@@ -54,7 +61,7 @@ def _travel(wheel: Mover, units: Units) -> Rows:
             _("unevenness of the travel"),
             uneven.format(
                 least=units.text(rates.least, "m/rad"),
-                least_at=units.angle(rates.at_least),
+                least_at=_both_sides(rates.at_least, units),
                 greatest=units.text(rates.greatest, "m/rad"),
                 greatest_at=_both_sides(rates.at_greatest, units),
                 ratio=wheel.unevenness,
@@ -121,4 +128,5 @@ def _scalars(wheel: Mover, proof: Rolling) -> dict[str, Scalar]:
 
 def _both_sides(at: float, units: Units) -> str:
     """An angle, on both sides where the law is the same there."""
+    at = at if abs(at) > LEAST_ANGLE else 0.0
     return f"±{units.angle(abs(at))}" if units.cam.curvature.symmetric and at else units.angle(at)

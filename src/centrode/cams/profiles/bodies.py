@@ -148,17 +148,17 @@ def bounds_of(asked: Return, roller: float, working: Arc) -> Bounds:
     """Bounds of the roller's path from those that a description gives of the profile; defaults by the roller.
 
     Left out, the profile's radius of curvature stays above a tenth of the roller's radius where it is convex, the
-    path's above the roller's radius in hollows, and the polar radius above 1.5 of it (or what the joints have).
+    path's above the roller's radius in hollows, and the polar radius above 1.5 of it; where the joints have less,
+    above 0.9 of that.
     """
-    joints = working.curve.radius(np.array([working.start, working.stop]))[0]
-    least = (
-        asked.least_radius if asked.least_radius is not None else min(LEAST_ROOM * roller, 0.9 * joints.min())
-    )
-    bend = asked.least_curvature_radius if asked.least_curvature_radius is not None else LEAST_BEND * roller
+    joints = frames(working.curve, np.array([working.start, working.stop]))
+    least = float(min(LEAST_ROOM * roller, 0.9 * joints.radius.min()))
+    sharpest = max(float(joints.curvature.max()), 1e-300)
+    bend = min((1.0 + LEAST_BEND) * roller, 0.9 / sharpest)
     return Bounds(
-        least_radius=float(least),
+        least_radius=least if asked.least_radius is None else asked.least_radius,
         greatest_radius=asked.greatest_radius or math.inf,
-        least_bend=roller + bend,
+        least_bend=bend if asked.least_curvature_radius is None else roller + asked.least_curvature_radius,
         convex=asked.convex,
         least_hollow=roller,
         pressure_angle=asked.pressure_angle or math.pi / 2,

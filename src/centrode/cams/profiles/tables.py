@@ -135,9 +135,13 @@ def walking_wheel(cam: Cam) -> Mover:
     MotionError
         A shoe with a cusp; no return arc within the bounds.
     """
+    return wheel_of(cam, cam_body(cam))
+
+
+def wheel_of(cam: Cam, body: CamBody) -> Mover:
+    """`walking_wheel` on a body that is known."""
     if cam.mover is None:
         raise InputError("[mover]", _("a walking wheel needs legs"), _("give [mover] legs and post"))
-    body = cam_body(cam)
     return mover(body.closed, cam.mover.legs, cam.mover.post, body.roller)
 
 

@@ -148,7 +148,7 @@ def shoe(arc: Arc, height: float) -> Shoe:
         what = _("the shoe is singular: at phi = 0 its contact would jump by {jump:.6g} mm").format(
             jump=2e3 * abs(slope)
         )
-        raise InputError("[start] gamma0", what, _("set gamma0 = 0"))
+        raise InputError("[start] pressure_angle", what, _("set it to 0"))
     if not height > radius:
         what = _("the hub at {height:.6g} mm lies lower than the roller's path reaches, {radius:.6g} mm")
         raise InputError(

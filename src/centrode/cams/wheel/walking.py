@@ -187,7 +187,8 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> Mover:
     Raises
     ------
     InputError, MotionError
-        Too few legs, a working arc too short for them, and what `shoe` says.
+        Too few legs, a post not longer than the roller's radius, a working arc too short for the legs, and what
+        `shoe` says.
     """
     if isinstance(legs, bool) or not LEAST_LEGS <= legs <= MOST_LEGS:
         raise InputError(
@@ -195,8 +196,11 @@ def mover(closed: ClosedPath, legs: int, post: float, roller: float) -> Mover:
             _("{legs} legs were asked for").format(legs=legs),
             _("ask for {least} to {most}").format(least=LEAST_LEGS, most=MOST_LEGS),
         )
-    if not (math.isfinite(post) and post > 0):
-        raise InputError("[mover] post", _("it has to be positive and finite"), _("correct it"))
+    if not (math.isfinite(post) and post > roller):
+        what = _("a post of {post:.6g} mm lets the roller of {roller:.6g} mm reach the ground").format(
+            post=1e3 * post, roller=1e3 * roller
+        )
+        raise InputError("[mover] post", what, _("make it longer than the roller's radius"))
     working, half = closed.arcs[0], math.pi / legs
     if working.stop < half * (1 - 1e-12) or working.start > -half * (1 - 1e-12):
         what = _("the working arc goes to {asked:.6g} deg, a leg works to {half:.6g} deg").format(
