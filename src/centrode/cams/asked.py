@@ -13,6 +13,17 @@ GREATEST_RANGE = 20 * math.pi
 STEEPEST = math.radians(89.0)
 
 
+MOST_BEND = 1e4
+"""Radius at the start over the radius of curvature there."""
+
+
+def check_bend(rho0: float, curvature: float) -> None:
+    """Raise InputError for a path that bends into next to a point at its start."""
+    if rho0 * curvature > MOST_BEND:
+        what = _("at the start the radius of curvature is more than {times:g} times smaller than the radius")
+        raise InputError("[curvature]", what.format(times=MOST_BEND), _("check the units of the curvature"))
+
+
 def check_start(rho0: float, gamma0: float, start: float, stop: float) -> None:
     """Raise InputError for a start that no path has: radius, pressure angle and range."""
     if not all(math.isfinite(number) for number in (rho0, gamma0, start, stop)):

@@ -19,7 +19,7 @@ from centrode.cams.integrated import IntegratedPath, integrated_path
 from centrode.cams.labelled import status_of
 from centrode.cams.path import SymmetricPath
 from centrode.cams.sampled import angles_of
-from centrode.cams.series import SeriesPath, coefficients, series_path
+from centrode.cams.series import SeriesPath, series_path
 from centrode.kinematics.dataset import labels_of, named
 from centrode.model.cam_files import cam_text
 from centrode.model.cams import Cam
@@ -28,9 +28,6 @@ Array = npt.NDArray[np.float64]
 
 ROUTES = ("series", "steps", "integrated")
 """(a) the power series about phi = 0, cut; (b) series expanded anew step by step; (c) the integrator."""
-
-NEXT = 4
-"""Terms behind the last one that foretell the error."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +93,7 @@ def cam_routes(
     alone = {
         "radius_by_slope": by_slope,
         "parting": by_slope - radii[0],
-        "foretold_error": foretold_error(cam, routes, places),
+        "foretold_error": foretold_error(routes, places),
         "series_error": radii[0] - radii[1],
         "routes_difference": radii[2] - radii[1],
     }
@@ -112,22 +109,22 @@ def _three(routes: Routes) -> tuple[SeriesPath, ExpandedPath, IntegratedPath]:
     return routes.series, routes.steps, routes.integrated
 
 
-def foretold_error(cam: Cam, routes: Routes, phi: Array) -> Array:
+def foretold_error(routes: Routes, phi: Array) -> Array:
     """Error of rho [m] by formula (15) that the next terms of the series foretell; NaN outside the circle.
 
     The sizes of the next four terms of eta' and of cos(gamma), over K, and a geometric series behind them.
     """
     series, radius = routes.series, routes.convergence.radius
-    last = series.terms
-    found, _cosines = coefficients(series.law, cam.start.radius, cam.start.pressure_angle, last + NEXT)
     distance = np.abs(phi)
     slope = np.zeros_like(distance)
     value = np.zeros_like(distance)
     with np.errstate(all="ignore"):
-        for n in range(last + 1, last + NEXT + 1):
-            slope = slope + n * abs(found[n]) * distance ** (n - 1)
-            value = value + abs(found[n]) * distance**n
-        ratio = (distance / radius) ** NEXT if math.isfinite(radius) else np.zeros_like(distance)
+        for n, left_out in enumerate(series.following, series.terms + 1):
+            slope = slope + n * abs(left_out) * distance ** (n - 1)
+            value = value + abs(left_out) * distance**n
+        ratio = (
+            (distance / radius) ** len(series.following) if math.isfinite(radius) else np.zeros_like(distance)
+        )
         tangent = np.abs(np.tan(series.pressure_angle(phi)))
         error = (slope + tangent * value) / derivatives(series.law, phi)[0] / (1.0 - ratio)
     return np.where(ratio < 1.0, error, np.nan)

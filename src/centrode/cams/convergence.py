@@ -37,7 +37,8 @@ class Convergence:
     ----------
     estimate : float [rad]
         Radius by the coefficients alone: the quotients of Mercer and Roberts, drawn out to endless n. Infinite
-        where the coefficients vanish. No proof: it is as good as the coefficients that it is made of tell.
+        where the coefficients vanish, NaN where they leave the range of numbers too soon. No proof: it knows no more
+        than the coefficients that it is made of.
     singularity : complex [rad] or None
         The angle, mostly complex, at which cos(gamma) = 0 and whose distance fits the decay of the coefficients;
         None where none was found, as with a law that has singularities of its own.
@@ -93,7 +94,7 @@ def _by_coefficients(b: Array) -> float:
         return math.sqrt(_by_coefficients(b[::2]))
     n = np.arange(len(b) // 2, len(b) - 1)
     if len(n) < 4:
-        return 0.0
+        return math.nan
     with np.errstate(all="ignore"):
         upper = b[n + 1] * b[n - 1] - b[n] ** 2
         lower = b[n] * b[n - 2] - b[n - 1] ** 2

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.asked import check_start
+from centrode.cams.asked import check_bend, check_start
 from centrode.cams.curvature_laws import CurvatureLaw
-from centrode.cams.lawful import check_span, refusal, unlawful_place
+from centrode.cams.lawful import check_span, lawful, refusal, unlawful_place
 from centrode.cams.path import StatePath
 from centrode.cams.recursions import Series, system_series
 from centrode.cams.stalling import State, stall_behind
@@ -27,10 +27,16 @@ LEAST_TOLERANCE, GREATEST_TOLERANCE = 1e-15, 1e-3
 MOST_STEPS = 5000
 
 NEAR_STALL = 0.6
-"""Cosine of the pressure angle below which a stall is looked for."""
+"""Cosine of the pressure angle below which a stall is looked for, each time that the steps have become half as long."""
 
 LAST_STRETCH = 1e-11
-"""Angle before a stall [rad] in which nothing is expanded: cos(gamma) runs as the root of what is left of it."""
+"""Share of the angle before a stall in which nothing is expanded: cos(gamma) runs as the root of what is left."""
+
+LEAST_STEP = 1e-15
+"""Share of the angle below which a step leads nowhere."""
+
+MOST_GROWTH = 1e6
+"""Rho over rho0 from which on a path is taken to run away."""
 
 
 class Step(NamedTuple):
@@ -152,9 +158,13 @@ def expanded_path(
         told = what.format(least=LEAST_TOLERANCE, most=GREATEST_TOLERANCE, value=tolerance)
         raise InputError("tolerance", told)
     check_span(law, start, stop)
+    if not lawful(law, 0.0):
+        raise refusal(law, 0.0)
+    check_bend(rho0, float(law.series(0.0, 0)[0]))
     first = State(0.0, rho0, math.sin(gamma0), math.cos(gamma0))
-    ahead, stalled = _march(law, first, stop, 1, tolerance)
-    behind, stuck = _march(law, first, start, -1, tolerance)
+    with np.errstate(all="ignore"):
+        ahead, stalled = _march(law, first, stop, 1, tolerance)
+        behind, stuck = _march(law, first, start, -1, tolerance)
     steps = [*reversed(behind), *ahead]
     low, high = (behind[-1].end if behind else 0.0), (ahead[-1].end if ahead else 0.0)
     edges = sorted({low, high, *(step.centre for step in steps)})
@@ -180,14 +190,20 @@ def _march(
     order = math.ceil(2.0 - 0.5 * math.log(tolerance))
     steps: list[Step] = []
     stall: State | None = None
+    looked, rho0 = math.inf, place.rho
     while len(steps) < MOST_STEPS:
-        if place.cosine < NEAR_STALL and stall is None:
+        series = system_series(*place[1:], law.series(place.phi, order - 1, sense))
+        reach = _reach(series, tolerance)
+        if not reach > LEAST_STEP * abs(place.phi):
+            raise _no_series(place.phi)
+        if place.rho > MOST_GROWTH * rho0:
+            raise _runs_away(place.phi)
+        if stall is None and place.cosine < NEAR_STALL and reach < 0.5 * looked:
+            looked = reach
             stall = stall_behind(law, place, sense, end)
             end = end if stall is None else stall.phi
-        series = system_series(*place[1:], law.series(place.phi, order - 1, sense))
-        reach = place.phi + sense * _reach(series, tolerance)
-        to = _nearest(sense, reach, end, law.breaks, place.phi)
-        if stall is not None and sense * (stall.phi - to) <= LAST_STRETCH:
+        to = _nearest(sense, place.phi + sense * reach, end, law.breaks, place.phi)
+        if stall is not None and sense * (stall.phi - to) <= LAST_STRETCH * abs(stall.phi):
             steps.append(Step(place.phi, stall.phi, series))
             return steps, Ending(place, stall)
         steps.append(Step(place.phi, to, series))
@@ -200,9 +216,27 @@ def _march(
     raise InputError("[curvature]", what, _("ask for a shorter range, or a coarser tolerance"))
 
 
+def _no_series(phi: float) -> InputError:
+    what = _("the path has no Taylor series at {angle:.6g} deg").format(angle=math.degrees(phi))
+    repair = _(
+        "roots of what vanishes there are not smooth, and what changes too quickly leaves the range of numbers"
+    )
+    return InputError("[curvature]", what, repair)
+
+
+def _runs_away(phi: float) -> InputError:
+    what = _(
+        "the path runs away from the cam's centre: at {angle:.6g} deg ρ is {growth:g} times that of the start"
+    )
+    told = what.format(angle=math.degrees(phi), growth=MOST_GROWTH)
+    return InputError("[curvature]", told, _("a greater curvature keeps it near, or a shorter range"))
+
+
 def _reach(series: tuple[Series, Series, Series], tolerance: float) -> float:
-    """An angle over which the last two terms of each series stay below the tolerance."""
+    """An angle over which the last two terms of each series stay below the tolerance; NaN where they are no numbers."""
     reach = math.inf
+    if not all(math.isfinite(c) for coefficients in series for c in coefficients):
+        return math.nan
     scales = (series[0][0], series[2][0], series[2][0])
     for coefficients, scale in zip(series, scales, strict=True):
         for k in (len(coefficients) - 2, len(coefficients) - 1):

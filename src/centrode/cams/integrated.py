@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
@@ -26,11 +27,14 @@ TOLERANCE = 2.3e-14
 """The least relative error that the integrator can be asked for."""
 
 LONGEST_STEP = 0.02
-"""Over rho and over the radius of curvature: the polynomials between the steps are of a lower order than these."""
+"""Greatest step of the integrator's variable: between the steps its polynomials are of a lower order."""
+
+MOST_LOGARITHM = 200.0
+"""Of rho over that of the leg's start, in a step that is tried and will be refused."""
 
 NEWTON = 30
-MOST_TURNINGS = 100.0
-"""Length of the path over rho0 times the range, beyond which it is given up."""
+MOST_ARC = 1000.0
+"""The integrator's variable at which a leg is given up: the path circles without getting on."""
 
 
 @dataclass(frozen=True)
@@ -41,22 +45,28 @@ class Leg:
     ----------
     low, high : float [rad]
         Its angles.
-    arcs, angles : (n) [m], [rad]
-        Arcs of the integrator's steps and the angles there, growing.
+    scale : float [m]
+        Rho where it begins.
+    arcs, angles : (n) [1], [rad]
+        The integrator's variable and phi at its steps; `angles` growing.
     solution : callable of arcs (n) -> (3, n)
-        phi, rho, gamma.
+        phi, ln(rho/scale), gamma.
+    curvature : callable of angles (n) -> (n) [1/m]
+        The leg's law, held at its ends.
     """
 
     low: float
     high: float
+    scale: float
     arcs: Array
     angles: Array
     solution: Any
+    curvature: Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
 class IntegratedPath(StatePath):
-    """A roller path by the Runge-Kutta method of Dormand and Prince of order 8 on phi, rho and gamma by the arc.
+    """A roller path by the Runge-Kutta method of Dormand and Prince of order 8 on phi, ln(rho), gamma along the arc.
 
     Made by `integrated_path`.
     """
@@ -74,8 +84,8 @@ class IntegratedPath(StatePath):
         for leg in self.legs:
             here = (places >= leg.low) & (places <= leg.high)
             if here.any():
-                _angles, radius, gamma = _at(leg, places[here])
-                found[:, here] = radius, np.sin(gamma), np.cos(gamma)
+                _angles, growth, gamma = _at(leg, places[here])
+                found[:, here] = leg.scale * np.exp(growth), np.sin(gamma), np.cos(gamma)
         return tuple(found.reshape(3, *np.shape(phi)))
 
 
@@ -87,7 +97,7 @@ def integrated_path(
     stop: float = math.pi / 2,
     tolerance: float = TOLERANCE,
 ) -> IntegratedPath:
-    """The path of a roller's centre by integration of `phi' = cos(gamma)/rho, rho' = sin(gamma), gamma' = phi' - K`.
+    """The path of a roller's centre by integration along its arc.
 
     Parameters
     ----------
@@ -100,6 +110,11 @@ def integrated_path(
     ------
     InputError
         As `expanded_path`.
+
+    Notes
+    -----
+    `phi' = cos(gamma), ln(rho)' = sin(gamma), gamma' = cos(gamma) - rho K` by the integral of ds/rho, all divided by
+    1 + rho K: then a unit of the variable is an angle, whatever turns faster.
     """
     check_start(rho0, gamma0, start, stop)
     check_span(law, start, stop)
@@ -136,12 +151,18 @@ def _leg(
 ) -> tuple[Leg, Array, bool]:
     """One leg, the state at its end, and whether the follower stalls there."""
 
+    def curvature(angles: Array) -> Array:
+        inside = np.clip(angles, min(place[0], target), max(place[0], target))
+        return np.asarray(law.series(inside, 0, 1)[0])
+
     def rates(_arc: float, y: Array) -> tuple[float, float, float]:
         # beyond its end the leg's law stays what it is there: only the last step, which is cut, gets to see it
         phi = min(y[0], target) if sense > 0 else max(y[0], target)
-        curvature = float(law.series(phi, 0, sense if phi != target else -sense)[0])
-        turn = math.cos(y[2]) / y[1]
-        return sense * turn, sense * math.sin(y[2]), sense * (turn - curvature)
+        here = float(law.series(phi, 0, sense if phi != target else -sense)[0])
+        bend = place[1] * math.exp(min(y[1], MOST_LOGARITHM)) * here
+        pace = sense / (1.0 + bend)
+        turn = math.cos(y[2])
+        return pace * turn, pace * math.sin(y[2]), pace * (turn - bend)
 
     def arrives(_arc: float, y: Array) -> float:
         return float(y[0] - target)
@@ -150,37 +171,36 @@ def _leg(
         return math.cos(y[2])
 
     arrives.terminal = stalls.terminal = True  # type: ignore[attr-defined]
-    scales = [1.0, place[1], 1.0]
-    longest = LONGEST_STEP * min(place[1], 1.0 / float(law.series(place[0], 0, sense)[0]))
-    # cos(gamma) is the rate of phi: a path of this length has turned by the whole range long ago, or stalled
-    most = MOST_TURNINGS * place[1] * max(1.0, abs(target - place[0]))
+    first = (place[0], 0.0, place[2])
     found = _integrate().solve_ivp(
-        rates, (0.0, most), place, "DOP853", None, True, (arrives, stalls),
-        rtol=tolerance, atol=[tolerance * scale for scale in scales], max_step=longest,
+        rates, (0.0, MOST_ARC), first, "DOP853", None, True, (arrives, stalls),
+        rtol=tolerance, atol=tolerance, max_step=LONGEST_STEP,
     )  # fmt: skip
     if found.status != 1:
         what = _("the integration ends at {angle:.6g} deg").format(angle=math.degrees(found.y[0, -1]))
         raise InputError("[curvature]", what, _("shorten the range"))
     stalled = bool(len(found.t_events[1]))
     last = np.array(found.y_events[1][0] if stalled else found.y_events[0][0])
+    last[1] = place[1] * math.exp(last[1])
     if not stalled:
         last[0] = target
     angles = np.append(found.y[0, :-1], last[0])
     order = slice(None, None, sense)
     low, high = sorted((float(place[0]), float(last[0])))
-    return Leg(low, high, found.t[order], angles[order], found.sol), last, stalled
+    return Leg(low, high, place[1], found.t[order], angles[order], found.sol, curvature), last, stalled
 
 
 def _at(leg: Leg, phi: Array) -> Array:
-    """phi, rho, gamma (3, n) where the angle is phi, by Newton's method on the arc."""
+    """The solution (3, n) where the angle is phi, by Newton's method on the arc."""
     arc = np.interp(phi, leg.angles, leg.arcs)
     low, high = float(np.min(leg.arcs)), float(np.max(leg.arcs))
-    ascending = leg.arcs[-1] >= leg.arcs[0]
+    sense = 1.0 if leg.arcs[-1] >= leg.arcs[0] else -1.0
     for _step in range(NEWTON):
-        angle, radius, gamma = leg.solution(arc)
-        rate = np.cos(gamma) / radius * (1.0 if ascending else -1.0)
+        angle, growth, gamma = leg.solution(arc)
+        bend = leg.scale * np.exp(growth) * leg.curvature(angle)
+        rate = sense * np.cos(gamma) / (1.0 + bend)
         with np.errstate(all="ignore"):
-            step = np.where(rate > 0 if ascending else rate < 0, (angle - phi) / rate, 0.0)
+            step = np.where(sense * rate > 0, (angle - phi) / rate, 0.0)
         moved = np.clip(arc - step, low, high)
         if np.all(np.abs(moved - arc) <= 1e-16 * high):
             break

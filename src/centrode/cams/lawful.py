@@ -53,14 +53,19 @@ def unlawful_place(law: CurvatureLaw, stop: float) -> float | None:
     return _boundary(law, float(places[first - 1]), float(places[first]))
 
 
+def lawful(law: CurvatureLaw, phi: float) -> bool:
+    """Whether K is finite and positive at an angle."""
+    return bool(_lawful(derivatives(law, np.array([phi]))[0])[0])
+
+
 def refusal(law: CurvatureLaw, phi: float) -> InputError:
     """What is said of a curvature that is not one of a cam at an angle."""
     value = float(derivatives(law, np.array([phi]))[0, 0])
     angle = math.degrees(phi)
     if not math.isfinite(value):
         what = _("the curvature is not a finite number at {angle:.6g} deg").format(angle=angle)
-    elif value < 0 and abs(phi) == 0:
-        what = _("the curvature is negative at the start ({value:.4g} 1/m)").format(value=value)
+    elif value <= 0 and phi == 0:
+        what = _("the curvature is not positive at the start ({value:.4g} 1/m)").format(value=value)
     else:
         what = _("the curvature is not positive from {angle:.6g} deg on").format(angle=angle)
     return InputError("[curvature]", what, _("change the law, or end the range before that angle"))
@@ -93,7 +98,7 @@ def _lawful(values: Array) -> NDArray[np.bool_]:
 def _boundary(law: CurvatureLaw, good: float, bad: float) -> float:
     for _halving in range(HALVINGS):
         middle = 0.5 * (good + bad)
-        if bool(_lawful(derivatives(law, np.array([middle]))[0])[0]):
+        if lawful(law, middle):
             good = middle
         else:
             bad = middle

@@ -20,6 +20,9 @@ from centrode.model.cam_parts import MOST_TERMS
 
 Array = NDArray[np.float64]
 
+FOLLOWING = 4
+"""Terms behind the last one that are kept, to tell by them what is left out."""
+
 
 @dataclass(frozen=True)
 class SeriesPath:
@@ -32,6 +35,8 @@ class SeriesPath:
     ----------
     sines, cosines : (N + 1), (N)
         a_n of eta = sin(gamma) and b_n of lambda = cos(gamma).
+    following : (FOLLOWING)
+        The next a_n, which the polynomial leaves out.
     start, stop : float [rad]
         Ends of the asked range, or the law's first breaks.
     """
@@ -41,6 +46,7 @@ class SeriesPath:
     stop: float
     sines: Array
     cosines: Array
+    following: Array
     stall: float | None = None
 
     @property
@@ -129,7 +135,8 @@ def series_path(
     if isinstance(terms, bool) or not 2 <= terms <= MOST_TERMS:
         what = _("{terms} terms were asked for").format(terms=terms)
         raise InputError("terms", what, _("ask for 2 to {most}").format(most=MOST_TERMS))
-    a, b = coefficients(law, rho0, gamma0, terms)
+    every, cosines = (np.asarray(c) for c in coefficients(law, rho0, gamma0, terms + FOLLOWING))
+    a, b, following = every[: terms + 1], cosines[:terms], every[terms + 1 :]
     low = max([start, *(place for place in law.breaks if place < 0)])
     high = min([stop, *(place for place in law.breaks if place > 0)])
     if 0.0 in law.breaks:
@@ -138,7 +145,7 @@ def series_path(
         raise InputError(
             "terms", _("the coefficients of the series leave the range of numbers"), _("ask for fewer")
         )
-    return SeriesPath(law, low, high, np.asarray(a), np.asarray(b))
+    return SeriesPath(law, low, high, a, b, following)
 
 
 def coefficients(law: CurvatureLaw, rho0: float, gamma0: float, terms: int) -> tuple[Series, Series]:

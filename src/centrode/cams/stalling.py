@@ -9,7 +9,7 @@ from centrode.cams.curvature_laws import CurvatureLaw
 from centrode.cams.recursions import Series, arc_series
 
 ORDER = 24
-MOST_ARCS = 200
+MOST_ARCS = 30
 NEWTON = 50
 
 

@@ -96,7 +96,7 @@ def cam_path_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
         ]
         axes.plot([0.0], [0.0], marker="+", markersize=11, color=INK, markeredgewidth=1.4)
         axes.set_aspect("equal")
-        axes.margins(0.12)
+        axes.margins(0.14)
         for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y")):
             axis.set_major_formatter(Decimals())
             axis.set_label_text(labelled(formula(name), unit))

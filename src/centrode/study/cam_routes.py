@@ -69,7 +69,9 @@ def _reach(cam: Cam, found: xr.Dataset) -> str:
     """How far the series converges, and how that is known."""
     units, told = Units(cam), found.attrs
     radius, estimate = told["radius_of_convergence"], told["radius_by_coefficients"]
-    if not math.isfinite(radius):
+    if math.isnan(radius):
+        return _("how far it converges is not known: its coefficients leave the range of numbers")
+    if math.isinf(radius):
         return _("it ends by itself: its coefficients vanish, it converges everywhere")
     x, y = told["singularity"]
     if not math.isfinite(x):
