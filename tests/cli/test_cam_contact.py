@@ -66,7 +66,9 @@ def test_what_is_printed(centrode: Centrode, pressed: Path) -> None:
     facts = ct.cam_contact(cam).attrs
     stress, at = 1e-6 * facts["greatest_stress"], math.degrees(facts["greatest_stress_at"])
     assert done.rows["greatest contact stress"] == f"{stress:.6g} MPa at {at:.6g} deg, admissible 700 MPa"
-    assert f"{1e-6 * facts['greatest_stress_by_source']:.6g} MPa by the source's formula, with 0.418" in done.out
+    assert (
+        f"{1e-6 * facts['greatest_stress_by_source']:.6g} MPa by the source's formula, with 0.418" in done.out
+    )
     found = ct.choose_cam(cam)
     assert done.rows["made least"] == "contact stress"
     for name, value in found.choice.chosen.parameters.items():
@@ -128,7 +130,9 @@ def test_the_figures_of_contact_and_choice(centrode: Centrode, pressed: Path) ->
 
 
 def test_no_design_keeps_the_bounds(centrode: Centrode, pressed: Path) -> None:
-    (pressed / "pressed.toml").write_text(GIVEN.replace('size = "55 mm"', 'size = "55 mm"\nstress = "200 MPa"'))
+    (pressed / "pressed.toml").write_text(
+        GIVEN.replace('size = "55 mm"', 'size = "55 mm"\nstress = "200 MPa"')
+    )
     done = centrode("cam", "pressed.toml", "--out", "made", "--samples", "5", "--no-figures")
     assert done.code == 3
     assert "no design keeps all bounds; the nearest misses contact stress by" in done.err
@@ -168,7 +172,11 @@ def test_no_animation(centrode: Centrode, folder: Path, words: tuple[str, ...], 
         ('width = "20 mm"', "width = 0", "width"),
         ("poisson = 0.34", "poisson = 1", "poisson"),
         ('admissible = "700 MPa"', 'admissible = "700 mm"', "admissible"),
-        ('"curvature.k0" = ["12 1/m", "30 1/m"]', '"curvature.k0" = ["-12 1/m", "30 1/m"]', "an end of a range"),
+        (
+            '"curvature.k0" = ["12 1/m", "30 1/m"]',
+            '"curvature.k0" = ["-12 1/m", "30 1/m"]',
+            "an end of a range",
+        ),
         ('"curvature.k1" = [-0.5, 1.5]', '"curvature.points.2" = [1, 2]', "the cam has no"),
         ('minimise = "stress"', 'minimise = "weight"', "expected one of"),
         ('[roller]\nradius = "10 mm"', "", "roller"),

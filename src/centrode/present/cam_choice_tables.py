@@ -28,7 +28,7 @@ def write_choice(found: CamChoice, folder: Path) -> None:
     cam = found.cam
     names = list(found.choice.chosen.parameters)
     shown = [shown_as(parameter_unit(cam, name), cam.display) for name in names]
-    measures = list(found.choice.chosen.measures)
+    measures = found.measures
     units = [measure_shown(name, cam.display) for name in measures]
     headers = [
         "design",

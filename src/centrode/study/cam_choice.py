@@ -29,8 +29,8 @@ def choice_part(cam: Cam, asked: Asked) -> CamPart | None:
         f"chosen.{name}": Scalar(value, parameter_unit(cam, name))
         for name, value in choice.chosen.parameters.items()
     }
-    for name, judged in choice.chosen.measures.items():
-        scalars[f"chosen.{name}"] = Scalar(judged.value, MEASURES[name].unit)
+    for name in found.measures:
+        scalars[f"chosen.{name}"] = Scalar(choice.chosen.measures[name].value, MEASURES[name].unit)
     failures: tuple[str, ...] = ()
     if not choice.admissible:
         what = _("no design keeps all bounds; the nearest misses {bounds}").format(bounds=missed_text(found))
@@ -110,8 +110,8 @@ def _parameters(found: CamChoice) -> Table:
 
 def _measures(found: CamChoice) -> Table:
     lines: list[tuple[str, ...]] = []
-    for name, judged in found.choice.chosen.measures.items():
-        bound = ""
+    for name in found.measures:
+        judged, bound = found.choice.chosen.measures[name], ""
         if judged.bound is not None:
             told = _("at least {value}") if MEASURES[name].least else _("at most {value}")
             bound = told.format(value=_shown(found.cam, name, judged.bound))

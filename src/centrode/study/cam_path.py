@@ -115,8 +115,7 @@ def _stall(cam: Cam, path: RollerPath) -> tuple[dict[str, Scalar], tuple[str, st
         failure = _("the follower stalls at {place}, where the pressure angle is 90 deg").format(place=place)
         failure += "; " + _("end the range before that angle")
         row = (_("stall"), _("at {place}, inside the range").format(place=place))
-        repair = _("end the range before that angle")
-        return {"cam_stall": Scalar(path.stall, "rad")}, row, (f"{failure}; {repair}",)
+        return {"cam_stall": Scalar(path.stall, "rad")}, row, (failure,)
     beyond = stall_beyond(cam)
     if beyond is None:
         return {}, (_("stall"), _("none in the range")), ()

@@ -32,6 +32,13 @@ class CamChoice:
     proof: Proof
     front: TradeOff | None
 
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """Names of the measures that this cam has: prints are those of a walking wheel."""
+        kept = self.choice.chosen.measures
+        prints = self.cam.mover is not None or kept["gap"].bound is not None
+        return tuple(name for name in kept if name != "gap" or prints)
+
 
 def choose_cam(
     cam: Cam,

@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 
 STARTS = 8
 EXCHANGES = 6
-ROUNDS = 150
-TOLERANCE = 1e-13
+ROUNDS = 40
+TOLERANCE = 1e-12
 KEPT = 1e-9
 """Of a bound: it is asked for tighter by this, so that rounding does not break it."""
 ACTIVE = 1e-6
