@@ -56,8 +56,20 @@ def test_every_variable_of_a_motion_is_named() -> None:
     )
     transmission = ("transmission_angle", "pressure_angle")
     integrated = ("drift", "angle_difference", "position_difference")
+    cams = {
+        "carrier_angle",
+        "cam_pressure_angle",
+        "roller_centre",
+        "drawn_curvature",
+        "radius_by_slope",
+        "parting",
+    }
+    cams |= {f"{name}_error" for name in ("foretold", "series")} | {"routes_difference", "pressure_cosine"}
+    for name in ("path_radius", "pressure_sine", "law_curvature"):
+        cams |= {name, f"{name}_slope"}
+    cams |= {"path_radius_second", "pressure_sine_second"}
     known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
-    known |= set(reduced) | set(steady)
+    known |= set(reduced) | set(steady) | cams
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

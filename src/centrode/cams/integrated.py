@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
@@ -28,6 +28,9 @@ TOLERANCE = 2.3e-14
 
 LONGEST_STEP = 0.02
 """Greatest step of the integrator's variable: between the steps its polynomials are of a lower order."""
+
+BEYOND = 12
+"""Order to which the law of a leg is continued beyond its end."""
 
 MOST_LOGARITHM = 200.0
 """Of rho over that of the leg's start, in a step that is tried and will be refused."""
@@ -150,15 +153,17 @@ def _leg(
     law: CurvatureLaw, place: Array, target: float, sense: int, tolerance: float
 ) -> tuple[Leg, Array, bool]:
     """One leg, the state at its end, and whether the follower stalls there."""
+    onwards = _beyond(law, target, sense)
 
     def curvature(angles: Array) -> Array:
         inside = np.clip(angles, min(place[0], target), max(place[0], target))
         return np.asarray(law.series(inside, 0, 1)[0])
 
     def rates(_arc: float, y: Array) -> tuple[float, float, float]:
-        # beyond its end the leg's law stays what it is there: only the last step, which is cut, gets to see it
-        phi = min(y[0], target) if sense > 0 else max(y[0], target)
-        here = float(law.series(phi, 0, sense if phi != target else -sense)[0])
+        # the last step goes beyond the leg's end before it is cut there
+        outside = y[0] - target
+        inner = sense * outside < 0
+        here = float(law.series(y[0], 0, sense)[0]) if inner else polynomial(onwards, outside)
         bend = place[1] * math.exp(min(y[1], MOST_LOGARITHM)) * here
         pace = sense / (1.0 + bend)
         turn = math.cos(y[2])
@@ -188,6 +193,20 @@ def _leg(
     order = slice(None, None, sense)
     low, high = sorted((float(place[0]), float(last[0])))
     return Leg(low, high, place[1], found.t[order], angles[order], found.sol, curvature), last, stalled
+
+
+def _beyond(law: CurvatureLaw, target: float, sense: int) -> list[float]:
+    """Taylor coefficients of the law about an end, from its near side; its value alone where there is no series."""
+    found = [float(c) for c in law.series(target, BEYOND, -sense)]
+    return found if all(math.isfinite(c) for c in found) else found[:1]
+
+
+def polynomial(coefficients: Sequence[float], x: float) -> float:
+    """The value of a polynomial."""
+    total = 0.0
+    for c in reversed(coefficients):
+        total = total * x + c
+    return total
 
 
 def _at(leg: Leg, phi: Array) -> Array:

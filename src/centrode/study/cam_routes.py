@@ -105,7 +105,7 @@ def _stalls(cam: Cam, found: xr.Dataset) -> Rows:
     if not math.isfinite(told["stall"]):
         return []
     apart = abs(told["stall"] - told["stall_integrated"])
-    return [(_("stall"), _("(b) and (c) find it {apart:.1e} rad apart").format(apart=apart))]
+    return [(_("stall by two routes"), _("(b) and (c) find it {apart:.1e} rad apart").format(apart=apart))]
 
 
 def _scalars(found: xr.Dataset) -> dict[str, Scalar]:
