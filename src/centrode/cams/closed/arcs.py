@@ -183,11 +183,13 @@ def working_arc(path: RollerPath, legs: int | None = None, half: float | None = 
         start, stop = -half, half
     short = ROUNDING + 4 * np.finfo(float).eps * abs(stop)
     if start < path.start - short or stop > path.stop + short:
-        what = _("the working arc goes to {asked:.6g} deg, the path to {end:.6g} deg").format(
-            asked=math.degrees(stop), end=math.degrees(min(path.stop, -path.start))
+        arc, there = (
+            _("{first:.6g} to {last:.6g} deg").format(first=math.degrees(low), last=math.degrees(high))
+            for low, high in ((start, stop), (path.start, path.stop))
         )
+        what = _("the working arc goes from {arc}, the path from {there}").format(arc=arc, there=there)
         stalled = _("the follower stalls there: take more legs or another law")
-        raise InputError("", what, stalled if path.stall is not None else _("ask for a longer path"))
+        raise InputError("", what, stalled if path.stall is not None else _("ask for a longer path, or a symmetric law"))
     if not 0 < stop - start < math.tau - ROUNDING:
         raise InputError("", _("a working arc is longer than zero and shorter than a turn"))
     return Arc("working", path, start, stop, breaks_of(path, start, stop))
