@@ -95,6 +95,36 @@ def test_points_of_a_spline_are_chosen() -> None:
     assert [value for _angle, value in chosen] == [found.choice.chosen.parameters[name] for name in points]
 
 
+def test_letters_of_a_formula_are_chosen() -> None:
+    """The exponential law written as a formula has the same best design."""
+    base = changed(ct.example("walking-wheel-four-legs"), trade_off=None)
+    assert base.choose is not None
+    ranges = dict(zip("ab", list(base.choose.parameters.values())[:2], strict=True))
+    letters = {f"curvature.constants.{letter}": ends for letter, ends in ranges.items()}
+    written = Cam(
+        kind="cam",
+        curvature={
+            "law": "formula",
+            "formula": "a*exp(b*phi)",
+            "constants": {"a": 10, "b": 0.75},
+            "symmetric": True,
+        },
+        start=base.start,
+        range=base.range,
+        roller=base.roller,
+        mover=base.mover,
+        contact=base.contact,
+        choose={
+            "parameters": {**letters, "start.radius": base.choose.parameters["start.radius"]},
+            "pressure_angle": base.choose.pressure_angle,
+            "gap": base.choose.gap,
+        },
+    )
+    assert ct.parse_cam(ct.cam_text(written)) == written
+    sizes = [choose_cam(one).choice.chosen.measures["size"].value for one in (written, base)]
+    assert sizes[0] == pytest.approx(sizes[1], rel=1e-7)
+
+
 def test_a_linear_law_and_a_roller_on_one_side() -> None:
     cam = Cam(
         kind="cam",
@@ -178,6 +208,23 @@ roller = { radius = 0.01 }
 def test_wrong_questions(choose: str, what: str) -> None:
     with pytest.raises(ct.InputError, match=what):
         choose_cam(ct.parse_cam(TEXT + choose))
+
+
+@pytest.mark.parametrize(
+    ("curvature", "what"),
+    [
+        ('law = "formula"\nformula = "a*phi+20"', "a"),
+        ('law = "formula"\nformula = "phi+20"\nconstants = { phi = 2 }', "cannot be a letter"),
+        ('law = "formula"\nformula = "phi+20"\nconstants = { "a b" = 2 }', "cannot be a letter"),
+        ('law = "formula"\nformula = "a+20"\nconstants = { a = "2 mm" }', "number"),
+        ('law = "constant"\nk0 = 20\nconstants = { a = 2 }', "has no"),
+    ],
+)
+def test_wrong_letters(curvature: str, what: str) -> None:
+    with pytest.raises(ct.InputError, match=what):
+        ct.parse_cam(
+            f'kind = "cam"\nstart = {{ radius = 0.05 }}\nrange = {{ to = 1 }}\n[curvature]\n{curvature}\n'
+        )
 
 
 def test_nothing_to_choose() -> None:

@@ -21,7 +21,7 @@ from centrode.model.cam_parts import (
     Roller,
     Start,
 )
-from centrode.model.cam_values import POINT
+from centrode.model.cam_values import CONSTANT, POINT
 from centrode.model.document import part_tables
 from centrode.model.part import Part
 from centrode.model.problems import Problem, Problems, nearest, shown
@@ -116,11 +116,7 @@ def _of_choice(cam: Cam) -> list[Problem]:
         return []
     problems = []
     for name in cam.choose.parameters:
-        table, _dot, key = name.partition(".")
-        part = getattr(cam, table)
-        points = cam.curvature.points or ()
-        has = int(key[7:]) <= len(points) if POINT.fullmatch(name) else getattr(part, key, None) is not None
-        if not has:
+        if not _has(cam, name):
             what = _("the cam has no {name}").format(name=shown(name))
             problems.append(Problem(what, _("choose what the description gives"), ("choose", "parameters")))
     stressed = cam.choose.stress is not None or "stress" in (cam.choose.minimise, cam.choose.trade_off)
@@ -133,6 +129,16 @@ def _of_choice(cam: Cam) -> list[Problem]:
     return problems
 
 
+def _has(cam: Cam, name: str) -> bool:
+    """Whether a description gives the number of a parameter's name."""
+    table, _dot, key = name.partition(".")
+    if POINT.fullmatch(name):
+        return int(key[7:]) <= len(cam.curvature.points or ())
+    if CONSTANT.fullmatch(name):
+        return key[10:] in cam.curvature.constants
+    return getattr(getattr(cam, table), key, None) is not None
+
+
 def varied(cam: Cam, values: Mapping[str, float]) -> Cam:
     """The cam with other numbers [SI] at paths such as "curvature.k0"; InputError for a path it does not have."""
     tables = part_tables(cam)
@@ -142,6 +148,8 @@ def varied(cam: Cam, values: Mapping[str, float]) -> Cam:
             raise InputError("", _("the cam has no {name}").format(name=shown(path)), nearest(path, tables))
         if POINT.fullmatch(path):
             _put_point(tables[table], path, value)
+        elif CONSTANT.fullmatch(path):
+            tables[table].setdefault("constants", {})[path.rpartition(".")[2]] = value
         else:
             tables[table][key] = value
     return Cam(**tables)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from centrode.cams.choosing.measures import MEASURES
 from centrode.locale import _
+from centrode.model.cam_values import CONSTANT, POINT
 from centrode.present.curves import legend_width, write_legend, write_title
 from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, house_style
@@ -73,9 +74,11 @@ def choice_figures(found: CamChoice) -> dict[str, Figure]:
 
 
 def parameter_symbol(name: str) -> tuple[str, str, str]:
-    """Letter, index and SI unit of a parameter; a spline's points are numbered."""
-    if name.startswith("curvature.points."):
+    """Letter, index and SI unit of a parameter; a spline's points are numbered, a formula's constants as they are."""
+    if POINT.fullmatch(name):
         return "K", name.rpartition(".")[2], "1/m"
+    if CONSTANT.fullmatch(name):
+        return name.rpartition(".")[2], "", "1"
     return SYMBOLS[name]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from centrode.cams.choosing.chosen import CamChoice, choose_cam
 from centrode.cams.choosing.measures import MEASURES
 from centrode.locale import _, ngettext
+from centrode.model.cam_values import CONSTANT
 from centrode.model.cams import Cam
 from centrode.study.cam_said import Asked, CamPart, Rows, Table, Units
 from centrode.study.scalars import Scalar
@@ -81,7 +82,7 @@ def parameter_unit(cam: Cam, name: str) -> str:
     """SI unit of a parameter: that of k1 depends on the law."""
     if name == "curvature.k1" and cam.curvature.law == "linear":
         return "1/m/rad"
-    return UNITS.get(name, "1/m")
+    return "1" if CONSTANT.fullmatch(name) else UNITS.get(name, "1/m")
 
 
 def _proof(found: CamChoice) -> Rows:

@@ -16,8 +16,9 @@ from centrode.cams.curvature_laws import derivatives
 from centrode.cams.described import law_of
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam_values import POINT
+from centrode.model.cam_values import CONSTANT, POINT
 from centrode.model.cams import Cam, varied
+from centrode.model.frozen import FrozenMap
 
 Array = NDArray[np.float64]
 
@@ -98,13 +99,16 @@ def _trial(cam: Cam, names: tuple[str, ...], values: Array) -> Trial:
 def _with_law(cam: Cam, given: Mapping[str, float]) -> Cam:
     """The description with other numbers in its curvature law, not read once more: a search does it often."""
     found: dict[str, object] = {}
-    points = list(cam.curvature.points or ())
+    points, letters = list(cam.curvature.points or ()), dict(cam.curvature.constants)
     for name, value in given.items():
         table, _dot, key = name.partition(".")
         if POINT.fullmatch(name):
             number = int(key.partition(".")[2]) - 1
             points[number] = (points[number][0], value)
             found["points"] = tuple(points)
+        elif CONSTANT.fullmatch(name):
+            letters[name.rpartition(".")[2]] = value
+            found["constants"] = FrozenMap(letters)
         elif table == "curvature":
             found[key] = value
     return cam.model_copy(update={"curvature": cam.curvature.model_copy(update=found)})
@@ -116,6 +120,8 @@ def given_value(cam: Cam, name: str) -> float:
     if POINT.fullmatch(name):
         assert cam.curvature.points is not None
         return float(cam.curvature.points[int(key.partition(".")[2]) - 1][1])
+    if CONSTANT.fullmatch(name):
+        return cam.curvature.constants[name.rpartition(".")[2]]
     return float(getattr(getattr(cam, table), key))
 
 
