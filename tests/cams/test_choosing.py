@@ -122,6 +122,27 @@ def test_one_parameter_has_a_root() -> None:
     assert found.at_ends == ()
 
 
+def test_a_round_cam_is_found_where_nothing_asks_for_another() -> None:
+    """The least pressure angle is none: K = 1/rho0, also where the box's own middle is that design."""
+    rho = 0.05
+    wavy = Family(
+        ("k", "swing"),
+        np.array([0.3 / rho, -0.6]),
+        np.array([1.7 / rho, 0.6]),
+        lambda p: Trial(lambda phi: p[0] * (1 + p[1] * np.sin(3 * phi)), rho, 0.0, 0.01),
+        Mesh((0.0, 1.1)),
+        CONTACT,
+    )
+    found = choose(wavy, np.array([12.0, 0.4]), "pressure_angle", {"size": 0.065})
+    assert found.admissible
+    # the iteration leaves some rounding of sums over 21 nodes
+    assert found.chosen.measures["pressure_angle"].value <= 21 * 8 * EPS
+    # slopes at the optimum tell parameters from the value by no more than its tolerance over them
+    assert found.chosen.parameters["k"] == pytest.approx(1 / rho, rel=1e-10)
+    assert found.chosen.parameters["swing"] == pytest.approx(0.0, abs=1e-10)
+    assert found.agreeing > 1
+
+
 def test_what_cannot_be_kept_is_missed_by_the_least() -> None:
     """Against a grid of designs along the path itself."""
     bounds = {"stress": 400e6, "size": 0.06, "gap": 0.02}

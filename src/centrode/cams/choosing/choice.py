@@ -148,7 +148,7 @@ def design(family: Family, share: Array, best: str, bounds: Mapping[str, float])
 
 def _agreeing(found: Sequence[Found], first: Found, admissible: bool) -> int:
     same = [
-        abs(one.value - first.value) <= SAME * abs(first.value)
+        abs(one.value - first.value) <= SAME * max(abs(first.value), 1.0)
         if admissible
         else abs(one.excess - first.excess) <= SAME
         for one in found

@@ -36,7 +36,8 @@ class Measure:
     whole : bool
         It belongs to the path as a whole.
     of : callable
-        Of paths (`Tried`) and contact: (angles, designs), or (1, designs) of the whole; multiplied by -1 if `least`.
+        Of paths (`Tried`) and contact: (angles, designs), or (1, designs) of the whole, or as many times the angles;
+        multiplied by -1 if `least`.
     """
 
     name: str
@@ -64,7 +65,8 @@ def _stress(tried: Tried, contact: Contact | None) -> Array:
 
 
 def _pressure_angle(tried: Tried, _contact: Contact | None) -> Array:
-    return np.abs(tried.gamma)
+    """Both signs, one after the other: each of them is smooth, the magnitude has a kink at 0."""
+    return np.concatenate([tried.gamma, -tried.gamma])
 
 
 def _size(tried: Tried, _contact: Contact | None) -> Array:

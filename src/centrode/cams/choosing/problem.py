@@ -118,7 +118,7 @@ class Problem:
         for name, measure in self._measures.items():
             values = measure.of(tried, self.family.contact)[:, 0]
             at = int(np.argmax(values))
-            place = float(phi[-1]) if measure.whole else float(phi[at])
+            place = float(phi[-1]) if measure.whole else float(phi[at % len(phi)])
             found[name] = (measure.sign * float(values[at]), place)
         return found
 
@@ -136,9 +136,11 @@ class Problem:
 
     @property
     def _references(self) -> dict[str, float]:
-        """Sizes of measures without a bound, of the design in the middle of the box."""
+        """Sizes of measures without a bound: the greatest of some designs, one alone may be round with no angle."""
         if not hasattr(self, "_sizes"):
-            middle = self.family.paths(np.full((1, len(self.family.names)), 0.5), self.phi)
+            count = len(self.family.names)
+            some = np.stack([np.full(count, share) for share in (0.25, 0.5, 0.75)])
+            middle = self.family.paths(some, self.phi)
             self._sizes = {
                 name: float(np.max(np.abs(one.of(middle, self.family.contact)))) or 1.0
                 for name, one in self._measures.items()

@@ -70,7 +70,7 @@ def kkt_residual(problem: Problem, share: Array) -> tuple[float, dict[str, float
     count = len(share)
     columns, names = [], []
     top = values[problem.best].max()
-    for row in np.flatnonzero(values[problem.best] >= top - ACTIVE * abs(top)):
+    for row in np.flatnonzero(values[problem.best] >= top - ACTIVE * max(abs(top), 1.0)):
         columns.append(np.concatenate([slopes[problem.best][row], [-1.0]]))
         names.append("")
     for name, (measure, bound) in problem.limits.items():
@@ -91,7 +91,9 @@ def kkt_residual(problem: Problem, share: Array) -> tuple[float, dict[str, float
         if name in held:
             held[name] += float(weight)
     own = max(float(np.linalg.norm(slopes[problem.best], axis=1).max()), np.finfo(float).tiny)
-    return float(miss) / max(own, 1.0), {name: float(weight / abs(top)) for name, weight in held.items()}
+    return float(miss) / max(own, 1.0), {
+        name: float(weight / max(abs(top), ACTIVE)) for name, weight in held.items()
+    }
 
 
 def _run(problem: Problem, start: Array, elastic: bool) -> Array:
