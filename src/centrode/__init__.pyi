@@ -23,6 +23,7 @@ from .model.cams import varied as varied
 from .model.cam_files import read_cam as read_cam
 from .model.cam_files import parse_cam as parse_cam
 from .model.cam_files import cam_text as cam_text
+from .model.cam_schema import cam_schema as cam_schema
 
 # Built-in mechanisms and classics
 from .model.examples.loading import load as load

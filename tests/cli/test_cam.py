@@ -206,6 +206,11 @@ def test_cams_and_linkages_are_not_mixed_up(centrode: Centrode, folder: Path) ->
     assert centrode("cam", "no-such-cam").code == 2
 
 
+def test_the_schema_of_cams(centrode: Centrode, folder: Path) -> None:
+    assert json.loads(centrode("schema", "--cam").out) == ct.cam_schema()
+    assert json.loads(centrode("schema").out) == ct.mechanism_schema()
+
+
 def test_cams_are_listed_and_printed(centrode: Centrode, folder: Path) -> None:
     listed = centrode("examples")
     assert "cam-from-curvature" in listed.out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
 from pathlib import Path
@@ -11,6 +12,9 @@ import pytest
 import centrode as ct
 from centrode.errors import InputError
 from centrode.model.cam_files import cam_text, parse_cam, read_cam
+from centrode.model.cam_schema import CAM_PROPERTIES
+
+from .test_schema import fits
 
 FULL = """\
 kind = "cam"
@@ -168,6 +172,25 @@ def test_what_is_wrong_is_told_with_its_place(old: str, new: str, said: str) -> 
     told = str(refused.value)
     assert told.startswith("cam.toml")
     assert said in told
+
+
+def test_the_schema_knows_the_keys_of_the_parts_and_accepts_what_is_read() -> None:
+    for part, properties in CAM_PROPERTIES.items():
+        assert list(properties) == list(part.keys()), part
+    schema = ct.cam_schema()
+    assert json.loads(json.dumps(schema)) == schema
+    texts = [FULL, LEAST, *(ct.example_text(name) for name in ct.example_names("cam"))]
+    for text in texts:
+        assert fits(tomllib.loads(text), schema, schema)
+    for old, new in (
+        ("k0 = 12", "k0 = -12"),
+        ("radius = 0.05", "radius = 0"),
+        ("to = 1", "to = 1\nstep = 2"),
+        ("to = 1", "to = 1\n[study]\nterms = 1"),
+        ('kind = "cam"', ""),
+        ('kind = "cam"', 'kind = "gear"'),
+    ):
+        assert not fits(tomllib.loads(LEAST.replace(old, new)), schema, schema)
 
 
 def test_symmetric_paths_start_level() -> None:

@@ -1,4 +1,4 @@
-"""What every route asks of the start of a path."""
+"""What is asked of a path: its start, its range, that it stays near and smooth."""
 
 from __future__ import annotations
 
@@ -15,6 +15,10 @@ STEEPEST = math.radians(89.0)
 
 MOST_BEND = 1e4
 """Radius at the start over the radius of curvature there."""
+
+
+MOST_GROWTH = 1e6
+"""Rho over rho0 from which on a path is taken to run away."""
 
 
 def check_bend(rho0: float, curvature: float) -> None:
@@ -42,3 +46,21 @@ def check_start(rho0: float, gamma0: float, start: float, stop: float) -> None:
     if stop - start > GREATEST_RANGE:
         what = _("the range is longer than {turns:g} turns").format(turns=GREATEST_RANGE / math.tau)
         raise InputError("[range]", what, _("shorten it"))
+
+
+def no_series(phi: float) -> InputError:
+    """What is said of a path that cannot be expanded at an angle."""
+    what = _("the path has no Taylor series at {angle:.6g} deg").format(angle=math.degrees(phi))
+    repair = _(
+        "roots of what vanishes there are not smooth, and what changes too quickly leaves the range of numbers"
+    )
+    return InputError("[curvature]", what, repair)
+
+
+def runs_away(phi: float) -> InputError:
+    """What is said of a path that leaves the cam."""
+    what = _(
+        "the path runs away from the cam's centre: at {angle:.6g} deg ρ is {growth:g} times that of the start"
+    )
+    told = what.format(angle=math.degrees(phi), growth=MOST_GROWTH)
+    return InputError("[curvature]", told, _("a greater curvature keeps it near, or a shorter range"))

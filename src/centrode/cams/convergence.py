@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 TERMS = 160
 """Coefficients that the estimate is made of."""
 
-DIRECTIONS = 13
-ORDER = 30
+DIRECTIONS = 9
+ORDER = 24
 SHARE = 0.9
 """How far towards the circle of convergence the search for singularities sets out."""
 

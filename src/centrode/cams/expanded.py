@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.asked import check_bend, check_start
+from centrode.cams.asked import MOST_GROWTH, check_bend, check_start, no_series, runs_away
 from centrode.cams.curvature_laws import CurvatureLaw
 from centrode.cams.lawful import check_span, lawful, refusal, unlawful_place
 from centrode.cams.path import StatePath
@@ -34,9 +34,6 @@ LAST_STRETCH = 1e-11
 
 LEAST_STEP = 1e-15
 """Share of the angle below which a step leads nowhere."""
-
-MOST_GROWTH = 1e6
-"""Rho over rho0 from which on a path is taken to run away."""
 
 
 class Step(NamedTuple):
@@ -195,9 +192,9 @@ def _march(
         series = system_series(*place[1:], law.series(place.phi, order - 1, sense))
         reach = _reach(series, tolerance)
         if not reach > LEAST_STEP * abs(place.phi):
-            raise _no_series(place.phi)
+            raise no_series(place.phi)
         if place.rho > MOST_GROWTH * rho0:
-            raise _runs_away(place.phi)
+            raise runs_away(place.phi)
         if stall is None and place.cosine < NEAR_STALL and reach < 0.5 * looked:
             looked = reach
             stall = stall_behind(law, place, sense, end)
@@ -214,22 +211,6 @@ def _march(
             return steps, None
     what = _("the path takes more than {most} steps").format(most=MOST_STEPS)
     raise InputError("[curvature]", what, _("ask for a shorter range, or a coarser tolerance"))
-
-
-def _no_series(phi: float) -> InputError:
-    what = _("the path has no Taylor series at {angle:.6g} deg").format(angle=math.degrees(phi))
-    repair = _(
-        "roots of what vanishes there are not smooth, and what changes too quickly leaves the range of numbers"
-    )
-    return InputError("[curvature]", what, repair)
-
-
-def _runs_away(phi: float) -> InputError:
-    what = _(
-        "the path runs away from the cam's centre: at {angle:.6g} deg ρ is {growth:g} times that of the start"
-    )
-    told = what.format(angle=math.degrees(phi), growth=MOST_GROWTH)
-    return InputError("[curvature]", told, _("a greater curvature keeps it near, or a shorter range"))
 
 
 def _reach(series: tuple[Series, Series, Series], tolerance: float) -> float:

@@ -31,6 +31,9 @@ CURVES = ("path_radius", "cam_pressure_angle", "law_curvature")
 RAYS = 15.0
 """Degrees between the rays of the path's figure."""
 
+INCHES = 5.6
+"""Length on paper of the longer side of the path."""
+
 NORMAL = 0.5
 """Length of a drawn normal over rho."""
 
@@ -84,8 +87,8 @@ def cam_path_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
         factor, unit = shown_as("m", cam.display)
         x, y = (factor * dataset["roller_centre"].sel(axis=axis).to_numpy() for axis in ("x", "y"))
         width, height = (max(np.nanmax(one), 0.0) - min(np.nanmin(one), 0.0) for one in (x, y))
-        tall = float(np.clip(1.4 + 5.4 * height / max(width, 1e-300), 3.2, 7.2))
-        figure = Figure(figsize=(8.8, tall), layout="constrained")
+        scale = INCHES / max(width, height)
+        figure = Figure(figsize=(scale * width + 4.2, max(scale * height + 1.5, 3.2)), layout="constrained")
         axes = figure.subplots()
         _draw_rays(axes, dataset, factor)
         (line,) = axes.plot(x, y, color=PALETTE[0], linewidth=2.0)
@@ -114,6 +117,8 @@ def _draw_rays(axes: Axes, dataset: xarray.Dataset, factor: float) -> None:
     low, high = np.degrees(phi[known].min()), np.degrees(phi[known].max())
     greatest = float(radius[known].max())
     for degrees in np.arange(RAYS * math.ceil(low / RAYS - 1e-9), high + 1e-9, RAYS):
+        if degrees >= low + 360.0 - 1e-9:
+            break
         nearest = int(np.argmin(np.abs(np.degrees(phi) - degrees) + np.where(known, 0.0, np.inf)))
         if abs(np.degrees(phi[nearest]) - degrees) > RAYS / 4:
             continue
