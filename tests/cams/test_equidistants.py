@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
-from cam_shapes import EPS, Limacon, paper_path, three_point_curvature
 
-from centrode.cams.closed.arcs import working_arc
+from cam_shapes import EPS, Limacon, paper_path, three_point_curvature
+from centrode.cams.closed.arcs import Arc, ClosedPath, working_arc
 from centrode.cams.closed.designing import designed
 from centrode.cams.frames import frames
 from centrode.cams.path import CirclePath
@@ -59,7 +59,8 @@ def test_equidistants_keep_their_distance_and_the_angle_of_the_normal() -> None:
     # polar form and places are the same
     np.testing.assert_allclose(
         inner.place,
-        inner.polar_radius[:, None] * np.stack([np.sin(inner.polar_angle), np.cos(inner.polar_angle)], axis=-1),
+        inner.polar_radius[:, None]
+        * np.stack([np.sin(inner.polar_angle), np.cos(inner.polar_angle)], axis=-1),
         rtol=0.0,
         atol=8 * EPS * 0.08,
     )
@@ -139,13 +140,27 @@ def test_a_roller_larger_than_the_hollow_of_a_groove_is_refused_with_the_greates
     assert most == pytest.approx(hollow, rel=64 * EPS)
     assert abs(abs(at) - math.pi) < 1e-12
     fitting(curve, edges, hollow * 0.999, "outer")
-    with pytest.raises(InputError, match="larger than the hollow at -?180 deg; stay below 40 mm"):
+    with pytest.raises(InputError, match=r"larger than the hollow at -?180 deg; stay below 40 mm"):
         fitting(curve, edges, 1.001 * hollow, "outer")
     # the inner side of the same hollow takes any roller; convex stretches bound it
     convex, _at = greatest_roller(curve, edges)
     assert convex < hollow
     with pytest.raises(InputError, match="undercuts"):
         fitting(curve, edges, convex * 1.01, "inner")
+
+
+def test_a_roller_that_overlaps_the_cam_across_a_waist_is_found() -> None:
+    # at the waist the path is 2 x 12 mm wide: a roller of 15 mm overlaps the profile of the other side by 6 mm
+    arc = Arc("working", Limacon(0.04, 0.028, 2), -math.pi, math.pi)
+    body = CamBody(ClosedPath((arc,)), 0.015)
+    assert body.undercuts == []
+    depth, at = body.overlap
+    # the deepest place is at the waist or beside it
+    assert depth >= 0.006 - 1e-6
+    assert abs(abs(at) - math.pi / 2) < 0.5
+    assert CamBody(ClosedPath((arc,)), 0.008).overlap == (0.0, 0.0)
+    closed = designed(working_arc(paper_path(), legs=4)).closed
+    assert CamBody(closed, ROLLER).overlap == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("radius", [0.0, -0.01, math.nan, math.inf])

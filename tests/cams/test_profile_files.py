@@ -10,9 +10,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from cam_shapes import exchanged
 
 import centrode as ct
+from cam_shapes import exchanged
 from centrode.errors import InputError
 from centrode.present import outline_dxf
 
@@ -67,11 +67,15 @@ def test_svg_is_in_millimetres_and_its_curves_are_the_profile(cam: ct.Cam, tmp_p
     ]  # fmt: skip
     for layer, side in (("profile-return", "inner"), ("groove-return", "outer")):
         (drawn,) = groups[layer].findall(f"{NAME}path")
-        numbers = np.array([float(one) for one in re.findall(r"-?\d+\.\d+", drawn.get("d", ""))]).reshape(-1, 2)
+        numbers = np.array([float(one) for one in re.findall(r"-?\d+\.\d+", drawn.get("d", ""))]).reshape(
+            -1, 2
+        )
         (piece,) = [one for one in outlines if one.layer == layer]
         start, controls = numbers[0], numbers[1:].reshape(-1, 3, 2)
         ends = np.concatenate([start[None], controls[:-1, 2]])
-        middles = (ends + 3 * controls[:, 0] + 3 * controls[:, 1] + controls[:, 2]) / 8 * np.array([1.0, -1.0])
+        middles = (
+            (ends + 3 * controls[:, 0] + 3 * controls[:, 1] + controls[:, 2]) / 8 * np.array([1.0, -1.0])
+        )
         phi = 0.5 * (piece.phi[1:] + piece.phi[:-1])
         exact = 1e3 * body.profile(phi, side).place  # type: ignore[arg-type]
         step = float(np.diff(piece.phi).max())
@@ -98,10 +102,14 @@ def test_dxf_is_read_without_a_complaint_and_its_splines_are_the_profile(cam: ct
             phi = np.linspace(piece.phi[0], piece.phi[-1], 203)[1:-1]
             found = np.array([list(curve.point(one))[:2] for one in phi - piece.phi[0]])
             exact = {
-                "path": lambda at: ct.cam_body(cam).closed.radius(at)[0][:, None]
-                * np.stack([np.sin(at), np.cos(at)], axis=-1),
+                "path": lambda at: (
+                    ct.cam_body(cam).closed.radius(at)[0][:, None]
+                    * np.stack([np.sin(at), np.cos(at)], axis=-1)
+                ),
                 "shoe": wheel.shoe.place,
-            }.get(layer, lambda at, name=layer: body.profile(at, "outer" if "groove" in name else "inner").place)(phi)
+            }.get(
+                layer, lambda at, name=layer: body.profile(at, "outer" if "groove" in name else "inner").place
+            )(phi)
             step = float(np.diff(piece.phi).max())
             # a cubic spline: 5/384 h^4 of the fourth derivative, some twenty sizes here
             assert np.abs(found - 1e3 * exact).max() < 5 / 384 * step**4 * 20 * 90 + 1e-9
@@ -121,7 +129,9 @@ def test_files_have_the_same_bytes_each_time(cam: ct.Cam, tmp_path: Path) -> Non
     assert ezdxf.options.write_fixed_meta_data_for_testing == before
 
 
-def test_without_ezdxf_the_extra_is_named(cam: ct.Cam, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_ezdxf_the_extra_is_named(
+    cam: ct.Cam, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(outline_dxf, "find_spec", lambda _name: None)
     with pytest.raises(InputError, match=r'pip install "centrode\[drawings\]"'):
         ct.write_outlines_dxf(ct.cam_outlines(ct.cam_body(cam), 90), tmp_path / "cam.dxf")

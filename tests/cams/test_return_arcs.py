@@ -7,9 +7,9 @@ import re
 
 import numpy as np
 import pytest
-from cam_shapes import EPS, exchanged, paper_path
 
 import centrode as ct
+from cam_shapes import EPS, exchanged, paper_path
 from centrode.cams.closed.arcs import ClosedPath, mirrored, working_arc
 from centrode.cams.closed.bounds import Bounds
 from centrode.cams.closed.curves import Ends, ReturnCurve, derivatives
@@ -137,12 +137,15 @@ def test_what_is_impossible_is_told_with_numbers() -> None:
 
 
 def test_a_bound_that_the_joint_breaks_is_told_there() -> None:
-    with pytest.raises(InputError, match=r"at 45 deg: the polar radius grows to 56\.0051 mm, the bound is 55 mm"):
+    with pytest.raises(
+        InputError, match=r"at 45 deg: the polar radius grows to 56\.0051 mm, the bound is 55 mm"
+    ):
         designed(working_arc(paper_path(), legs=4), Bounds(greatest_radius=0.055))
 
 
 @pytest.mark.parametrize(
-    "bounds", [{"least_radius": -1.0}, {"least_radius": 0.05, "greatest_radius": 0.04}, {"pressure_angle": 2.0}]
+    "bounds",
+    [{"least_radius": -1.0}, {"least_radius": 0.05, "greatest_radius": 0.04}, {"pressure_angle": 2.0}],
 )
 def test_bounds_make_sense(bounds: dict[str, float]) -> None:
     with pytest.raises(InputError):
@@ -180,16 +183,27 @@ def test_mirror_images_that_do_not_close_are_refused_with_the_nearest_that_does(
 
 
 def test_a_path_that_is_too_short_is_refused() -> None:
-    with pytest.raises(InputError, match="the working arc goes from -100 to 100 deg, the path from -90 to 90 deg"):
+    with pytest.raises(
+        InputError, match="the working arc goes from -100 to 100 deg, the path from -90 to 90 deg"
+    ):
         working_arc(paper_path(), half=math.radians(100))
 
 
 def test_derivatives_are_those_of_the_radius() -> None:
     """Central differences of each derivative are the next: over all arcs, mirrored ones too."""
-    for closed in (designed(working_arc(paper_path(), legs=4)).closed, mirrored(working_arc(paper_path(), legs=4))):
-        middles = np.array([0.5 * (a + b) for a, b in zip(closed.edges[:-1], closed.edges[1:], strict=True)]) + 0.01
+    for closed in (
+        designed(working_arc(paper_path(), legs=4)).closed,
+        mirrored(working_arc(paper_path(), legs=4)),
+    ):
+        middles = (
+            np.array([0.5 * (a + b) for a, b in zip(closed.edges[:-1], closed.edges[1:], strict=True)]) + 0.01
+        )
         h = 1e-5
-        before, after, here = closed.radius(middles - h, 3), closed.radius(middles + h, 3), closed.radius(middles, 3)
+        before, after, here = (
+            closed.radius(middles - h, 3),
+            closed.radius(middles + h, 3),
+            closed.radius(middles, 3),
+        )
         # h^2/6 of the third derivative ahead, and rounding over h
         np.testing.assert_allclose((after - before)[:3] / (2 * h), here[1:], rtol=1e-7, atol=1e-9)
 
@@ -212,7 +226,10 @@ def test_an_outward_corner_is_undercut_where_the_profiles_cross() -> None:
         # inside, the profile lies farther out than where it crosses: the roller never gets there
         inner = frames(body.closed, np.array([0.5 * (one.start + one.stop) - 1e-3]))
         distances = np.hypot(
-            *(frames(body.closed, np.linspace(0, math.tau, 5000)).place - (inner.place - 0.015 * inner.normal)).T
+            *(
+                frames(body.closed, np.linspace(0, math.tau, 5000)).place
+                - (inner.place - 0.015 * inner.normal)
+            ).T
         )
         assert distances.min() < 0.015 * (1 - 1e-3)
 

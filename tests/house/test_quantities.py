@@ -69,6 +69,9 @@ def test_every_variable_of_a_motion_is_named() -> None:
         cams |= {name, f"{name}_slope"}
     cams |= {"path_radius_second", "pressure_sine_second"}
     known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
+    cams |= {"path_curvature", "profile", "profile_radius", "profile_angle", "profile_bend", "groove"}
+    cams |= {f"shoe_{name}" for name in ("profile", "radius", "angle", "bend", "along", "upright")}
+    cams |= {"hub_travel", "hub_rate"}
     known |= set(reduced) | set(steady) | cams
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())

@@ -130,7 +130,16 @@ def _name(axes: Axes, at: float, place: Array, room: float) -> None:
     degrees = math.degrees(math.remainder(at, math.tau))
     axes.update_datalim([tuple(away * 1.1)])
     side = "left" if away[0] >= 0 else "right"
-    axes.text(away[0], away[1], f"{degrees:.4g}°", fontsize=8.5, color=INK, ha=side, va="center", zorder=6)
+    axes.text(
+        away[0],
+        away[1],
+        f"{degrees:.4g}°".replace("-", "−"),
+        fontsize=8.5,
+        color=INK,
+        ha=side,
+        va="center",
+        zorder=6,
+    )
 
 
 def _undercut(axes: Axes, body: CamBody, factor: float) -> list[tuple[Line2D, str]]:

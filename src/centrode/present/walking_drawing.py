@@ -59,7 +59,7 @@ def walking_figure(
             pose = wheel.pose(angle)
             draw_wheel(axes, wheel, pose, factor)
             window(axes, wheel, pose, factor)
-            axes.set_title(f"{math.degrees(angle):.4g}°")
+            axes.set_title(f"{math.degrees(angle):.4g}°".replace("-", "−"))
             axes.set_xlabel(labelled("x", unit))
         grid[0].set_ylabel(labelled("y", unit))
         keys = wheel_keys()

@@ -99,6 +99,12 @@ def _bends(body: CamBody, units: Units) -> Rows:
         rows.append((_("undercut"), _("from {stretches} deg").format(stretches=text)))
     else:
         rows.append((_("undercut"), _("none")))
+        depth, place = body.overlap
+        if depth:
+            text = _("the roller at {place} overlaps the cam by {depth} across a waist")
+            rows.append(
+                (_("overlap"), text.format(place=units.angle(place), depth=units.text(depth, digits=3)))
+            )
     return rows
 
 
@@ -114,6 +120,7 @@ def _scalars(body: CamBody) -> dict[str, Scalar]:
         "cam_closed": Scalar(int(body.closed.whole), "1"),
         "cam_kink": Scalar(body.closed.greatest_kink, "rad"),
         "cam_undercuts": Scalar(len(body.undercuts), "1"),
+        "cam_overlap": Scalar(body.overlap[0], "m"),
     }
     if math.isfinite(most):
         scalars["cam_greatest_roller"] = Scalar(most, "m")

@@ -38,7 +38,9 @@ def walking_part(cam: Cam, asked: Asked) -> CamPart | None:
     dataset = shoe_dataset(wheel, count_of(cam, asked.samples))
     failures: tuple[str, ...] = ()
     if proof.clearance < -DUG * wheel.height:
-        text = _("a returning shoe digs {depth} into the ground where its leg is at {at}")
+        text = _(
+            "a returning shoe digs {depth} into the ground where its leg is at {at}; bound greatest_radius in [return]"
+        )
         failures = (text.format(depth=units.text(-proof.clearance), at=units.angle(proof.clearance_at)),)
     return CamPart(
         heading, rows, _scalars(wheel, proof), {"shoe-profile": dataset}, (), failures, {"wheel": wheel}

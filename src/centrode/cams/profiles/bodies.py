@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from functools import cached_property
@@ -34,6 +35,7 @@ LEAST_BEND = 0.1
 """Least radius of curvature of a designed profile over the roller's radius, where the description gives none."""
 LEAST_ROOM = 1.5
 """Least polar radius of a designed path over the roller's radius, where the description gives none."""
+PLACES = 721
 CLOSED = 1e-9
 """Share of the radius by which a path of a whole turn may miss its beginning."""
 
@@ -71,6 +73,19 @@ class CamBody:
     def greatest_roller(self) -> tuple[float, float]:
         """The radius [m] that the roller has to stay below, and where [rad]."""
         return greatest_roller(self.closed, self.closed.edges)
+
+    @cached_property
+    def overlap(self) -> tuple[float, float]:
+        """By how much [m] the roller overlaps the profile somewhere, and at which angle [rad]; 0 where it never does.
+
+        Among 720 places of the roller and of the profile: it finds a waist that is too narrow, besides undercut.
+        """
+        phi = np.linspace(self.closed.start, self.closed.stop, PLACES)
+        centres, profile = frames(self.closed, phi).place, self.profile(phi).place
+        apart = np.hypot(*(centres[:, None] - profile).transpose(2, 0, 1)).min(axis=1)
+        worst = int(np.argmin(apart))
+        depth = self.roller - float(apart[worst])
+        return (depth, float(phi[worst])) if depth > CLOSED * float(np.abs(centres).max()) else (0.0, 0.0)
 
     def fit_groove(self) -> None:
         """Raise InputError where the roller is larger than a hollow, which the outer wall would have to follow."""
@@ -118,6 +133,12 @@ def cam_body(cam: Cam) -> CamBody:
     MotionError
         No return arc within the bounds was found.
     """
+    return _body(cam)
+
+
+@functools.lru_cache(maxsize=16)
+def _body(cam: Cam) -> CamBody:
+    """What a search may have gone into is kept for whoever asks for the same cam next."""
     if cam.roller is None:
         raise InputError("[roller]", _("a profile needs a roller"), _("give [roller] radius"))
     path, asked = path_of(cam), cam.return_arc or Return()
