@@ -101,10 +101,10 @@ PARAMETERS = {
 }
 """What may be chosen, and the kinds of quantity it may be."""
 
-POINT = re.compile(r"curvature\.points\.[1-9]\d{0,4}")
+POINT = re.compile(r"curvature\.points\.[1-9][0-9]{0,4}")
 """The curvature at one of a spline's points, counted from 1, may be chosen too."""
 
-CONSTANT = re.compile(r"curvature\.constants\.[A-Za-z]\w*", re.ASCII)
+CONSTANT = re.compile(r"curvature\.constants\.[A-Za-z][A-Za-z0-9_]*")
 """And a letter of a formula, in SI."""
 
 
