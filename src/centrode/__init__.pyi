@@ -153,6 +153,19 @@ from .present import profile_figure as profile_figure
 from .present import walking_figure as walking_figure
 from .present import cam_body_figures as cam_body_figures
 
+# Contact of roller and cam, choice of parameters, animation
+from .cams.contacts.labelled import cam_contact as cam_contact
+from .study.cam_contact import contact_rows as contact_rows
+from .cams.choosing.chosen import choose_cam as choose_cam
+from .cams.choosing.chosen import CamChoice as CamChoice
+from .study.cam_choice import choice_rows as choice_rows
+from .present import write_cam_contact_csv as write_cam_contact_csv
+from .present import write_choice as write_choice
+from .present import contact_figure as contact_figure
+from .present import trade_off_figure as trade_off_figure
+from .present import choice_figures as choice_figures
+from .present import animate_walking as animate_walking
+
 # Equations in symbols
 from .equations.derivation import equations as equations
 from .present import equations_text as equations_text

@@ -31,7 +31,9 @@ def law_of(cam: Cam) -> CurvatureLaw:
         if given.law == "spline":
             angles, values = zip(*given.points or (), strict=True)
             return SplineCurvature(angles, values)
-        return TextCurvature(given.formula or "", cam.range.start, cam.range.stop)
+        return TextCurvature(
+            given.formula or "", cam.range.start, cam.range.stop, tuple(given.constants.items())
+        )
     except InputError as error:
         raise InputError(error.where or "[curvature]", error.what, error.repair) from None
 

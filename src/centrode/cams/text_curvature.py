@@ -63,6 +63,8 @@ class TextCurvature:
 
     Attributes
     ----------
+    constants : tuple of (name, value)
+        Further letters of the formula.
     breaks : tuple of float [rad]
         Where the formula bends or jumps.
     signs : (stretches, functions)
@@ -77,12 +79,13 @@ class TextCurvature:
     text: str
     start: float
     stop: float
+    constants: tuple[tuple[str, float], ...] = ()
     formula: TextFormula = field(init=False, repr=False, compare=False)
     breaks: tuple[float, ...] = field(init=False, repr=False, compare=False)
     signs: Array = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "formula", compile_formula(self.text, ("phi",), "[curvature] formula"))
+        object.__setattr__(self, "formula", self._compiled())
         breaks = self._kinks()
         edges = np.array(
             [min(self.start, *breaks), *breaks, max(self.stop, *breaks)]
@@ -92,6 +95,10 @@ class TextCurvature:
         object.__setattr__(self, "breaks", breaks)
         asked = self._asked(0.5 * (edges[:-1] + edges[1:]))
         object.__setattr__(self, "signs", np.sign(asked).T)
+
+    def _compiled(self) -> TextFormula:
+        names = ("phi", *(name for name, _value in self.constants))
+        return compile_formula(self.text, names, "[curvature] formula")
 
     @property
     def span(self) -> tuple[float, float]:
@@ -109,7 +116,7 @@ class TextCurvature:
 
     def _value(self, functions: JetFunctions, phi: Jet) -> Any:
         try:
-            return self.formula(functions, phi=phi)
+            return self.formula(functions, phi=phi, **dict(self.constants))
         except ZeroDivisionError:
             return math.inf
 

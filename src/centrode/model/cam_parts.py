@@ -16,6 +16,7 @@ from centrode.model.cam_values import (
     Size,
     Steepness,
     Stress,
+    read_constants,
     read_formula,
     read_parameters,
     read_points,
@@ -40,6 +41,7 @@ MOST_TERMS = 2000
 
 MOST_LEGS = 24
 MINIMISED = ("size", "stress", "pressure_angle")
+MEASURED = (*MINIMISED, "lift", "gap")
 
 
 class Curvature(Part):
@@ -54,6 +56,8 @@ class Curvature(Part):
         K = k0 exp(k1 phi) with k1 [1/rad], or K = k0 + k1 phi with k1 [1/m/rad].
     points : rows of (phi [rad], K [1/m])
         What a spline passes through.
+    constants : mapping of letter to number
+        Letters of the formula besides phi, in SI.
     formula : str
         K [1/m] as a text formula of phi [rad].
     symmetric : bool
@@ -64,7 +68,8 @@ class Curvature(Part):
     k0: Curved | None = None
     k1: float | None = None
     points: Annotated[tuple[tuple[float, float], ...], PlainValidator(read_points)] | None = None
-    formula: Annotated[str, PlainValidator(read_formula)] | None = None
+    constants: Annotated[FrozenMap[str, float], PlainValidator(read_constants)] = FrozenMap({})
+    formula: str | None = None
     symmetric: Flag = False
 
     @classmethod
@@ -78,9 +83,15 @@ class Curvature(Part):
             if key in _NEEDED[law] and not has:
                 problems.append(missing_key(key))
             elif has and key not in _NEEDED[law]:
-                what = _("a law of kind {law} has no {key}").format(law=shown(law), key=shown(key))
-                problems.append(Problem(what, _("take it out, or change the law")))
+                problems.append(_foreign(law, key))
+        if law != "formula" and given.get("constants"):
+            problems.append(_foreign(law, "constants"))
         return problems
+
+    @field_validator("formula", mode="plain")
+    @classmethod
+    def _text(cls, value: object, info: ValidationInfo) -> str | None:
+        return None if value is None else read_formula(value, info.data.get("constants", ()))
 
     @field_validator("k1", mode="plain")
     @classmethod
@@ -88,6 +99,11 @@ class Curvature(Part):
         if value is None:
             return None
         return si(value, "curvature slope" if info.data.get("law") == "linear" else "per angle")
+
+
+def _foreign(law: str, key: str) -> Problem:
+    what = _("a law of kind {law} has no {key}").format(law=shown(law), key=shown(key))
+    return Problem(what, _("take it out, or change the law"))
 
 
 class Start(Part):
@@ -173,6 +189,8 @@ class Contact(Part):
         `roller` is of the cam's material if left out.
     admissible : float [Pa]
         Greatest contact stress.
+    outer : bool
+        The roller leans on the outer wall of a groove.
     """
 
     force: Annotated[float, quantity("force", positive)]
@@ -180,6 +198,7 @@ class Contact(Part):
     cam: Material
     roller: Material | None = None
     admissible: Stress | None = None
+    outer: Flag = False
 
 
 class Choose(Part):
@@ -192,6 +211,10 @@ class Choose(Part):
     minimise : one of `MINIMISED`
     stress : float [Pa], pressure_angle : float [rad], size : float [m]
         Greatest admissible ones; the stress is that of the contact if left out, the size the greatest rho.
+    lift, gap : float [m]
+        Least ones: of rho at the end over that at phi = 0, and of the ground between the prints of two shoes.
+    trade_off : one of `MEASURED`
+        Its bound is moved, to show what it costs in what is made least.
     """
 
     parameters: Annotated[FrozenMap[str, tuple[float, float]], PlainValidator(read_parameters)]
@@ -199,6 +222,11 @@ class Choose(Part):
     stress: Stress | None = None
     pressure_angle: Steepness | None = None
     size: Size | None = None
+    lift: Size | None = None
+    gap: Size | None = None
+    trade_off: Annotated[
+        Literal["size", "stress", "pressure_angle", "lift", "gap"] | None, choice(*MEASURED)
+    ] = None
 
 
 class CamStudy(Part):

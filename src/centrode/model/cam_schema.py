@@ -6,6 +6,7 @@ from centrode.model import limits
 from centrode.model.asked import Display
 from centrode.model.cam_parts import (
     LAWS,
+    MEASURED,
     MINIMISED,
     MOST_LEGS,
     MOST_TERMS,
@@ -20,7 +21,7 @@ from centrode.model.cam_parts import (
     Roller,
     Start,
 )
-from centrode.model.cam_values import PARAMETERS
+from centrode.model.cam_values import CONSTANT, LETTER, PARAMETERS, POINT
 from centrode.model.cams import Cam
 from centrode.model.part import Part
 from centrode.model.schema import (
@@ -45,6 +46,11 @@ CAM_PROPERTIES: dict[type[Part], Schema] = {
         "k0": above_zero("curvature"),
         "k1": AMOUNT,
         "points": {"anyOf": [TEXT, list_of(_BOUNDS, 2, limits.TABLE_ROWS)]},
+        "constants": {
+            "type": "object",
+            "patternProperties": {f"^{LETTER.pattern}$": AMOUNT},
+            "additionalProperties": False,
+        },
         "formula": {**TEXT, "description": "K [1/m] as a formula of phi [rad]"},
         "symmetric": _FLAG,
     },
@@ -71,17 +77,22 @@ CAM_PROPERTIES: dict[type[Part], Schema] = {
         "cam": reference_to(Material),
         "roller": reference_to(Material),
         "admissible": above_zero("pressure"),
+        "outer": _FLAG,
     },
     Choose: {
         "parameters": {
             "type": "object",
             "properties": dict.fromkeys(PARAMETERS, _BOUNDS),
+            "patternProperties": {f"^{one.pattern}$": _BOUNDS for one in (POINT, CONSTANT)},
             "additionalProperties": False,
         },
         "minimise": {"enum": list(MINIMISED)},
         "stress": above_zero("pressure"),
         "pressure_angle": above_zero("angle"),
         "size": above_zero("length"),
+        "lift": above_zero("length"),
+        "gap": above_zero("length"),
+        "trade_off": {"enum": list(MEASURED)},
     },
     CamStudy: {
         "samples": {"type": "integer", "minimum": 1, "maximum": limits.SAMPLES},

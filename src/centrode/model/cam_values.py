@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Iterable
 from typing import Annotated
 
 from pydantic import PlainValidator
@@ -17,6 +19,8 @@ from centrode.model.values import READING, named_entries, positive, quantity, re
 
 _POINTS = Columns(("angle", "curvature"), "[angle, curvature]", 2)
 MOST_PARAMETERS = 8
+MOST_CONSTANTS = 20
+LETTER = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
 def read_points(value: object) -> tuple[tuple[float, float], ...]:
@@ -27,14 +31,28 @@ def read_points(value: object) -> tuple[tuple[float, float], ...]:
     return tuple((row[0], row[1]) for row in rows)
 
 
-def read_formula(value: object) -> str:
-    """The text of a formula of phi."""
+def read_formula(value: object, constants: Iterable[str] = ()) -> str:
+    """The text of a formula of phi and of further letters."""
     text = read_text(value)
     try:
-        compile_formula(text, ("phi",), "")
+        compile_formula(text, ("phi", *constants), "")
     except InputError as error:
         raise Problem(error.what, error.repair) from None
     return text
+
+
+def read_constants(value: object) -> FrozenMap[str, float]:
+    """Letters of a formula with their values in SI."""
+    named = named_entries(value, _read_letter, MOST_CONSTANTS)
+    return FrozenMap({name: si(number, "ratio") for name, number in named.items()})
+
+
+def _read_letter(key: object) -> str:
+    name = str(key)
+    if LETTER.fullmatch(name) and name not in ("phi", "pi", "e"):
+        return name
+    what = _("{name} cannot be a letter of a formula").format(name=shown(name))
+    raise Problem(what, _("use letters, digits and underscores, a letter in front; phi, pi and e are taken"))
 
 
 def read_flag(value: object) -> bool:
@@ -83,6 +101,12 @@ PARAMETERS = {
 }
 """What may be chosen, and the kinds of quantity it may be."""
 
+POINT = re.compile(r"curvature\.points\.[1-9][0-9]{0,4}")
+"""The curvature at one of a spline's points, counted from 1, may be chosen too."""
+
+CONSTANT = re.compile(r"curvature\.constants\.[A-Za-z][A-Za-z0-9_]*")
+"""And a letter of a formula, in SI."""
+
 
 def read_parameters(value: object) -> FrozenMap[str, tuple[float, float]]:
     """Names of `PARAMETERS`, each with its least and greatest value in SI."""
@@ -96,10 +120,11 @@ def read_parameters(value: object) -> FrozenMap[str, tuple[float, float]]:
 
 
 def _read_parameter(key: object) -> str:
-    if isinstance(key, str) and key in PARAMETERS:
+    if isinstance(key, str) and (key in PARAMETERS or POINT.fullmatch(key) or CONSTANT.fullmatch(key)):
         return key
     what = _("{name} cannot be chosen").format(name=shown(key))
-    known = _("known are: {names}").format(names=", ".join(PARAMETERS))
+    names = ", ".join([*PARAMETERS, "curvature.points.1", "curvature.constants.a"])
+    known = _("known are: {names}").format(names=names)
     raise Problem(what, (likely(key, PARAMETERS) if isinstance(key, str) else "") or known)
 
 
@@ -108,13 +133,17 @@ def _read_bounds(name: str, pair: object) -> tuple[float, float]:
         what = _("expected {form}, got {value}").format(form=_("[least, greatest]"), value=shown(pair))
         raise Problem(what, at=(name,))
     try:
-        low, high = (_of_kinds(end, PARAMETERS[name]) for end in pair)
+        low, high = (_of_kinds(end, _kinds_of(name)) for end in pair)
     except Problem as problem:
         raise Problem(problem.what, problem.repair, (name,)) from None
     if not low < high:
         what = _("the least value has to be below the greatest: {low:g}, {high:g}").format(low=low, high=high)
         raise Problem(what, at=(name,))
     return low, high
+
+
+def _kinds_of(name: str) -> tuple[str, ...]:
+    return PARAMETERS.get(name, ("ratio",) if CONSTANT.fullmatch(name) else ("curvature",))
 
 
 def _of_kinds(value: object, kinds: tuple[str, ...]) -> float:

@@ -21,6 +21,7 @@ from centrode.model.cam_parts import (
     Roller,
     Start,
 )
+from centrode.model.cam_values import CONSTANT, POINT
 from centrode.model.document import part_tables
 from centrode.model.part import Part
 from centrode.model.problems import Problem, Problems, nearest, shown
@@ -75,7 +76,7 @@ class Cam(Part):
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:
-        problems = [*_of_range(self), *_of_roller(self)]
+        problems = [*_of_range(self), *_of_roller(self), *_of_choice(self)]
         if problems:
             raise Problems(problems)
         return self
@@ -109,6 +110,35 @@ def _of_roller(cam: Cam) -> list[Problem]:
     return []
 
 
+def _of_choice(cam: Cam) -> list[Problem]:
+    """What is chosen is a number that the description has; a stress is asked of a contact."""
+    if cam.choose is None:
+        return []
+    problems = []
+    for name in cam.choose.parameters:
+        if not _has(cam, name):
+            what = _("the cam has no {name}").format(name=shown(name))
+            problems.append(Problem(what, _("choose what the description gives"), ("choose", "parameters")))
+    stressed = cam.choose.stress is not None or "stress" in (cam.choose.minimise, cam.choose.trade_off)
+    if stressed and cam.contact is None:
+        what = _("the contact stress needs the force, the width and the materials")
+        problems.append(Problem(what, _("write a table [contact]"), ("choose",)))
+    if cam.choose.trade_off == cam.choose.minimise:
+        what = _("a trade-off needs two different measures")
+        problems.append(Problem(what, _("name another one"), ("choose", "trade_off")))
+    return problems
+
+
+def _has(cam: Cam, name: str) -> bool:
+    """Whether a description gives the number of a parameter's name."""
+    table, _dot, key = name.partition(".")
+    if POINT.fullmatch(name):
+        return int(key[7:]) <= len(cam.curvature.points or ())
+    if CONSTANT.fullmatch(name):
+        return key[10:] in cam.curvature.constants
+    return getattr(getattr(cam, table), key, None) is not None
+
+
 def varied(cam: Cam, values: Mapping[str, float]) -> Cam:
     """The cam with other numbers [SI] at paths such as "curvature.k0"; InputError for a path it does not have."""
     tables = part_tables(cam)
@@ -116,5 +146,20 @@ def varied(cam: Cam, values: Mapping[str, float]) -> Cam:
         table, _dot, key = path.partition(".")
         if not isinstance(tables.get(table), dict) or not key:
             raise InputError("", _("the cam has no {name}").format(name=shown(path)), nearest(path, tables))
-        tables[table][key] = value
+        if POINT.fullmatch(path):
+            _put_point(tables[table], path, value)
+        elif CONSTANT.fullmatch(path):
+            tables[table].setdefault("constants", {})[path.rpartition(".")[2]] = value
+        else:
+            tables[table][key] = value
     return Cam(**tables)
+
+
+def _put_point(curvature: dict[str, Any], path: str, value: float) -> None:
+    points = [list(point) for point in curvature.get("points", ())]
+    number = int(path.rpartition(".")[2])
+    if number > len(points):
+        what = _("the cam has no {name}").format(name=shown(path))
+        raise InputError("", what, _("points of a spline are counted from 1"))
+    points[number - 1][1] = value
+    curvature["points"] = points

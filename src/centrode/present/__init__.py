@@ -16,13 +16,21 @@ if TYPE_CHECKING:
     from centrode.present.balance_figures import balance_figures
     from centrode.present.balance_tables import write_balance_csv, write_harmonics_csv
     from centrode.present.cam_bodies import cam_body_figures
+    from centrode.present.cam_choice import choice_figures, trade_off_figure
+    from centrode.present.cam_choice_tables import write_choice
+    from centrode.present.cam_contact import contact_figure
     from centrode.present.cam_drawing import (
         cam_curves_figure,
         cam_figures,
         cam_path_figure,
         cam_routes_figure,
     )
-    from centrode.present.cam_tables import write_cam_csv, write_cam_routes_csv, write_cam_tables
+    from centrode.present.cam_tables import (
+        write_cam_contact_csv,
+        write_cam_csv,
+        write_cam_routes_csv,
+        write_cam_tables,
+    )
     from centrode.present.centres import centres_figure
     from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
     from centrode.present.centrodes import animate_centrodes, centrodes_figure
@@ -57,11 +65,18 @@ if TYPE_CHECKING:
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
     from centrode.present.variant_folders import write_variants
+    from centrode.present.walking_animation import animate_walking
     from centrode.present.walking_drawing import walking_figure
 
 __all__ = [
     "animate_centrodes",
     "balance_figures",
+    "animate_walking",
+    "choice_figures",
+    "contact_figure",
+    "trade_off_figure",
+    "write_cam_contact_csv",
+    "write_choice",
     "cam_body_figures",
     "cam_curves_figure",
     "cam_figures",
@@ -122,7 +137,10 @@ _attached, __dir__, _names = lazy_loader.attach(
         "balance_tables": ["write_balance_csv", "write_harmonics_csv"],
         "cam_bodies": ["cam_body_figures"],
         "cam_drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
-        "cam_tables": ["write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
+        "cam_choice": ["choice_figures", "trade_off_figure"],
+        "cam_choice_tables": ["write_choice"],
+        "cam_contact": ["contact_figure"],
+        "cam_tables": ["write_cam_contact_csv", "write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "centrodes": ["animate_centrodes", "centrodes_figure"],
@@ -157,6 +175,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],
         "variant_folders": ["write_variants"],
+        "walking_animation": ["animate_walking"],
         "walking_drawing": ["walking_figure"],
     },
 )

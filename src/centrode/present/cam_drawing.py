@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.present.abscissa import Abscissa, angle_ticks
+from centrode.present.cam_contact import contact_figure
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
@@ -188,6 +189,7 @@ CAM_FIGURES: Mapping[str, tuple[str, Callable[[Cam, xarray.Dataset], Figure]]] =
     "cam-path": ("cam-path", cam_path_figure),
     "cam-curves": ("cam-path", cam_curves_figure),
     "cam-routes": ("cam-routes", cam_routes_figure),
+    "cam-contact": ("cam-contact", contact_figure),
 }
 """Figures of a cam's results: name of the file -> name of the dataset, and what draws it."""
 

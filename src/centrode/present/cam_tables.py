@@ -59,9 +59,25 @@ def _columns(dataset: xarray.Dataset, variables: tuple[str, ...]) -> Iterator[Co
         yield from columns_of(dataset[variable], variable)
 
 
+CONTACT = (
+    "contact_stress",
+    "contact_stress_by_source",
+    "contact_shear",
+    "contact_depth",
+    "contact_half_width",
+    "cam_curvature_radius",
+)
+
+
+def write_cam_contact_csv(cam: Cam, dataset: xarray.Dataset, path: str | Path) -> None:
+    """Write the contact of roller and cam (`ct.cam_contact`) as CSV, stresses in Pa, one row a sample."""
+    write_columns(path, _columns(dataset, CONTACT), dataset["status"], cam.display)
+
+
 CAM_TABLES: Mapping[str, Callable[[Cam, xarray.Dataset, Path], None]] = {
     "cam-path": write_cam_csv,
     "cam-routes": write_cam_routes_csv,
+    "cam-contact": write_cam_contact_csv,
     "cam-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "shoe-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
 }

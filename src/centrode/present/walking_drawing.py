@@ -120,14 +120,10 @@ def _ground(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
     """The hatched ground, and the footprints of the steps before and behind."""
     far = 1.04 * factor * reach(wheel)
     hub = factor * float(pose.hub[0])
-    ground(
-        axes,
-        np.array([hub - far, 0.0]),
-        np.array([hub + far, 0.0]),
-        np.array([0.0, -1.0]),
-        0.03 * far,
-        GROUND,
-    )
+    # strokes stand on the ground, so many to a step: where the hub moves they pass by
+    apart = factor * wheel.step / round(factor * wheel.step / (0.027 * far))
+    low, high = (apart * math.floor(side / apart) for side in (hub - far, hub + far + apart))
+    ground(axes, np.array([low, 0.0]), np.array([high, 0.0]), np.array([0.0, -1.0]), apart / 0.9, GROUND)
     steps = math.floor((pose.turned + wheel.half) * wheel.legs / math.tau)
     ends = np.array([-wheel.half, wheel.half])
     own = wheel.travel(ends) + wheel.touch(ends)

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from centrode.model.cams import Cam
+from centrode.study.cam_choice import choice_part
+from centrode.study.cam_contact import contact_part
 from centrode.study.cam_path import path_part
 from centrode.study.cam_profile import profile_part
 from centrode.study.cam_routes import routes_part
@@ -30,6 +32,8 @@ PARTS: Mapping[str, MakesPart] = {
     "routes": routes_part,
     "profile": profile_part,
     "walking": walking_part,
+    "contact": contact_part,
+    "choice": choice_part,
 }
 """Parts by name, in the order in which they are computed and shown."""
 
@@ -58,7 +62,12 @@ class CamResults:
 
 
 def cam_results(
-    cam: Cam, samples: int | None = None, terms: int | None = None, *, groove: bool = False
+    cam: Cam,
+    samples: int | None = None,
+    terms: int | None = None,
+    *,
+    groove: bool = False,
+    front: bool = False,
 ) -> CamResults:
     """Everything about the cam of a description.
 
@@ -71,12 +80,14 @@ def cam_results(
         Of the power series; the description's own number, else 20.
     groove : bool
         Also the outer wall of a groove that the roller runs in.
+    front : bool
+        Also the front of best designs where `[choose] trade_off` names a measure; it takes some seconds.
 
     Raises
     ------
     InputError
         What `ct.cam` and `ct.cam_routes` refuse.
     """
-    asked = Asked(samples, terms, groove)
+    asked = Asked(samples, terms, groove, front)
     found = {name: make(cam, asked) for name, make in PARTS.items()}
     return CamResults(cam, {name: part for name, part in found.items() if part is not None})

@@ -18,20 +18,22 @@ Rows: TypeAlias = list[tuple[str, str]]
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked for besides the description: numbers of samples and of terms of the series, a groove."""
+    """What is asked for besides the description: numbers of samples and of terms of the series, a groove, a front."""
 
     samples: int | None = None
     terms: int | None = None
     groove: bool = False
+    front: bool = False
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table below the rows of a part: a heading, the names of its columns, and its lines."""
+    """A table below the rows of a part: heading, names of columns, lines, and whether these begin with a name."""
 
     heading: str
     header: tuple[str, ...]
     lines: list[tuple[str, ...]]
+    named: bool = False
 
 
 @dataclass(frozen=True)
