@@ -87,6 +87,8 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {"path_curvature", "profile", "profile_radius", "profile_angle", "profile_bend", "groove"}
     cams |= {f"shoe_{name}" for name in ("profile", "radius", "angle", "bend", "along", "upright")}
     cams |= {"hub_travel", "hub_rate"}
+    cams |= {f"contact_{name}" for name in ("stress", "stress_by_source", "shear", "depth", "half_width")}
+    cams |= {"cam_curvature_radius"}
     known |= cams
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
