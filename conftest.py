@@ -54,7 +54,7 @@ def run_console(example: Example) -> None:
 
 
 def read_toml(example: Example) -> None:
-    """Read a TOML block: a whole mechanism (it has a drive) has to assemble, of any other each part is checked.
+    """Read a TOML block: a whole mechanism (it has a drive) has to assemble, a cam to have a path; of others each part.
 
     A block that begins with `# NAME.toml` is written to that file, for the blocks after it; a study of `sweep` may
     stand there too.
@@ -66,6 +66,11 @@ def read_toml(example: Example) -> None:
     tables = tomllib.loads(text)
     if named and "mechanism" in tables:
         ct.read_sweep(named.group(1))
+        return
+    if tables.get("kind") == "cam":
+        cam = ct.parse_cam(text)
+        assert ct.parse_cam(ct.cam_text(cam)) == cam
+        ct.path_of(cam)
         return
     if not {"links", "drives"} <= tables.keys():
         Description(**{"links": {}, **tables})

@@ -11,7 +11,7 @@ warnings.filterwarnings(
     "ignore", message="subpackages can technically be lazily loaded", category=RuntimeWarning
 )
 
-from benchmarks import cold, forces, kernels, machine, motions, peer, sweeps  # noqa: E402
+from benchmarks import cold, forces, kernels, machine, motions, peer, simulation, sweeps  # noqa: E402
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
 from benchmarks.table import Row, print_promises, print_section  # noqa: E402
 from centrode.algebra import machine_code  # noqa: E402
@@ -25,6 +25,7 @@ SECTIONS: Mapping[str, Section] = {
         f"Batches, {motions.SAMPLES} samples, with derivatives: centrode's time over pylinkage's", motions.batches,
     ),
     "forces": (f"Reduction to the drive, {forces.SAMPLES} samples", forces.reductions),
+    "simulation": (f"Simulation, {simulation.STEPS} fixed steps", simulation.simulations),
     "cold": (f"Whole processes, multiples of {cold.BASE}", cold.cold_starts),
     "machine": ("Bounds of the machine", machine.bounds),
     "kernels": (
@@ -33,7 +34,7 @@ SECTIONS: Mapping[str, Section] = {
     "sweeps": (f"Sweeps as machine code, {sweeps.SAMPLES} samples, a position", sweeps.sweeps),
 }  # fmt: skip
 NEED_PEER = {"worked", "batch"}
-NEED_COMPILER = {"kernels", "sweeps"}
+NEED_COMPILER = {"kernels", "sweeps", "simulation"}
 
 
 def main(wanted: list[str]) -> int:

@@ -14,7 +14,7 @@ import xarray as xr
 
 import centrode as ct
 from burdened import GRAVITY
-from mechanisms import link, point, slide
+from mechanisms import EPS, link, point, slide
 
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
@@ -108,7 +108,8 @@ class Balance:
             self.add(self.bearer(load.point), load.value * down, self.at(load.point))
         elif load.guide is not None:
             x, v = slide(self.motion, load.guide), slide(self.motion, load.guide, "slide_velocity")
-            self.along_guide(load.guide, 1.5 - 0.5 * x + 0.2 * v)
+            friction = -1.1 * sense(v) - 0.3 * v
+            self.along_guide(load.guide, friction if load.kind == "friction" else 1.5 - 0.5 * x + 0.2 * v)
         elif load.kind == "force":
             self.add(self.bearer(load.point), self.force_of(load), self.at(load.point))
         elif load.points is not None:
@@ -143,7 +144,12 @@ class Balance:
             base, slow = (link(self.motion, load.relative_to, w) for w in ("angle", "angular_velocity"))
         x = link(self.motion, load.link) - base
         v = link(self.motion, load.link, "angular_velocity") - slow
-        moment = {"torque": 0.2 * x - 0.1 * v, "spring": -2.0 * (x - 0.4), "damper": -0.8 * v}[load.kind]
+        moment = {
+            "torque": 0.2 * x - 0.1 * v,
+            "spring": -2.0 * (x - 0.4),
+            "damper": -0.8 * v,
+            "friction": -0.6 * sense(v) - 0.1 * v * abs(v),
+        }[load.kind]
         self.pair(load.link, load.relative_to, 0.0, 0.0, moment)
 
     def joints(self) -> None:
@@ -235,3 +241,8 @@ def vector(values: xr.DataArray) -> Complex:
     """A force over the samples as complex numbers."""
     xy = values.transpose(..., "axis").to_numpy()
     return np.asarray(xy[..., 0] + 1j * xy[..., 1])
+
+
+def sense(v: Array) -> Array:
+    """Which way a joint goes; none where it stands but for rounding."""
+    return np.asarray(np.where(abs(v) <= 2**16 * EPS, 0.0, np.sign(v)))

@@ -17,8 +17,17 @@ from .model.placing import replace_placed as replace_placed
 
 from .model.schema import mechanism_schema as mechanism_schema
 
+# The description of a cam
+from .model.cams import Cam as Cam
+from .model.cams import varied as varied
+from .model.cam_files import read_cam as read_cam
+from .model.cam_files import parse_cam as parse_cam
+from .model.cam_files import cam_text as cam_text
+from .model.cam_schema import cam_schema as cam_schema
+
 # Built-in mechanisms and classics
 from .model.examples.loading import load as load
+from .model.examples.loading import load_cam as load_cam
 from .model.examples.loading import example as example
 from .model.examples import example_names as example_names
 from .model.examples import example_text as example_text
@@ -81,7 +90,7 @@ from .dynamics.force_polygons.result import ForcePolygons as ForcePolygons
 from .study.force_polygons import polygon_about as polygon_about
 from .study.force_polygons import polygon_steps as polygon_steps
 from .study.force_polygons import polygon_rows as polygon_rows
-from .study.force_polygons import balance_rows as balance_rows
+from .study.force_polygons import polygon_balance_rows as polygon_balance_rows
 from .study.force_polygons import polygon_csv as polygon_csv
 from .present import polygon_figures as polygon_figures
 
@@ -103,6 +112,60 @@ from .dynamics.simulation.regime import Regime as Regime
 from .study.simulating import simulation_rows as simulation_rows
 from .study.simulating import regime_rows as regime_rows
 from .present import simulation_figures as simulation_figures
+
+# Shaking forces and counterweights
+from .dynamics.balancing.shaking import shaking as shaking
+from .dynamics.balancing.balance import balance as balance
+from .dynamics.balancing.balance import Balance as Balance
+from .dynamics.balancing.counterweights import Counterweight as Counterweight
+from .study.balancing import balance_rows as balance_rows
+from .study.balancing import balance_effects as balance_effects
+from .study.balancing import balance_steps as balance_steps
+from .present import balance_figures as balance_figures
+from .present import write_balance_csv as write_balance_csv
+from .present import write_harmonics_csv as write_harmonics_csv
+
+# Cams
+from .cams.labelled import cam as cam
+from .cams.comparison import cam_routes as cam_routes
+from .cams.described import path_of as path_of
+from .study.cam_results import cam_results as cam_results
+from .present import write_cam_csv as write_cam_csv
+from .present import write_cam_routes_csv as write_cam_routes_csv
+from .present import write_cam_tables as write_cam_tables
+from .present import cam_path_figure as cam_path_figure
+from .present import cam_curves_figure as cam_curves_figure
+from .present import cam_routes_figure as cam_routes_figure
+from .present import cam_figures as cam_figures
+
+# Profiles of cams, walking wheels
+from .cams.profiles.tables import cam_profile as cam_profile
+from .cams.profiles.tables import shoe_profile as shoe_profile
+from .cams.profiles.tables import walking_wheel as walking_wheel
+from .cams.profiles.bodies import cam_body as cam_body
+from .cams.profiles.outlines import cam_outlines as cam_outlines
+from .cams.profiles.outlines import shoe_outlines as shoe_outlines
+from .cams.wheel.rolling import rolling as rolling
+from .present import write_profile_csv as write_profile_csv
+from .present import write_outlines_svg as write_outlines_svg
+from .present import write_outlines_dxf as write_outlines_dxf
+from .present import write_cam_outlines as write_cam_outlines
+from .present import profile_figure as profile_figure
+from .present import walking_figure as walking_figure
+from .present import cam_body_figures as cam_body_figures
+
+# Contact of roller and cam, choice of parameters, animation
+from .cams.contacts.labelled import cam_contact as cam_contact
+from .study.cam_contact import contact_rows as contact_rows
+from .cams.choosing.chosen import choose_cam as choose_cam
+from .cams.choosing.chosen import CamChoice as CamChoice
+from .study.cam_choice import choice_rows as choice_rows
+from .present import write_cam_contact_csv as write_cam_contact_csv
+from .present import write_choice as write_choice
+from .present import contact_figure as contact_figure
+from .present import trade_off_figure as trade_off_figure
+from .present import choice_figures as choice_figures
+from .present import animate_walking as animate_walking
 
 # Equations in symbols
 from .equations.derivation import equations as equations
@@ -165,6 +228,7 @@ from .present import write_integration_csv as write_integration_csv
 from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
 from .present import reduction_figures as reduction_figures
+from .present import reaction_figures as reaction_figures
 from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures

@@ -50,7 +50,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 
 def test_the_press(centrode: Centrode, folder: Path) -> None:
-    done = centrode("reactions", "six-bar-press", "--samples", 37, "--out", "result")
+    done = centrode("reactions", "six-bar-press", "--samples", 37, "--out", "result", "--no-figures")
     assert (done.code, done.err) == (0, "")
     assert done.rows["massless links"] == "OA"
     assert done.rows["speed of the drive"] == "-6.80678 rad/s, the mean speed of the machine"
@@ -87,7 +87,7 @@ def test_the_table_of_joints_of_the_source(centrode: Centrode, folder: Path) -> 
         "5 slider": "0 0 0 0 0 -1 1",
         "0 frame": "-1 0 0 -1 0 0 -1",
     }
-    done = centrode("reactions", "six-bar-press", "--samples", 2, "--out", "result")
+    done = centrode("reactions", "six-bar-press", "--samples", 2, "--out", "result", "--no-figures")
     with (folder / "result" / "joints.csv").open(encoding="utf-8", newline="") as file:
         header, *rows = list(csv.reader(file))
     assert header == ["link", "O", "A", "B", "C", "D", "H", "guide H"]
@@ -104,9 +104,14 @@ def test_hinges_of_several_links_and_wheels_have_columns_of_their_own() -> None:
     assert header[1:] == ["O", "A", "C", "B", "D", "guide C"]
 
 
-def test_instants(centrode: Centrode) -> None:
-    done = centrode("reactions", "six-bar-press", "--at", "120 deg", "--at", "2 rad")
+def test_instants(centrode: Centrode, folder: Path) -> None:
+    done = centrode("reactions", "six-bar-press", "--at", "120 deg", "--at", "2 rad", "--out", "at")
     assert (done.code, done.err) == (0, "")
+    assert sorted(path.name for path in (folder / "at").iterdir()) == [
+        "joints.csv",
+        "reactions.csv",
+        "reactions.nc",
+    ]
     assert "\nat 120 deg\n" in done.out
     assert "\nat 2 rad\n" in done.out
     found = ct.reactions(ct.example("six-bar-press"), at=[math.radians(120)])
@@ -138,7 +143,13 @@ def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> No
     (folder / "w.toml").write_text(text)
     done = centrode("reactions", "w.toml", "--samples", 5, "--out", "result")
     assert done.code == 0, done
-    assert done.rows["not determined"] == "C/wheel, guide C, wheel wheel"
+    assert sorted(path.name for path in (folder / "result").glob("*.png")) == [
+        "balancing.png",
+        "frame-force.png",
+        "joint-forces.png",
+        "other-reactions.png",
+    ]
+    assert done.rows["not determined"] == "C/wheel; guide C; wheel wheel"
     assert "nan" not in done.out
     assert {row["rolling_normal_wheel [N]"] for row in rows_of(folder / "result" / "reactions.csv")} == {""}
 
@@ -164,7 +175,7 @@ def test_several_drives_have_a_row_each(centrode: Centrode, folder: Path) -> Non
 def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
     text = ct.example_text("slider-between-cranks-locked")
     (folder / "locked.toml").write_text(text.replace("[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"))
-    done = centrode("reactions", "locked.toml", "--out", "result")
+    done = centrode("reactions", "locked.toml", "--out", "result", "--no-figures")
     assert done.code == 3
     assert "not reached" in done.err
     assert (folder / "result" / "reactions.csv").is_file()
@@ -177,7 +188,11 @@ def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
         (("mass = 2\n", "mass = -2\n"), (), "mass must not be negative"),
         (("length = 0.4", "length = 0.4\nmass = 1"), (), "no moment of inertia"),
         (('value = "-2 kN"', 'value = "-2 m"'), (), "value"),
-        (('kind = "force"\nguide = "B"', 'kind = "friction"\nguide = "B"'), (), "must not be negative"),
+        (
+            ('kind = "force"\nguide = "B"', 'kind = "friction"\nguide = "B"'),
+            (),
+            "value must not be negative",
+        ),
         (("", ""), ("--samples", "0"), "samples"),
         (("", ""), ("--samples", "999999"), "ask for at most"),
         (("", ""), ("--at", "3 m"), "--at"),
@@ -231,3 +246,16 @@ def test_a_run_says_why_reactions_are_left_out(centrode: Centrode, folder: Path)
     done = centrode("run", "crank-rocker", "--out", "s", "--samples", 5, "--no-figures")
     assert "reactions" not in done.out
     assert not (folder / "s" / "reactions.csv").exists()
+
+
+def test_friction_by_a_coefficient_and_plain_sums_are_refused(centrode: Centrode, folder: Path) -> None:
+    example = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
+    link = list(ct.example("crank-rocker").links)[-1]
+    for keys, message in (
+        ("coefficient = 0.1", "friction by a coefficient needs the reactions"),
+        ('quadratic = 0.1\nform = "plain sum"', "a plain sum is no moment in a hinge"),
+    ):
+        (folder / "r.toml").write_text(example.replace('"DB"', f'"{link}"') + keys + "\n")
+        done = centrode("reactions", "r.toml")
+        assert done.code == 2
+        assert message in done.err

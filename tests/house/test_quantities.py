@@ -61,11 +61,36 @@ def test_every_variable_of_a_motion_is_named() -> None:
     )
     transmission = ("transmission_angle", "pressure_angle")
     integrated = ("drift", "angle_difference", "position_difference")
+    cams = {
+        "carrier_angle",
+        "cam_pressure_angle",
+        "roller_centre",
+        "drawn_curvature",
+        "radius_by_slope",
+        "parting",
+    }
+    cams |= {f"{name}_error" for name in ("foretold", "series")} | {"routes_difference", "pressure_cosine"}
+    for name in ("path_radius", "pressure_sine", "law_curvature"):
+        cams |= {name, f"{name}_slope"}
+    cams |= {"path_radius_second", "pressure_sine_second"}
     known = {*bases, *coefficients, *others, *events, *centres, *transmission, *integrated}
     simulated = ["inertia", "moment_of_friction", "power_of_drive", "power_of_loads", "work_of_friction"]
     simulated += ["work_of_other_loads", "kinetic_energy", "potential_energy", "energy_residual"]
     simulated += [f"occasion_{name}" for name in ("time", "value", "kind")]
     known |= set(reduced) | set(steady) | set(simulated) | set(reactions)
+    known |= {"shaking_force", "shaking_force_size", "shaking_moment", "inertia_on_drive", "order"}
+    known |= {
+        f"{what}_harmonic_{part}"
+        for what in ("force", "moment")
+        for part in ("cosine", "sine", "amplitude", "phase")
+    }
+    known.add("force_harmonic_greatest")
+    cams |= {"path_curvature", "profile", "profile_radius", "profile_angle", "profile_bend", "groove"}
+    cams |= {f"shoe_{name}" for name in ("profile", "radius", "angle", "bend", "along", "upright")}
+    cams |= {"hub_travel", "hub_rate"}
+    cams |= {f"contact_{name}" for name in ("stress", "stress_by_source", "shear", "depth", "half_width")}
+    cams |= {"cam_curvature_radius"}
+    known |= cams
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

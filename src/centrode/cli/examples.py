@@ -38,8 +38,16 @@ def examples(name: str | None, out: Path | None, force: bool) -> None:
 
 
 def _listing() -> str:
-    names = ct.example_names()
-    rows = [(name, _(str(tomllib.loads(ct.example_text(name)).get("title", "")))) for name in names]
-    count = ngettext("{count} mechanism", "{count} mechanisms", len(names)).format(count=len(names))
+    """Linkages, then cams, each with what computes them."""
+    linkages, cams = ct.example_names(), ct.example_names("cam")
+    count = ngettext("{count} mechanism", "{count} mechanisms", len(linkages)).format(count=len(linkages))
     use = _("print one with: centrode examples NAME; compute it with: centrode run NAME")
-    return f"{output.table(rows)}\n\n{count}; {use}"
+    lines = output.table(_rows((*linkages, *cams))).splitlines()
+    counted = ngettext("{count} cam", "{count} cams", len(cams)).format(count=len(cams))
+    behind = _("compute one with: centrode cam NAME")
+    first, second = "\n".join(lines[: len(linkages)]), "\n".join(lines[len(linkages) :])
+    return f"{first}\n\n{count}; {use}\n\n{second}\n\n{counted}; {behind}"
+
+
+def _rows(names: tuple[str, ...]) -> list[tuple[str, str]]:
+    return [(name, _(str(tomllib.loads(ct.example_text(name)).get("title", "")))) for name in names]

@@ -16,6 +16,8 @@ import click
 
 import centrode as ct
 from centrode.cli.angles import angles
+from centrode.cli.balance import balance
+from centrode.cli.cam import cam
 from centrode.cli.centres import centres
 from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
@@ -49,13 +51,15 @@ COMMANDS: tuple[click.Command, ...] = (
     integrate,
     rotatability,
     reduce,
-    polygons,
     reactions,
+    polygons,
     variants,
     limits,
     region,
     flywheel,
     simulate,
+    balance,
+    cam,
     centres,
     centrodes,
     diagrams,

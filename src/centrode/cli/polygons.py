@@ -78,6 +78,6 @@ def report(found: ct.ForcePolygons) -> str:
             "",
             output.table(ct.polygon_rows(found), right=(2, 3, 4, 5)),
             "",
-            output.table(ct.balance_rows(found), right=(2, 3, 4, 5)),
+            output.table(ct.polygon_balance_rows(found), right=(2, 3, 4, 5)),
         ]
     )

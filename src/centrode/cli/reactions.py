@@ -12,6 +12,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import (
     mechanism_argument,
+    no_figures_option,
     samples_option,
     start_option,
     stop_option,
@@ -47,6 +48,7 @@ MOST_INSTANTS = 100
 @samples_option
 @start_option
 @stop_option
+@no_figures_option
 def reactions(
     mechanism: str,
     instants: tuple[str, ...],
@@ -56,6 +58,7 @@ def reactions(
     samples: int | None,
     start: str | None,
     stop: str | None,
+    no_figures: bool,
 ) -> None:
     """Print extremes or instants, write tables where asked; exit code 3 if samples are not reached."""
     description = ct.load(mechanism)
@@ -76,8 +79,7 @@ def reactions(
             with output.output_folder(out) as draft, Progress() as progress:
                 progress.say(_("solving"))
                 found = solved()
-                progress.say(_("writing tables"))
-                write(description, found, draft)
+                write(description, found, draft, progress, figures=not no_figures and not instants)
                 names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
     click.echo("\n" + report(description, found, instants))
@@ -100,11 +102,17 @@ def _check(instants: tuple[str, ...], samples: int | None, start: str | None, st
         raise InputError(beside, _("instants are asked for with --at"), _("take one of the two out"))
 
 
-def write(mechanism: ct.Mechanism, found: xarray.Dataset, folder: Path) -> None:
-    """Write reactions and the table of joints into a folder."""
+def write(
+    mechanism: ct.Mechanism, found: xarray.Dataset, folder: Path, progress: Progress, *, figures: bool
+) -> None:
+    """Write reactions and the table of joints into a folder, and figures where asked."""
+    progress.say(_("writing tables"))
     ct.write_reactions_csv(found, folder / "reactions.csv", mechanism.display)
     ct.write_motion_netcdf(found, folder / "reactions.nc")
     ct.write_joint_table_csv(ct.joint_table(mechanism), folder / "joints.csv")
+    if figures:
+        progress.say(_("drawing"))
+        ct.save_figures(ct.reaction_figures(mechanism, found), folder)
 
 
 def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, ...]) -> str:

@@ -1,4 +1,4 @@
-"""`centrode schema`: the grammar of the description as JSON Schema."""
+"""`centrode schema`: the grammar of a description as JSON Schema."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from centrode.locale import mark
 
 
 @click.command(help=mark("Print the JSON Schema of the description, for editors."))
-def schema() -> None:
+@click.option("--cam", is_flag=True, help=mark("That of cams; else that of linkages."))
+def schema(cam: bool) -> None:
     """Print the JSON Schema of the description."""
-    click.echo(json.dumps(ct.mechanism_schema(), indent=2, ensure_ascii=False))
+    found = ct.cam_schema() if cam else ct.mechanism_schema()
+    click.echo(json.dumps(found, indent=2, ensure_ascii=False))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-@click.command(help=mark("Simulate a machine with one drive: loads, friction and a motor move it."))
+@click.command(help=mark("Let a machine run: loads, friction and a motor move it."))
 @mechanism_argument
 @click.option("--duration", metavar=mark("T"), help=mark('How long it runs: "20 s".'))
 @click.option("--turns", type=float, metavar=mark("N"), help=mark("End after so many turns of the drive."))

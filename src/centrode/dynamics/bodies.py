@@ -69,6 +69,12 @@ class Mass:
         return not is_none(self.mass)
 
     @property
+    def planar_centre(self) -> Centre:
+        """The centre of mass of a planar link."""
+        assert isinstance(self.centre, Centre)
+        return self.centre
+
+    @property
     def moment_of_inertia(self) -> Number:
         """The inertia of a planar link [kg m^2]."""
         assert not isinstance(self.inertia, tuple)

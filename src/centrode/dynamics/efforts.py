@@ -71,18 +71,22 @@ class Effort:
     def _sense(self, state: State, speed: Number) -> Number:
         if state.m is not JETS:
             return state.m.base.sign(speed)
-        return np.where(grows(self.coordinate, state), 1.0, -1.0) * (state.rate != 0.0)
+        return np.sign(_going(self.coordinate, state))
 
 
 def grows(coordinate: Coordinate, state: State) -> Number:
     """Where a coordinate grows in time; where it turns, `state.side` decides."""
+    return _going(coordinate, state) >= 0.0
+
+
+def _going(coordinate: Coordinate, state: State) -> Number:
+    """A number with the sign of a coordinate's speed; where it turns that on `state.side`, zero at the place itself."""
     slope = coordinate.slope(state)
     speed, bend = slope.value * state.rate, slope.derivative(1) * state.rate
     reach = np.maximum(1.0, np.abs(state.parameter))
     with np.errstate(invalid="ignore"):
         rest = np.abs(slope.value) <= REST * (np.abs(slope.derivative(1)) * reach + state.scale)
-    beside = bend * state.side >= 0.0
-    return np.where(rest, beside, speed >= 0.0)
+    return np.where(rest, bend * state.side, speed)
 
 
 @dataclass(frozen=True)

@@ -79,10 +79,10 @@ class Burden:
 
     @classmethod
     def for_reactions(cls, mechanism: Mechanism) -> Burden:
-        """The same without friction by coefficients, which those who know the reactions add."""
+        """The same as `in_plane` without friction by coefficients, which those who know the reactions add."""
         _refuse_sphere(mechanism)
         loads = [load for load in mechanism.loads if load.coefficient is None]
-        return cls._of(mechanism, None, ARRAYS, loads)
+        return cls._of(mechanism, None, ARRAYS, loads)._as_forces()
 
     @classmethod
     def _of(
@@ -91,15 +91,22 @@ class Burden:
         masses = masses_of(mechanism, given, m)
         loads = loads_of(mechanism, masses, given, m, described)
         if not masses and not loads:
-            what = _("there are neither masses nor loads to reduce")
+            what = _("there are neither masses nor loads")
             raise InputError("", what, _("give links a mass, or [[loads]]"))
         return cls(masses, loads)
 
     @classmethod
     def in_plane(cls, mechanism: Mechanism) -> Burden:
-        """The same where forces in joints are asked for, which on the sphere are not computed yet."""
+        """The same as forces on links of the plane; NotComputedYet on the sphere, InputError for what is no force."""
         _refuse_sphere(mechanism)
-        return cls.of(mechanism)
+        return cls.of(mechanism)._as_forces()
+
+    def _as_forces(self) -> Burden:
+        for load in self.loads:
+            if any(effort.works is not None for effort in load.efforts):
+                what = _("a plain sum is no moment in a hinge, so it makes no reactions")
+                raise InputError(load.where, what, _("take form out"))
+        return self
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -119,7 +126,7 @@ class Burden:
 
 def _refuse_sphere(mechanism: Mechanism) -> None:
     if mechanism.space == "sphere":
-        what = _("forces in joints on the sphere are not computed yet")
+        what = _("reactions on the sphere are not computed yet")
         raise NotComputedYet("space", what, _("describe a plane one"))
 
 
@@ -182,15 +189,22 @@ class Reducer:
         values = np.atleast_1d(np.asarray(values, dtype=np.float64))
         return reduced(self.burden, *self._state(values, self.moving(values, rate, time), side))
 
-    def jumps(self, first: float, last: float) -> Array:
-        """Values of the drive, in increasing order, at which loads jump or have a kink, between two values."""
+    def jumps(self, first: float, last: float, loads: Sequence[Acting] | None = None) -> Array:
+        """Values of the drive, in increasing order, at which loads jump or have a kink, between two values.
+
+        Of all loads where none are given.
+        """
         low, high = min(first, last), max(first, last)
         if not np.isfinite([low, high]).all():
             raise InputError("jumps", _("the range must be finite"))
         mesh = self._along(np.array([low, high])).mesh
         inner = mesh[(mesh > low) & (mesh < high)]
         nodes = np.concatenate([[low], inner, [high]]) if high > low else np.array([low])
-        return jumps_of(self.burden.loads, lambda x: self._state(x, _sense_only(self, x), 0)[0], nodes)
+        return jumps_of(
+            self.burden.loads if loads is None else loads,
+            lambda x: self._state(x, _sense_only(self, x), 0)[0],
+            nodes,
+        )
 
     @property
     def default_rate(self) -> float | None:

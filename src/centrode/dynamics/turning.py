@@ -10,7 +10,7 @@ from centrode.algebra.jets import Jet
 from centrode.dynamics.coordinates import Coordinate, Turn
 from centrode.dynamics.pulls import Pull
 from centrode.dynamics.states import Place, State
-from centrode.errors import InputError, NotComputedYet
+from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.loads import Load
 from centrode.model.mechanism import FRAME, Mechanism
@@ -47,9 +47,7 @@ class Spin:
         return sum(parts[1:], parts[0])
 
     def pulls(self, state: State) -> tuple[Pull, ...]:
-        raise NotComputedYet(
-            "space", _("forces in joints on the sphere are not computed yet"), _("describe a plane one")
-        )
+        raise NotImplementedError("forces on links are those of the plane")
 
     def _axis(self, state: State) -> Place:
         if isinstance(self.axis, str):
@@ -70,8 +68,7 @@ class Travel:
         return Jet((state.m.base.sign(state.rate), 0.0))
 
     def pulls(self, state: State) -> tuple[Pull, ...]:
-        what = _("friction as a plain sum acts in no joint")
-        raise NotComputedYet("[[loads]]", what, _("take form out: virtual work has it in the joints"))
+        raise NotImplementedError("no force on a link works along it")
 
 
 def turning_of(mechanism: Mechanism, load: Load, where: str, measured: bool) -> Coordinate:

@@ -25,7 +25,8 @@ from centrode.quantities import ANGLES, LENGTHS
 Side = Literal["left", "right", "ahead", "behind"]
 
 
-def _read_samples(value: object) -> int:
+def read_samples(value: object) -> int:
+    """A number of samples."""
     if isinstance(value, bool) or not isinstance(value, int):
         raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=shown(value)))
     if not 1 <= value <= limits.SAMPLES:
@@ -76,7 +77,7 @@ class Study(Part):
         Range of the drive's value; "from" and "to" in a file.
     """
 
-    samples: Annotated[int, PlainValidator(_read_samples)] | None = None
+    samples: Annotated[int, PlainValidator(read_samples)] | None = None
     instants: Annotated[tuple[PlaceOfMotion, ...], listed(limits.INSTANTS)] = ()
     start: Annotated[EndOfMotion | None, Field(alias="from")] = None
     stop: Annotated[EndOfMotion | None, Field(alias="to")] = None

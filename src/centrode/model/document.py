@@ -14,14 +14,15 @@ from centrode.model.values import Placed
 
 def document(mechanism: Description) -> dict[str, Any]:
     """Tables, lists, texts and SI numbers that read back as the same mechanism."""
-    tables = _part(mechanism)
+    tables = part_tables(mechanism)
     for name, link in mechanism.links.items():
         if link.points == two_points(name):
             del tables["links"][name]["points"]
     return tables
 
 
-def _part(part: Part) -> dict[str, Any]:
+def part_tables(part: Part) -> dict[str, Any]:
+    """Tables of any part of a description."""
     tables = {}
     for key, name in part.keys().items():
         value, field = getattr(part, name), type(part).model_fields[name]
@@ -37,7 +38,7 @@ def _needed(part: Part, name: str) -> bool:
 
 def _plain(value: object) -> Any:
     if isinstance(value, Part):
-        return _part(value)
+        return part_tables(value)
     if isinstance(value, Placed):
         return PLACED if value.at is None else {PLACED: list(value.at)}
     if isinstance(value, Mapping):

@@ -57,6 +57,9 @@ def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> M
 
 def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = None) -> Mechanism:
     """The mechanism described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
+    if is_cam(mapping):
+        repair = _("compute it with: centrode cam; in Python read it with read_cam")
+        raise InputError(where, _("this describes a cam, not a linkage"), repair)
     token = READING.set(Reading(folder=folder or Path()))
     try:
         return Mechanism.model_validate(dict(mapping))
@@ -68,7 +71,17 @@ def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | N
 
 def mechanism_text(mechanism: Mechanism) -> str:
     """The mechanism as TOML in SI, without defaults; `parse_mechanism` gives exactly it back."""
-    return _SHORT_LIST.sub(_in_one_line, tomli_w.dumps(document(mechanism)))
+    return in_short_lines(tomli_w.dumps(document(mechanism)))
+
+
+def in_short_lines(text: str) -> str:
+    """A text of TOML with short lists in one line each."""
+    return _SHORT_LIST.sub(_in_one_line, text)
+
+
+def is_cam(mapping: Mapping[str, Any]) -> bool:
+    """Whether a description says that it is a cam's."""
+    return mapping.get("kind") == "cam"
 
 
 def _in_one_line(match: re.Match[str]) -> str:

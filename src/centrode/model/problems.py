@@ -15,7 +15,10 @@ from centrode.model import limits
 Place = tuple[str | int, ...]
 """Keys and indices from the top of the description to the value a problem is about."""
 
-TABLES = ("display", "frame", "assembly", "machine", "study")
+TABLES = (
+    *("display", "frame", "assembly", "machine", "study"),
+    *("curvature", "start", "range", "roller", "return", "mover", "contact", "choose"),
+)
 
 KEY = "{key}"
 """Stands in a problem's sentence for the key it is about, which only the reader of the whole knows."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from centrode.laws import SEGMENT_CURVES
@@ -21,7 +22,7 @@ from centrode.model.units import KINDS as QUANTITIES
 Schema = dict[str, Any]
 
 
-def _quantity(kind: str) -> Schema:
+def quantity_schema(kind: str) -> Schema:
     """A number in SI, or a text with a unit."""
     named = QUANTITIES[kind]
     text = f"{named.name} in {named.unit}, or a text with a unit" if named.unit else named.name
@@ -29,32 +30,36 @@ def _quantity(kind: str) -> Schema:
     return {"description": text, "anyOf": [{"type": "number"}, bounded]}
 
 
-def _above_zero(kind: str) -> Schema:
-    schema = _quantity(kind)
+def above_zero(kind: str) -> Schema:
+    """The same, positive where it is a number."""
+    schema = quantity_schema(kind)
     schema["anyOf"][0] = {"type": "number", "exclusiveMinimum": 0}
     return schema
 
 
-def _list(item: Schema, least: int, most: int) -> Schema:
+def list_of(item: Schema, least: int, most: int) -> Schema:
+    """A list with bounds of its length."""
     return {"type": "array", "items": item, "minItems": least, "maxItems": most}
 
 
-def _table(entry: Schema, most: int) -> Schema:
+def table_of(entry: Schema, most: int) -> Schema:
+    """A table of at most so many entries of one kind."""
     return {"type": "object", "additionalProperties": entry, "maxProperties": most}
 
 
-def _ref(part: type[Part]) -> Schema:
+def reference_to(part: type[Part]) -> Schema:
+    """Where the schema of a part stands."""
     return {"$ref": f"#/$defs/{part.__name__}"}
 
 
-_NAME: Schema = {"type": "string", "minLength": 1, "maxLength": limits.NAME_LENGTH}
-_TEXT: Schema = {"type": "string", "maxLength": limits.TEXT_LENGTH}
-_NAMES = _list(_NAME, 2, 2)
-_COORDINATES = _list(_quantity("length"), 2, 3)
-_PAIR = _list(_quantity("ratio"), 2, 2)
-_HEADING = _list(_quantity("ratio"), 2, 3)
-_MOMENTS = _list(_quantity("inertia"), 3, 3)
-_INERTIA: Schema = {"anyOf": [*_quantity("inertia")["anyOf"], _MOMENTS, _list(_MOMENTS, 3, 3)]}
+NAME: Schema = {"type": "string", "minLength": 1, "maxLength": limits.NAME_LENGTH}
+TEXT: Schema = {"type": "string", "maxLength": limits.TEXT_LENGTH}
+_NAMES = list_of(NAME, 2, 2)
+_COORDINATES = list_of(quantity_schema("length"), 2, 3)
+_PAIR = list_of(quantity_schema("ratio"), 2, 2)
+_HEADING = list_of(quantity_schema("ratio"), 2, 3)
+_MOMENTS = list_of(quantity_schema("inertia"), 3, 3)
+_INERTIA: Schema = {"anyOf": [*quantity_schema("inertia")["anyOf"], _MOMENTS, list_of(_MOMENTS, 3, 3)]}
 _PLACED: Schema = {
     "type": "object",
     "properties": {"placed": _COORDINATES},
@@ -62,163 +67,163 @@ _PLACED: Schema = {
     "additionalProperties": False,
 }
 _POSITION: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED]}
-_THROUGH: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED, _NAME]}
-_DIRECTION: Schema = {"anyOf": [_PAIR, *_quantity("angle")["anyOf"]]}
-_AMOUNT: Schema = {
-    "anyOf": [{"type": "number"}, _TEXT],
+_THROUGH: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED, NAME]}
+_DIRECTION: Schema = {"anyOf": [_PAIR, *quantity_schema("angle")["anyOf"]]}
+AMOUNT: Schema = {
+    "anyOf": [{"type": "number"}, TEXT],
     "description": "a number in SI, a text with a unit, a formula",
 }
-_POINTS: Schema = {"anyOf": [_table(_COORDINATES, limits.POINTS), _list(_NAME, 1, 2)]}
+_POINTS: Schema = {"anyOf": [table_of(_COORDINATES, limits.POINTS), list_of(NAME, 1, 2)]}
 _SIDES: Schema = {"enum": ["left", "right", "ahead", "behind"]}
 
 PROPERTIES: dict[type[Part], Schema] = {
-    Display: {"length": _TEXT, "angle": _TEXT},
-    Frame: {"points": _table(_POSITION, limits.POINTS)},
+    Display: {"length": TEXT, "angle": TEXT},
+    Frame: {"points": table_of(_POSITION, limits.POINTS)},
     Link: {
         "points": _POINTS,
-        "length": _above_zero("length"),
-        "angle": _quantity("angle"),
-        "mass": _quantity("mass"),
-        "centre": {"anyOf": [_COORDINATES, _NAME]},
+        "length": above_zero("length"),
+        "angle": quantity_schema("angle"),
+        "mass": quantity_schema("mass"),
+        "centre": {"anyOf": [_COORDINATES, NAME]},
         "inertia": _INERTIA,
         "shape": {"enum": list(SHAPES)},
-        "radius": _above_zero("length"),
-        "centre_radius": _quantity("length"),
+        "radius": above_zero("length"),
+        "centre_radius": quantity_schema("length"),
         "model": {"enum": [RING_AND_POINT]},
         "reference": _NAMES,
     },
     Guide: {
-        "point": _NAME,
-        "on": _NAME,
+        "point": NAME,
+        "on": NAME,
         "through": _THROUGH,
         "direction": _DIRECTION,
-        "link": _NAME,
-        "angle": _quantity("angle"),
-        "name": _NAME,
+        "link": NAME,
+        "angle": quantity_schema("angle"),
+        "name": NAME,
         "pole": _THROUGH,
-        "radius": _above_zero("arc"),
+        "radius": above_zero("arc"),
     },
-    Gear: {"links": _NAMES, "ratio": _quantity("ratio"), "carrier": _NAME, "name": _NAME},
+    Gear: {"links": _NAMES, "ratio": quantity_schema("ratio"), "carrier": NAME, "name": NAME},
     Track: {
         "through": _COORDINATES,
         "direction": _DIRECTION,
         "centre": _THROUGH,
-        "radius": _above_zero("length"),
+        "radius": above_zero("length"),
         "inside": {"type": "boolean"},
     },
     Rolling: {
-        "link": _NAME,
-        "centre": _NAME,
-        "radius": _above_zero("length"),
-        "along": _ref(Track),
-        "on": _NAME,
-        "name": _NAME,
+        "link": NAME,
+        "centre": NAME,
+        "radius": above_zero("length"),
+        "along": reference_to(Track),
+        "on": NAME,
+        "name": NAME,
     },
     Drive: {
-        "link": _NAME,
-        "guide": _NAME,
+        "link": NAME,
+        "guide": NAME,
         "distance": _NAMES,
-        "relative_to": _NAME,
-        "start": _AMOUNT,
-        "speed": _AMOUNT,
-        "law": {**_TEXT, "description": "a formula in t [s], such as 0.3*sin(2*t)"},
-        "table": {"anyOf": [_TEXT, _list(_list(_AMOUNT, 2, 2), 2, limits.TABLE_ROWS)]},
-        "segments": _list(_ref(Segment), 1, segments.MOST),
+        "relative_to": NAME,
+        "start": AMOUNT,
+        "speed": AMOUNT,
+        "law": {**TEXT, "description": "a formula in t [s], such as 0.3*sin(2*t)"},
+        "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 2), 2, limits.TABLE_ROWS)]},
+        "segments": list_of(reference_to(Segment), 1, segments.MOST),
         "repeat": {"type": "boolean"},
     },
     Segment: {
-        "to": _AMOUNT,
-        "time": _above_zero("time"),
+        "to": AMOUNT,
+        "time": above_zero("time"),
         "curve": {"enum": list(SEGMENT_CURVES)},
-        **dict.fromkeys((*segments.AT_START, *segments.AT_END), _AMOUNT),
-        "through": _list(_list(_AMOUNT, 2, 2), 0, segments.MOST_THROUGH),
+        **dict.fromkeys((*segments.AT_START, *segments.AT_END), AMOUNT),
+        "through": list_of(list_of(AMOUNT, 2, 2), 0, segments.MOST_THROUGH),
     },
-    Assembly: {"sides": _table(_SIDES, limits.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
+    Assembly: {"sides": table_of(_SIDES, limits.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
     Load: {
         "kind": {"enum": list(KINDS)},
-        "name": _NAME,
-        "point": _NAME,
-        "link": _NAME,
-        "guide": _NAME,
+        "name": NAME,
+        "point": NAME,
+        "link": NAME,
+        "guide": NAME,
         "points": _NAMES,
-        "vector": _list(_AMOUNT, 2, 3),
-        "axes": _NAME,
-        "value": _AMOUNT,
-        "table": {"anyOf": [_TEXT, _list(_list(_AMOUNT, 2, 3), 2, limits.TABLE_ROWS)]},
-        "stiffness": _quantity("stiffness"),
-        "damping": _quantity("damping"),
-        "viscous": _quantity("damping"),
-        "quadratic": _quantity("quadratic damping"),
-        "coefficient": _quantity("ratio"),
-        "radius": _above_zero("length"),
+        "vector": list_of(AMOUNT, 2, 3),
+        "axes": NAME,
+        "value": AMOUNT,
+        "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 3), 2, limits.TABLE_ROWS)]},
+        "stiffness": quantity_schema("stiffness"),
+        "damping": quantity_schema("damping"),
+        "viscous": quantity_schema("damping"),
+        "quadratic": quantity_schema("quadratic damping"),
+        "coefficient": quantity_schema("ratio"),
+        "radius": above_zero("length"),
         "fit": {"enum": list(FITS)},
-        "pin": _NAME,
-        **dict.fromkeys(("length", "height"), _above_zero("length")),
+        "pin": NAME,
+        **dict.fromkeys(("length", "height"), above_zero("length")),
         "form": {"enum": list(FORMS)},
-        "free_length": _quantity("length"),
-        "free_angle": _quantity("angle"),
-        "relative_to": _NAME,
-        "axis": {"anyOf": [_NAME, _HEADING]},
+        "free_length": quantity_schema("length"),
+        "free_angle": quantity_schema("angle"),
+        "relative_to": NAME,
+        "axis": {"anyOf": [NAME, _HEADING]},
         "while_moving": _HEADING,
     },
     Machine: {
-        "mean_speed": _above_zero("angular speed"),
-        "fluctuation": _above_zero("ratio"),
-        "shafts": _list(_ref(Shaft), 0, SHAFTS),
-        "flywheel": _ref(FlywheelShape),
-        "driving": {**_TEXT, "description": "a formula in q [rad] and v [rad/s]"},
+        "mean_speed": above_zero("angular speed"),
+        "fluctuation": above_zero("ratio"),
+        "shafts": list_of(reference_to(Shaft), 0, SHAFTS),
+        "flywheel": reference_to(FlywheelShape),
+        "driving": {**TEXT, "description": "a formula in q [rad] and v [rad/s]"},
     },
-    Shaft: {"inertia": _quantity("inertia"), "ratio": _quantity("ratio"), "name": _TEXT},
+    Shaft: {"inertia": quantity_schema("inertia"), "ratio": quantity_schema("ratio"), "name": TEXT},
     FlywheelShape: {
-        "ratio": _quantity("ratio"),
-        "density": _above_zero("density"),
-        "width": _above_zero("ratio"),
-        "inner": _quantity("ratio"),
-        "rim_speed": _above_zero("speed"),
+        "ratio": quantity_schema("ratio"),
+        "density": above_zero("density"),
+        "width": above_zero("ratio"),
+        "inner": quantity_schema("ratio"),
+        "rim_speed": above_zero("speed"),
     },
     Motor: {
         "kind": {"enum": ["linear", "asynchronous"]},
-        "idle_speed": _above_zero("angular speed"),
-        "starting_moment": _above_zero("torque"),
-        "breakdown_moment": _above_zero("torque"),
-        "breakdown_slip": _above_zero("ratio"),
-        "ratio": _above_zero("ratio"),
+        "idle_speed": above_zero("angular speed"),
+        "starting_moment": above_zero("torque"),
+        "breakdown_moment": above_zero("torque"),
+        "breakdown_slip": above_zero("ratio"),
+        "ratio": above_zero("ratio"),
     },
     Simulation: {
-        "start": _AMOUNT,
-        "speed": _AMOUNT,
-        "driving": {**_TEXT, "description": "a formula in t [s], q and v"},
-        "motor": _ref(Motor),
-        "duration": _above_zero("time"),
-        "turns": _above_zero("ratio"),
+        "start": AMOUNT,
+        "speed": AMOUNT,
+        "driving": {**TEXT, "description": "a formula in t [s], q and v"},
+        "motor": reference_to(Motor),
+        "duration": above_zero("time"),
+        "turns": above_zero("ratio"),
         "scheme": {"enum": list(SCHEMES)},
         "steps": {"type": "integer", "minimum": 1, "maximum": MOST_STEPS},
-        "tolerance": _above_zero("ratio"),
+        "tolerance": above_zero("ratio"),
         "samples": {"type": "integer", "minimum": 2, "maximum": limits.SAMPLES},
     },
     Study: {
         "samples": {"type": "integer", "minimum": 1, "maximum": limits.SAMPLES},
-        "instants": _list(_AMOUNT, 0, limits.INSTANTS),
-        "from": _AMOUNT,
-        "to": _AMOUNT,
+        "instants": list_of(AMOUNT, 0, limits.INSTANTS),
+        "from": AMOUNT,
+        "to": AMOUNT,
     },
     Description: {
-        "title": _TEXT,
+        "title": TEXT,
         "space": {"enum": ["plane", "sphere"]},
-        "gravity": _list(_quantity("acceleration"), 2, 3),
-        "radius": _above_zero("length"),
-        "display": _ref(Display),
-        "frame": _ref(Frame),
-        "links": _table(_ref(Link), limits.LINKS),
-        "guides": _list(_ref(Guide), 0, limits.GUIDES),
-        "gears": _list(_ref(Gear), 0, limits.LINKS),
-        "rolling": _list(_ref(Rolling), 0, limits.LINKS),
-        "drives": _list(_ref(Drive), 0, limits.DRIVES),
-        "assembly": _ref(Assembly),
-        "loads": _list(_ref(Load), 0, limits.LOADS),
-        "machine": _ref(Machine),
-        "simulation": _ref(Simulation),
-        "study": _ref(Study),
+        "gravity": list_of(quantity_schema("acceleration"), 2, 3),
+        "radius": above_zero("length"),
+        "display": reference_to(Display),
+        "frame": reference_to(Frame),
+        "links": table_of(reference_to(Link), limits.LINKS),
+        "guides": list_of(reference_to(Guide), 0, limits.GUIDES),
+        "gears": list_of(reference_to(Gear), 0, limits.LINKS),
+        "rolling": list_of(reference_to(Rolling), 0, limits.LINKS),
+        "drives": list_of(reference_to(Drive), 0, limits.DRIVES),
+        "assembly": reference_to(Assembly),
+        "loads": list_of(reference_to(Load), 0, limits.LOADS),
+        "machine": reference_to(Machine),
+        "simulation": reference_to(Simulation),
+        "study": reference_to(Study),
     },
 }
 """Keys of every part as a file spells them; a test compares them with the parts themselves."""
@@ -226,15 +231,20 @@ PROPERTIES: dict[type[Part], Schema] = {
 
 def mechanism_schema() -> Schema:
     """JSON Schema (draft 2020-12) of a description's file; what parts say about each other is not in it."""
+    return schema_of("centrode mechanism", Description, PROPERTIES)
+
+
+def schema_of(title: str, whole: type[Part], properties: Mapping[type[Part], Schema]) -> Schema:
+    """JSON Schema of a file that one part describes, with the parts inside it as definitions."""
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": "centrode mechanism",
-        **_object(Description),
-        "$defs": {part.__name__: _object(part) for part in PROPERTIES if part is not Description},
+        "title": title,
+        **_object(whole, properties),
+        "$defs": {part.__name__: _object(part, properties) for part in properties if part is not whole},
     }
 
 
-def _object(part: type[Part]) -> Schema:
+def _object(part: type[Part], properties: Mapping[type[Part], Schema]) -> Schema:
     required = [key for key, name in part.keys().items() if part.model_fields[name].is_required()]
-    schema: Schema = {"type": "object", "properties": PROPERTIES[part], "additionalProperties": False}
+    schema: Schema = {"type": "object", "properties": properties[part], "additionalProperties": False}
     return {**schema, "required": required} if required else schema

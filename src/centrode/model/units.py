@@ -54,6 +54,10 @@ KINDS = {
         "2 N*mm*s^2/rad^2",
         ("N*m*s^2",),
     ),
+    "curvature": Kind(mark("a curvature"), "1/m", "0.01 1/mm"),
+    "curvature slope": Kind(mark("a curvature by angle"), "1/m/rad", "0.01 1/mm/rad", ("1/m",)),
+    "per angle": Kind(mark("a number by angle"), "1/rad", "0.013 1/deg"),
+    "pressure": Kind(mark("a stress"), "Pa", "210 GPa"),
     "ratio": Kind(mark("a number"), "", "-40/20"),
 }
 
@@ -67,12 +71,16 @@ COMMON: dict[str, dict[str, float]] = {
     "kg": {"kg": 1.0, "g": 1e-3},
     "N": {"N": 1.0, "kN": 1e3},
     "N*m": {"N*m": 1.0},
+    "1/m": {"1/m": 1.0, "1/mm": 1e3},
+    "1/m/rad": {"1/m/rad": 1.0, "1/mm/rad": 1e3},
+    "1/rad": {"1/rad": 1.0, "1/deg": 180 / math.pi},
+    "Pa": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "N/mm^2": 1e6},
 }
 """SI unit -> unit -> factor, of the units nearly every file uses; a test compares them with pint's."""
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
 _FACTOR = r"[^\W\d]+(?:(?:\^|\*\*)-?\d)?"
-_UNIT = re.compile(rf"°|%|{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
+_UNIT = re.compile(rf"°|%|(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
 
 
 def to_si(value: object, kind: str) -> float:

@@ -13,6 +13,24 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.balance_figures import balance_figures
+    from centrode.present.balance_tables import write_balance_csv, write_harmonics_csv
+    from centrode.present.cam_bodies import cam_body_figures
+    from centrode.present.cam_choice import choice_figures, trade_off_figure
+    from centrode.present.cam_choice_tables import write_choice
+    from centrode.present.cam_contact import contact_figure
+    from centrode.present.cam_drawing import (
+        cam_curves_figure,
+        cam_figures,
+        cam_path_figure,
+        cam_routes_figure,
+    )
+    from centrode.present.cam_tables import (
+        write_cam_contact_csv,
+        write_cam_csv,
+        write_cam_routes_csv,
+        write_cam_tables,
+    )
     from centrode.present.centres import centres_figure
     from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
     from centrode.present.centrodes import animate_centrodes, centrodes_figure
@@ -27,8 +45,14 @@ if TYPE_CHECKING:
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
     from centrode.present.machine_figures import machine_figures
+    from centrode.present.outline_dxf import write_outlines_dxf
+    from centrode.present.outline_files import write_cam_outlines
+    from centrode.present.outline_svg import write_outlines_svg
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.polygon_drawing import polygon_figures
+    from centrode.present.profile_drawing import profile_figure
+    from centrode.present.profile_tables import write_profile_csv
+    from centrode.present.reaction_figures import reaction_figures
     from centrode.present.reaction_tables import write_joint_table_csv, write_reactions_csv
     from centrode.present.reading import scene_of
     from centrode.present.reduction_figures import reduction_figures
@@ -41,9 +65,23 @@ if TYPE_CHECKING:
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
     from centrode.present.variant_folders import write_variants
+    from centrode.present.walking_animation import animate_walking
+    from centrode.present.walking_drawing import walking_figure
 
 __all__ = [
     "animate_centrodes",
+    "balance_figures",
+    "animate_walking",
+    "choice_figures",
+    "contact_figure",
+    "trade_off_figure",
+    "write_cam_contact_csv",
+    "write_choice",
+    "cam_body_figures",
+    "cam_curves_figure",
+    "cam_figures",
+    "cam_path_figure",
+    "cam_routes_figure",
     "centres_figure",
     "centrodes_figure",
     "curvature_figure",
@@ -58,17 +96,29 @@ __all__ = [
     "integration_figures",
     "motion_figures",
     "motion_table",
+    "reaction_figures",
     "reduction_figures",
     "plan_figure",
     "polygon_figures",
+    "profile_figure",
     "region_figure",
     "save_figures",
     "scene_of",
     "simulation_figures",
     "sweep_csv",
+    "write_balance_csv",
+    "write_harmonics_csv",
+    "write_cam_csv",
+    "write_cam_routes_csv",
+    "write_cam_tables",
     "write_centres_csv",
     "write_centrodes_csv",
     "transmission_figure",
+    "walking_figure",
+    "write_cam_outlines",
+    "write_outlines_dxf",
+    "write_outlines_svg",
+    "write_profile_csv",
     "write_coefficients_csv",
     "write_integration_csv",
     "write_joint_table_csv",
@@ -83,6 +133,14 @@ __all__ = [
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
+        "balance_figures": ["balance_figures"],
+        "balance_tables": ["write_balance_csv", "write_harmonics_csv"],
+        "cam_bodies": ["cam_body_figures"],
+        "cam_drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
+        "cam_choice": ["choice_figures", "trade_off_figure"],
+        "cam_choice_tables": ["write_choice"],
+        "cam_contact": ["contact_figure"],
+        "cam_tables": ["write_cam_contact_csv", "write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "centrodes": ["animate_centrodes", "centrodes_figure"],
@@ -95,10 +153,16 @@ _attached, __dir__, _names = lazy_loader.attach(
         "figures": ["motion_figures"],
         "machine_figures": ["machine_figures"],
         "instant_drawing": ["diagram_figures"],
+        "outline_dxf": ["write_outlines_dxf"],
+        "outline_files": ["write_cam_outlines"],
+        "outline_svg": ["write_outlines_svg"],
         "plan_drawing": ["plan_figure"],
+        "profile_drawing": ["profile_figure"],
+        "profile_tables": ["write_profile_csv"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
         "polygon_drawing": ["polygon_figures"],
+        "reaction_figures": ["reaction_figures"],
         "reaction_tables": ["write_joint_table_csv", "write_reactions_csv"],
         "reading": ["scene_of"],
         "reduction_figures": ["reduction_figures"],
@@ -111,6 +175,8 @@ _attached, __dir__, _names = lazy_loader.attach(
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],
         "variant_folders": ["write_variants"],
+        "walking_animation": ["animate_walking"],
+        "walking_drawing": ["walking_figure"],
     },
 )
 

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from PIL import Image
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.present.animation import write_animation
 from centrode.present.curves import write_legend, write_title
-from centrode.present.dark import darkened
 from centrode.present.drawing import draw_mechanism
 from centrode.present.obstacles import lines
 from centrode.present.pictures import caption, initial_sample, label_lengths
@@ -36,8 +34,6 @@ PLACE = (0.085, 0.095, 0.66, 0.775)
 FIXED, MOVING, CENTRE = "#0072B2", "#D55E00", "#A00000"
 FRAMES = 48
 LOOKS = 9  # samples whose curves the window holds
-MILLISECONDS = 70  # a frame
-SCREEN_DPI = 90
 NAMED = 10.0
 
 
@@ -75,17 +71,11 @@ def animate_centrodes(
             "link", _("there is no centrode in this range"), _("ask for another link or another range")
         )
     chosen = rolling[np.linspace(0, rolling.size - 1, min(FRAMES, rolling.size)).astype(int)]
-    pictures = []
     with house_style():
         scene = _scene(mechanism, motion, centrodes)
-        for sample in chosen:
-            figure = _drawn(scene, motion, centrodes, int(sample), names=False)
-            figure.set_dpi(SCREEN_DPI)
-            canvas: Any = FigureCanvasAgg(darkened(figure) if dark else figure)
-            canvas.draw()
-            picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
-            pictures.append(picture.quantize(256, dither=Image.Dither.NONE))
-    pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=MILLISECONDS, loop=0)
+    write_animation(
+        path, lambda sample: _drawn(scene, motion, centrodes, int(sample), names=False), chosen, dark=dark
+    )
 
 
 def _scene(mechanism: Mechanism, motion: xarray.Dataset, centrodes: xarray.Dataset) -> Scene:

@@ -111,7 +111,7 @@ def _numbers(vector: PolygonVector, greatest: float) -> tuple[str, str]:
     return force_text(size), f"{math.degrees(cmath.phase(vector.force)) + 0.0:.2f}"
 
 
-def balance_rows(found: ForcePolygons) -> Rows:
+def polygon_balance_rows(found: ForcePolygons) -> Rows:
     """The balancing moment or force of each drive by three routes, heads first."""
     heads = (
         _("drive"),

@@ -40,7 +40,7 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     ]
     if found.attrs["undetermined"]:
         names = found.attrs["undetermined"].split("; ")
-        rows.append((_("not determined"), ", ".join(map(_said, names))))
+        rows.append((_("not determined"), "; ".join(map(_said, names))))
     if "tooth_force" in found:
         absent = np.isnan(found["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
         gears = ", ".join(found["gear"].to_numpy()[absent])
@@ -96,7 +96,7 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
     """Header and rows: least and greatest of each reaction over the samples, and where; forces by their magnitude."""
     header = [_("reaction"), _("unit"), _("least"), _("at"), _("greatest"), _("at")]
     rows = []
-    for label, unit, values in _reactions(found):
+    for label, unit, values in _reactions(mechanism, found):
         size = np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values
         known = np.flatnonzero(np.isfinite(size))
         if not len(known):
@@ -130,7 +130,7 @@ def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: in
     """Header and rows of all reactions at one sample: components, magnitude and direction, or the one number."""
     header = [_("reaction"), _("unit"), "x", "y", _("magnitude"), _("direction, deg")]
     rows = []
-    for label, unit, values in _reactions(found):
+    for label, unit, values in _reactions(mechanism, found):
         here = values[sample]
         if not np.all(np.isfinite(here)):
             rows.append([label, unit, "", "", _missing(found, sample), ""])
@@ -139,7 +139,10 @@ def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: in
         if values.ndim == 1:
             rows.append([label, unit, "", "", _number(float(here), noise), ""])
             continue
-        size, direction = float(np.hypot(*here)), float(np.degrees(np.arctan2(here[1], here[0])))
+        size, direction = (
+            float(np.hypot(*here)),
+            round(float(np.degrees(np.arctan2(here[1], here[0]))), 2) + 0.0,
+        )
         components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
         still = size <= noise
         rows.append([label, unit, *components, _number(size, noise), "" if still else f"{direction:.2f}"])
@@ -152,8 +155,9 @@ def _missing(found: xarray.Dataset, sample: int) -> str:
     return _("not determined") if status in (Status.OK, Status.CUT_OFF) else status_word(status)
 
 
-def _reactions(found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
+def _reactions(mechanism: Mechanism, found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
     """Name, unit and values (samples) or (samples, 2) of everything that a table of reactions shows."""
+    turning = [guide.id for guide in mechanism.guides if guide.link is not None]
     yield from _hinges(found)
     for variable, dimension, text in (
         ("guide_normal", "guide", _("guide {name}, normal")),
@@ -165,7 +169,10 @@ def _reactions(found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
         ("balancing", "drive", _("drive {name} gives")),
     ):
         if variable in found:
-            yield from _of(found[variable], dimension, text)
+            values = found[variable]
+            # a guide without a slider of its own bears no moment
+            values = values.sel(guide=turning) if variable == "guide_moment" else values
+            yield from _of(values, dimension, text)
     if "friction" in found.dims:
         yield from _friction(found)
     yield _("force on the frame"), "N", found["frame_force"].to_numpy()

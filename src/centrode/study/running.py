@@ -107,11 +107,7 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
         found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
         return found, _jams(found)
     except (InputError, NotComputedYet) as missing:
-        what = (
-            _("{where}: {what}").format(where=missing.where, what=missing.what)
-            if missing.where
-            else missing.what
-        )
+        what = f"{missing.where}: {missing.what}" if missing.where else missing.what
         return None, [_("reactions are left out: {reason}").format(reason=what)]
 
 

@@ -31,7 +31,7 @@ def simulation_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
         (_("driven by"), _driven_by(mechanism, found)),
         (_("scheme"), _scheme(found)),
         (_("ended"), _ended(mechanism, found)),
-        (_("turned"), _turned(mechanism, found)),
+        (_("turned") if mechanism.drives[0].kind == "angle" else _("moved"), _turned(mechanism, found)),
         (
             _("speed of the drive"),
             _("{least:.6g} to {greatest:.6g} {unit}, {last:.6g} {unit} at the end").format(

@@ -94,6 +94,7 @@ def _inertia_forces(state: State, masses: Sequence[Mass], acceleration: Array) -
 
     found = []
     for mass in masses:
+        assert not isinstance(mass.inertia, tuple)
         x, y = state.centre(mass.centre)
         force = (-mass.mass * second(x), -mass.mass * second(y)) if mass.weighs else (0.0, 0.0)
         moment = -mass.moment_of_inertia * second(state.angle(mass.link)) if mass.resists else 0.0

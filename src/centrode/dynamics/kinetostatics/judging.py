@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.rounding import SAFETY
 from centrode.dynamics.kinetostatics.results import reactions_of
 from centrode.dynamics.kinetostatics.scheme import Unknown
 from centrode.dynamics.kinetostatics.sides import Side
@@ -42,7 +43,7 @@ def undetermined_parts(
     if not good.any():
         return found
     condition = system.inverse.condition[0][good]
-    noise = system.inverse.loss[0][good] + condition * residual
+    noise = SAFETY * (system.inverse.loss[0][good] + condition * residual)
     for unknown in system.scheme.repeating:
         parts = _measured(reactions_of(_self_stress(system, unknown), sides), system.scale)
         greatest = np.max([_greatest(values[good]) for values in parts.values()], axis=0)

@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.amounts import Diagram
+from centrode.dynamics.coordinates import Coordinate
 from centrode.dynamics.inertia import shares
+from centrode.dynamics.loads import Acting
 from centrode.dynamics.reducer import Reducer
 from centrode.dynamics.simulation.sorts import SORTS, Sorted, formulas_of, sorted_efforts
 from centrode.dynamics.states import Moving, State
@@ -27,6 +29,8 @@ COORDINATE, SPEED, ALONG, GATE = 0, 1, 2, 3
 EACH = 4
 """Rows of a formula: its coordinate and the derivative of that; that of what it works along, where the drive's value
 grows, and of the coordinate that lets it act."""
+STILL = 1e-9
+"""Derivative by the drive, over lengths, of what stands still: near change points it is known no better."""
 FLOOR = 1e-3
 """Functions below this share of the greatest of their kind need be no more exact than that share."""
 
@@ -91,6 +95,24 @@ class Rows:
         state, status = self.reducer.state(values, Moving(0.0 * ones, values, sense * ones))
         reached = np.isin(status, (Status.OK, Status.SINGULAR))
         return state, reached & np.broadcast_to(state.exists, (1, len(values)))[0]
+
+    def jumps(self, low: float, high: float, some: Array) -> Array:
+        """Values of the drive at which loads jump, between two; `some` values tell what moves at all.
+
+        What does not move but for rounding does not turn round either.
+        """
+        state, known = self.state(some)
+        least = STILL * max(1.0, self.reducer.ready.kinematics.path.scale)
+
+        def moves(coordinate: Coordinate) -> bool:
+            slope = np.broadcast_to(coordinate.slope(state).value, (1, len(some)))[0]
+            return bool(np.max(np.abs(slope[known]), initial=0.0) > least)
+
+        loads = [
+            Acting(load.label, tuple(effort for effort in load.efforts if all(map(moves, effort.switches))))
+            for load in self.reducer.burden.loads
+        ]
+        return self.reducer.jumps(low, high, loads)
 
     def scales(self, peaks: Array) -> Array:
         """What counts as the greatest value of each row, where one may be nothing but rounding beside others."""

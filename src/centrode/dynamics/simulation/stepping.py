@@ -10,16 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import scipy.integrate
-import scipy.optimize
 
 from centrode.dynamics.simulation.course import STATES, VALUE, Course, Ending, Occasion, Piece
 from centrode.dynamics.simulation.field import CREEP, Field, Forces, Leg
+from centrode.dynamics.simulation.meeting import arrived, first_event, loosening
 from centrode.dynamics.simulation.rows import INERTIA
 from centrode.errors import MotionError
 from centrode.locale import _
@@ -28,14 +27,17 @@ Array: TypeAlias = npt.NDArray[np.float64]
 State: TypeAlias = Array
 
 MOST_STEPS = 300_000
+MOST_IDLE = 100
+"""Legs in succession in which no time passes."""
 EDGE = 3.0
 """Step times damping rate from which a step counts as held back by stability."""
 HELD_BACK = 15
 """Steps so held back after which the stiff scheme takes over."""
-REST_SCANS = 2000
-"""Instants at which a mechanism at rest is asked whether it breaks loose, where something depends on time."""
 AT_END = 1e-9
 """Distance from a limit, in units of the drive, that counts as there."""
+
+_RELATIVE = np.array([1.0, 0.0, 1.0, 1.0, 1.0])
+"""States that count from the beginning of a leg."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,8 @@ class Stepper:
         self.tell = tell
         self.course = Course(scheme="stiff" if stiff else "adaptive")
         self.most = most
-        self.fastest = 0.0
+        self.fastest = self.sense = self.last = 0.0
+        self.idle = 0
         self.steps = self.held_back = 0
 
     def run(self, value: float, rate: float) -> Course:
@@ -73,7 +76,8 @@ class Stepper:
         state = np.array([value, rate, *[0.0] * (STATES - 2)])
         self.start = value
         try:
-            self.course.ended = self._run(0.0, state)
+            with np.errstate(all="ignore"):  # steps that lead astray are rejected
+                self.course.ended = self._run(0.0, state)
         except KeyboardInterrupt:
             if not self.course.pieces:
                 raise
@@ -86,8 +90,11 @@ class Stepper:
                 return "turns"
             if not t < self.until.time:
                 return "duration"
+            self._check_headway(t)
             if state[1] == 0.0:
                 sense = self.field.leaving(t, float(state[VALUE]))
+                if sense * self.sense < 0.0:
+                    self._note("turns back", t, state)
                 if sense == 0.0:
                     later = self._rest(t, state)
                     if later is None:
@@ -96,6 +103,7 @@ class Stepper:
                     continue
             else:
                 sense = 1.0 if state[1] > 0.0 else -1.0
+            self.sense = sense
             leg = self.field.leg(float(state[VALUE]), sense)
             if self._at_limit(float(state[VALUE]), sense):
                 self._note("limit", t, state)
@@ -111,6 +119,19 @@ class Stepper:
         way = self.until.way
         return way is not None and abs(float(state[VALUE]) - self.start) >= way * (1.0 - 1e-12)
 
+    def _check_headway(self, t: float) -> None:
+        """Refuse to go on where leg follows upon leg and no time passes."""
+        self.idle = self.idle + 1 if t == self.last else 0
+        self.last = t
+        if self.idle > MOST_IDLE:
+            raise MotionError(
+                "[simulation]",
+                _("it gets no farther than t = {time:.6g} s: drive or loads change too often there").format(
+                    time=t
+                ),
+                _("correct their formulas"),
+            )
+
     def _note(self, kind: str, t: float, state: State) -> None:
         self.course.occasions.append(Occasion(kind, t, float(state[VALUE])))
 
@@ -119,7 +140,7 @@ class Stepper:
     def _rest(self, t: float, state: State) -> float | None:
         """Until when it rests; None where nothing will ever move it, or not before the end."""
         value = float(state[VALUE])
-        later = self._loose(t, value) if self.field.of_time else None
+        later = loosening(self.field, value, t, self.until.time) if self.field.of_time else None
         held = state.copy()
         if later is None:
             self._note("standstill", t, state)
@@ -135,21 +156,6 @@ class Stepper:
             Piece(first, last, lambda times: np.repeat(held[:, None], len(times), axis=1), 0.0)
         )
 
-    def _loose(self, t: float, value: float) -> float | None:
-        """When it breaks loose; the first of evenly spaced instants tells, bisection finds the time."""
-        times: list[float] = np.linspace(t, self.until.time, REST_SCANS).tolist()
-        for before, after in pairwise(times):
-            if self.field.leaving(after, value) != 0.0:
-                low, high = before, after
-                while high - low > 1e-14 * self.until.time and low < 0.5 * (low + high) < high:
-                    middle = 0.5 * (low + high)
-                    if self.field.leaving(middle, value) == 0.0:
-                        low = middle
-                    else:
-                        high = middle
-                return high
-        return None
-
     # in motion
 
     def _pass(self, leg: Leg, t: float, state: State) -> tuple[float, State]:
@@ -158,8 +164,8 @@ class Stepper:
         turning = self.field.turns_count
         low, high = leg.low - begun[VALUE], leg.high - begun[VALUE]
         if self.until.way is not None:
-            rest = self.until.way - leg.sense * (begun[VALUE] - self.start)
-            low, high = (max(low, -rest), high) if leg.sense < 0.0 else (low, min(high, rest))
+            gone = begun[VALUE] - self.start
+            low, high = max(low, -self.until.way - gone), min(high, self.until.way - gone)
         rates = self._rates(leg, begun)
         solver = self._solver(rates, t, y, begun, leg)
         while True:
@@ -169,7 +175,7 @@ class Stepper:
             message = solver.step()
             self._count(leg, begun, solver, message)
             dense = solver.dense_output()
-            event = _first_event(dense, before, solver, low, high, leg.sense if turning else 0.0)
+            event = first_event(dense, before, solver, low, high, leg.sense if turning else 0.0)
             if event is None:
                 self._add(before, solver.t, dense, begun, leg.sense)
                 t, y = solver.t, solver.y
@@ -180,7 +186,7 @@ class Stepper:
                 continue
             when, component, target = event
             t, y = self._exactly(rates, before, y_before, when, begun, leg)
-            t, y = _arrived(rates, t, y, component, target)
+            t, y = arrived(rates, t, y, component, target)
             ended = y + begun * _RELATIVE
             if component == VALUE:
                 ended[VALUE] = min(max(ended[VALUE], leg.low), leg.high)
@@ -189,7 +195,6 @@ class Stepper:
                     ended[VALUE] = edge
             else:
                 ended[1] = 0.0
-                self._note("turns back", t, ended)
             if not self.course.pieces or self.course.pieces[-1].last < t:
                 self._close(t, ended, leg.sense)
             return t, ended
@@ -244,7 +249,7 @@ class Stepper:
         self.fastest = max(self.fastest, abs(float(y[1])), float(np.sqrt(0.02 * abs(forces[1]) * unit)))
         inertia = float(leg.rows(float(begun[VALUE] + y[0]))[INERTIA])
         energy = max(1e-300, inertia * self.fastest**2)
-        scale = np.array([unit, self.fastest or 1.0, energy, energy, energy])
+        scale = np.array([unit, 1e-2 * self.fastest or 1.0, energy, energy, energy])
         kind = scipy.integrate.Radau if self.stiff else scipy.integrate.DOP853
         limit = self.until.time if end is None else end
         return kind(rates, t, y, limit, rtol=max(self.tolerance, 3e-14), atol=self.tolerance * scale)
@@ -314,58 +319,3 @@ class Stepper:
             ),
             _("correct their formulas"),
         )
-
-
-_RELATIVE = np.array([1.0, 0.0, 1.0, 1.0, 1.0])
-"""States that count from the beginning of a leg."""
-
-
-def _first_event(
-    dense: Any, before: float, solver: Any, low: float, high: float, sense: float
-) -> tuple[float, int, float] | None:
-    """The first time in a step at which the value leaves its range or the rate (where a sense counts) its sense."""
-    found: list[tuple[float, int, float]] = []
-    y = solver.y
-    targets = [(VALUE, high)] if y[VALUE] >= high else [(VALUE, low)] if y[VALUE] <= low else []
-    if sense and y[1] * sense <= 0.0:
-        targets.append((1, 0.0))
-    for component, target in targets:
-
-        def missed(t: float, component: int = component, target: float = target) -> float:
-            return float(dense(t)[component]) - target
-
-        start = missed(before)
-        if start == 0.0 or start * missed(solver.t) > 0.0:
-            when = solver.t if start * missed(solver.t) > 0.0 else _behind_start(missed, before, solver.t)
-        else:
-            when = float(scipy.optimize.brentq(missed, before, solver.t, xtol=1e-300, rtol=1e-15))
-        found.append((when, component, target))
-    return min(found, default=None)
-
-
-def _behind_start(missed: Callable[[float], float], first: float, last: float) -> float:
-    """Where a function that begins at zero comes back to it; the end where it does not."""
-    places = np.linspace(first, last, 65)[1:]
-    values = [missed(float(x)) for x in places]
-    for k in range(1, len(places)):
-        if values[k - 1] * values[k] <= 0.0:
-            return float(scipy.optimize.brentq(missed, places[k - 1], places[k], xtol=1e-300, rtol=1e-15))
-    return last
-
-
-def _arrived(
-    rates: Callable[[float, State], State], t: float, y: State, component: int, target: float
-) -> tuple[float, State]:
-    """From a place very near to an event to the event itself, by Taylor's polynomial."""
-    slopes = rates(t, y)
-    speed = float(slopes[component])
-    if speed == 0.0:
-        return t, y
-    step = (target - float(y[component])) / speed
-    moved = y + step * slopes
-    if component == VALUE:
-        moved[VALUE] = target
-    else:
-        moved[VALUE] += 0.5 * slopes[1] * step * step
-        moved[1] = target
-    return t + step, moved

@@ -8,6 +8,7 @@ others.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil, floor, inf, isfinite, tau
 from typing import TypeAlias
 
@@ -28,6 +29,8 @@ PANELS = 72
 """Panels of a stretch at first."""
 NEAR_LIMIT = 1e-6
 """Distance from a limit, in units of the drive, where a simulation ends: beyond it inertia grows without bounds."""
+TOWARDS_LIMIT = (1e-2, 1e-4)
+"""Distances from there at which functions are represented anew, each section to its own greatest values."""
 PROBES = tau * np.array([0.0133, 0.137, 0.291, 0.454, 0.618, 0.773, 0.911])
 MOST_PERIOD = 4
 SAME = 1e-9
@@ -134,17 +137,34 @@ class Tracks:
         low, high = max(low, self.low), min(high, self.high)
         if not low < high:
             return Stretch(np.array([low, low]), np.zeros((1, self.rows.count, NODES)), np.empty(0))
-        jumps = self.rows.reducer.jumps(low, high)
         even = np.linspace(low, high, PANELS + 1)
+        jumps = self.rows.jumps(low, high, even)
         near = np.min(np.abs(even[1:-1, None] - jumps), axis=1, initial=inf) if len(jumps) else inf
         inner = even[1:-1][np.broadcast_to(near > 1e-9 * self.length, PANELS - 1)]
         edges = np.unique(np.concatenate([even[[0, -1]], inner, jumps[(jumps > low) & (jumps < high)]]))
+        parts = [self._represented(part) for part in self._sections(edges)]
+        ends = np.concatenate([parts[0][0][:1], *(part[0][1:] for part in parts)])
+        return Stretch(ends, np.concatenate([part[1] for part in parts]), jumps)
+
+    def _sections(self, edges: Array) -> list[Array]:
+        """Edges in sections: towards a limit functions grow, and are represented to what they are there."""
+        cuts = [
+            limit + side * near * self.unit
+            for limit, side in ((self.low, 1.0), (self.high, -1.0))
+            for near in TOWARDS_LIMIT
+            if edges[0] < limit + side * near * self.unit < edges[-1]
+        ]
+        merged = np.unique(np.concatenate([edges, cuts]))
+        places = [0, *sorted(set(np.searchsorted(merged, cuts).tolist())), len(merged) - 1]
+        return [merged[i : j + 1] for i, j in pairwise(places)]
+
+    def _represented(self, edges: Array) -> tuple[Array, Array]:
+        """Edges of panels on a section, and the powers there."""
         panels, values = resolved(self.rows.at, edges, [TOLERANCE] * self.rows.count, self.rows.scales)
         powers = np.moveaxis(values.reshape(self.rows.count, -1, NODES) @ _TO_POWERS, 0, 1)
         self._check_inertia(panels.nodes, values[INERTIA])
-        stretch = Stretch(panels.edges, np.ascontiguousarray(powers), jumps)
-        self._check(stretch)
-        return stretch
+        self._check(panels.edges, powers)
+        return panels.edges, np.ascontiguousarray(powers)
 
     def _check_inertia(self, places: Array, inertia: Array) -> None:
         """Refuse, with an InputError, a place at which nothing carries the motion."""
@@ -182,13 +202,12 @@ class Tracks:
         self.low = max([self.low, *missing[missing < self.first]])
         self.high = min([self.high, *missing[missing >= self.first]])
 
-    def _check(self, stretch: Stretch) -> None:
+    def _check(self, edges: Array, powers: Array) -> None:
         """Measure by how much the series miss the reduction between their nodes."""
-        middle, half = 0.5 * (stretch.edges[:-1] + stretch.edges[1:]), 0.5 * np.diff(stretch.edges)
+        middle, half = 0.5 * (edges[:-1] + edges[1:]), 0.5 * np.diff(edges)
         for share in CHECKED:
             exact = self.rows.at(middle + share * half)
-            powers = share ** np.arange(NODES)
-            apart = np.abs(stretch.powers @ powers - exact.T)
+            apart = np.abs(powers @ share ** np.arange(NODES) - exact.T)
             scale = self.rows.scales(np.max(np.abs(exact), axis=1))
             counted = [INERTIA, *range(SLOPE + 1, self.rows.count)]
             self.error = max(self.error, float(np.nanmax((apart / scale)[:, counted])))

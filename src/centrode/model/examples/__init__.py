@@ -9,11 +9,16 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 DIRECTORY = Path(__file__).parent
+FOLDERS = {"linkage": DIRECTORY, "cam": DIRECTORY / "cams"}
+"""Where the descriptions of each kind lie."""
 
 
-def example_names() -> tuple[str, ...]:
-    """Names of the built-in mechanisms, sorted."""
-    return tuple(sorted(path.stem for path in DIRECTORY.glob("*.toml")))
+def example_names(kind: str = "linkage") -> tuple[str, ...]:
+    """Names of the built-in mechanisms of a kind, "linkage" or "cam", sorted."""
+    if kind not in FOLDERS:
+        what = _("there are no built-in mechanisms of kind {kind}").format(kind=f'"{kind}"')
+        raise InputError("", what, _("use one of {known}").format(known=", ".join(FOLDERS)))
+    return tuple(sorted(path.stem for path in FOLDERS[kind].glob("*.toml")))
 
 
 def example_text(name: str) -> str:
@@ -21,8 +26,9 @@ def example_text(name: str) -> str:
 
     Raises InputError if there is none of this name.
     """
-    names = example_names()
-    if name not in names:
+    folders = {known: folder for kind, folder in FOLDERS.items() for known in example_names(kind)}
+    names = sorted(folders)
+    if name not in folders:
         near = get_close_matches(name, names, n=1)
         repair = (
             _('did you mean "{name}"?').format(name=near[0])
@@ -30,4 +36,4 @@ def example_text(name: str) -> str:
             else _("list them with: centrode examples")
         )
         raise InputError("", _('there is no built-in mechanism called "{name}"').format(name=name), repair)
-    return (DIRECTORY / f"{name}.toml").read_text(encoding="utf-8")
+    return (folders[name] / f"{name}.toml").read_text(encoding="utf-8")

@@ -1,34 +1,67 @@
-"""A mechanism by the name of a file or of a built-in example."""
+"""A mechanism or a cam by the name of a file or of a built-in example."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal, TypeAlias, overload
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.cam_files import parse_cam, read_cam
+from centrode.model.cams import Cam
 from centrode.model.examples import example_names, example_text
 from centrode.model.files import parse_mechanism, read_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import likely, shown
 
+CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
 
-def example(name: str) -> Mechanism:
-    """The built-in mechanism of a name; InputError if there is none."""
+
+@overload
+def example(name: CamName) -> Cam: ...  # type: ignore[overload-overlap]
+@overload
+def example(name: str) -> Mechanism: ...
+def example(name: str) -> Mechanism | Cam:
+    """The built-in mechanism or cam of a name; InputError if there is none."""
+    if name in example_names("cam"):
+        return parse_cam(example_text(name), f"{name}.toml")
     return parse_mechanism(example_text(name), f"{name}.toml")
 
 
 def load(file_or_example: str | Path) -> Mechanism:
     """The mechanism in a TOML file, or the built-in one of that name; a file goes before an example.
 
-    Raises InputError if there is neither, or the file is no description.
+    Raises InputError if there is neither, or the file is no description of a linkage.
     """
+    path = _file(file_or_example)
+    if path is not None:
+        return read_mechanism(path)
+    name = str(file_or_example)
+    return parse_mechanism(example_text(name), f"{name}.toml")
+
+
+def load_cam(file_or_example: str | Path) -> Cam:
+    """The cam in a TOML file, or the built-in one of that name; a file goes before an example.
+
+    Raises InputError if there is neither, or the file is no description of a cam.
+    """
+    path = _file(file_or_example)
+    if path is not None:
+        return read_cam(path)
+    name = str(file_or_example)
+    return parse_cam(example_text(name), f"{name}.toml")
+
+
+def _file(file_or_example: str | Path) -> Path | None:
+    """The file that is meant; None where it is a built-in example."""
     path = Path(file_or_example)
     name = str(file_or_example)
     if path.suffix == ".toml" or path.name != name or path.exists():
-        return read_mechanism(path)
-    if name in example_names():
-        return example(name)
-    near = likely(name, example_names())
+        return path
+    names = (*example_names(), *example_names("cam"))
+    if name in names:
+        return None
+    near = likely(name, names)
     raise InputError(
         shown(name)[1:-1],
         _("no such file, and no built-in mechanism of this name"),

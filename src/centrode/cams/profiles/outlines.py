@@ -1,0 +1,94 @@
+"""Outlines of cams and shoes as pieces of smooth curves, with their slopes: what drawings and files are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from centrode.cams.closed.arcs import Arc
+from centrode.cams.frames import Array, frames
+from centrode.cams.profiles.bodies import CamBody
+from centrode.cams.profiles.equidistants import Side, equidistant, signed
+from centrode.cams.wheel.shoe import Shoe
+
+Layer: TypeAlias = Literal[
+    "profile-working", "profile-return", "groove-working", "groove-return", "path", "shoe"
+]
+LEAST_PIECE = 8
+"""Least number of spaces between points of a piece."""
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A smooth piece of a curve.
+
+    Attributes
+    ----------
+    layer : str
+        What it belongs to.
+    phi : (n) [rad]
+        Growing.
+    places, slopes : (n, 2) [m], [m/rad]
+        Points and derivatives by phi.
+    """
+
+    layer: Layer
+    phi: Array
+    places: Array
+    slopes: Array
+
+
+def cam_outlines(body: CamBody, samples: int, *, groove: bool = False) -> list[Outline]:
+    """The roller's path, the profile, and the outer wall of a groove if asked, each in pieces between breaks.
+
+    Parameters
+    ----------
+    samples : int
+        Spaces between points over the whole turn, about.
+
+    Raises
+    ------
+    InputError
+        The roller is larger than a hollow of the groove.
+    """
+    if groove:
+        body.fit_groove()
+    found: list[Outline] = []
+    for arc, phi in pieces(body.closed.arcs, samples):
+        frame = frames(arc.curve, phi)
+        found.append(Outline("path", phi, frame.place, frame.speed[:, None] * frame.tangent))
+        sides: tuple[Side, ...] = ("inner", "outer") if groove else ("inner",)
+        for side in sides:
+            off = equidistant(frame, signed(body.roller, side))
+            name: Layer
+            if side == "inner":
+                name = "profile-working" if arc.kind == "working" else "profile-return"
+            else:
+                name = "groove-working" if arc.kind == "working" else "groove-return"
+            found.append(Outline(name, phi, off.place, off.speed[:, None] * frame.tangent))
+    return found
+
+
+def shoe_outlines(shoe: Shoe, samples: int) -> list[Outline]:
+    """The profile of a shoe in the leg's axes, in pieces between breaks."""
+    found = []
+    for _arc, phi in pieces([shoe.arc], samples):
+        along = np.stack([np.cos(phi), -np.sin(phi)], axis=-1)
+        found.append(Outline("shoe", phi, shoe.place(phi), shoe.bend(phi)[:, None] * along))
+    return found
+
+
+def pieces(arcs: Sequence[Arc], samples: int) -> list[tuple[Arc, Array]]:
+    """Arcs between their breaks, and angles evenly spaced over each."""
+    turn = sum(arc.stop - arc.start for arc in arcs)
+    found = []
+    for arc in arcs:
+        for low, high in pairwise(arc.edges):
+            count = max(LEAST_PIECE, round(samples * (high - low) / turn))
+            # a break belongs to the piece behind it: the end of this one is asked for just before
+            found.append((arc, np.append(np.linspace(low, high, count + 1)[:-1], np.nextafter(high, low))))
+    return found

@@ -1,0 +1,158 @@
+"""Profiles of cams and shoes, and the hub's travel, as labelled results."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from centrode.cams.closed.arcs import ClosedPath
+from centrode.cams.frames import Array, frames
+from centrode.cams.profiles.bodies import CamBody, cam_body
+from centrode.cams.wheel.shoe import Shoe
+from centrode.cams.wheel.walking import Mover, mover
+from centrode.errors import InputError
+from centrode.kinematics.dataset import named
+from centrode.locale import _
+from centrode.model import limits
+from centrode.model.cams import Cam
+
+DEFAULT_SAMPLES = 361
+AXES = ["x", "y"]
+SAME = 1e-9
+"""Angles [rad] that are nearer than this are one."""
+
+
+def cam_profile(cam: Cam, samples: int | None = None, *, groove: bool = False) -> xr.Dataset:
+    """The closed profile of a cam.
+
+    Parameters
+    ----------
+    samples : int
+        Evenly spaced over the turn, both ends included, joints added; the description's own number, else 361.
+    groove : bool
+        Also the outer wall of a groove.
+
+    Returns
+    -------
+    Dataset
+        Over `sample`: `carrier_angle` phi, which `part` ("working", "return"), the path of the roller's centre and
+        the profile in the cam's axes and in polar form, pressure angle, curvatures (docs: cam-profiles).
+
+    Raises
+    ------
+    InputError, MotionError
+        As the description: no roller, one too large for a hollow of the groove, bounds that cannot be kept, a
+        path that does not close.
+    """
+    return profile_dataset(cam_body(cam), count_of(cam, samples), groove=groove)
+
+
+def profile_dataset(body: CamBody, samples: int, *, groove: bool = False) -> xr.Dataset:
+    """`cam_profile` of a body."""
+    closed = body.closed
+    phi = _angles(closed, samples)
+    frame, inner = frames(closed, phi), body.profile(phi)
+    _places, arcs = closed.located(phi)
+    kinds = np.array([arc.kind for arc in closed.arcs])
+    variables = {
+        "carrier_angle": named("carrier_angle", ("sample",), phi),
+        "part": ("sample", kinds[arcs]),
+        "roller_centre": named("roller_centre", ("sample", "axis"), frame.place),
+        "path_radius": named("path_radius", ("sample",), frame.radius),
+        "profile": named("profile", ("sample", "axis"), inner.place),
+        "profile_radius": named("profile_radius", ("sample",), inner.polar_radius),
+        "profile_angle": named("profile_angle", ("sample",), inner.polar_angle),
+        "cam_pressure_angle": named("cam_pressure_angle", ("sample",), frame.pressure_angle),
+        "path_curvature": named("path_curvature", ("sample",), frame.curvature),
+        "profile_bend": named("profile_bend", ("sample",), inner.bend),
+    }
+    if groove:
+        body.fit_groove()
+        variables["groove"] = named("groove", ("sample", "axis"), body.profile(phi, "outer").place)
+    return xr.Dataset(variables, coords={"axis": AXES}, attrs={"roller": body.roller})
+
+
+def _angles(closed: ClosedPath, samples: int) -> Array:
+    """Evenly spaced angles and the joints; a joint that a sample lies on to rounding is the joint."""
+    even = np.linspace(closed.start, closed.stop, samples)
+    joints = np.array([joint.at for joint in closed.joints[:-1]])
+    apart = np.abs(even[:, None] - joints).min(axis=1, initial=math.inf) > SAME
+    return np.sort(np.concatenate([even[apart], joints]))
+
+
+def shoe_profile(cam: Cam, samples: int | None = None) -> xr.Dataset:
+    """The shoe of a walking wheel and the travel of its hub.
+
+    Parameters
+    ----------
+    samples : int
+        Evenly spaced over the arc on which a leg stands, both ends included.
+
+    Returns
+    -------
+    Dataset
+        Over `sample`: `carrier_angle` of the leg, the profile in the leg's axes (from the roller's centre, y along the
+        leg) and in polar form, the paper's Y1 and Y2, travel and dX/dphi of the hub.
+
+    Raises
+    ------
+    InputError, MotionError
+        As `walking_wheel`.
+    """
+    return shoe_dataset(walking_wheel(cam), count_of(cam, samples))
+
+
+def shoe_dataset(wheel: Mover, samples: int) -> xr.Dataset:
+    """`shoe_profile` of a wheel."""
+    shoe: Shoe = wheel.shoe
+    phi: Array = np.linspace(-wheel.half, wheel.half, samples)
+    angle, radius = shoe.polar(phi)
+    first, second = shoe.parts(phi)
+    columns = {
+        "carrier_angle": phi,
+        "shoe_radius": radius,
+        "shoe_angle": angle,
+        "shoe_bend": shoe.bend(phi),
+        "shoe_along": first,
+        "shoe_upright": second,
+        "hub_travel": wheel.travel(phi),
+        "hub_rate": wheel.rate(phi),
+    }
+    variables = {name: named(name, ("sample",), values) for name, values in columns.items()}
+    variables["shoe_profile"] = named("shoe_profile", ("sample", "axis"), shoe.place(phi))
+    return xr.Dataset(variables, coords={"axis": AXES}, attrs={"hub_height": wheel.height})
+
+
+def walking_wheel(cam: Cam) -> Mover:
+    """The walking wheel of a description.
+
+    Raises
+    ------
+    InputError
+        No `[mover]`, a pressure angle at phi = 0 that makes the shoe singular, too few legs, and what a profile needs.
+    MotionError
+        A shoe with a cusp; no return arc within the bounds.
+    """
+    return wheel_of(cam, cam_body(cam))
+
+
+def wheel_of(cam: Cam, body: CamBody) -> Mover:
+    """`walking_wheel` on a body that is known."""
+    if cam.mover is None:
+        raise InputError("[mover]", _("a walking wheel needs legs"), _("give [mover] legs and post"))
+    return mover(body.closed, cam.mover.legs, cam.mover.post, body.roller)
+
+
+def count_of(cam: Cam, samples: int | None) -> int:
+    """The number of samples asked for; InputError if it is none."""
+    asked = samples if samples is not None else cam.study.samples
+    count = DEFAULT_SAMPLES if asked is None else asked
+    if isinstance(count, bool) or not 2 <= count <= limits.SAMPLES:
+        raise InputError(
+            _("samples"),
+            _("{samples} samples were asked for").format(samples=count),
+            _("ask for {least} to {most}").format(least=2, most=limits.SAMPLES),
+        )
+    return count

@@ -1,0 +1,130 @@
+"""`centrode cam`: a cam from the curvature of its roller's path."""
+
+from __future__ import annotations
+
+import json
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
+from centrode.cli.progress import Progress
+from centrode.errors import InputError, MotionError
+from centrode.locale import _, mark
+
+if TYPE_CHECKING:
+    from centrode.study.cam_results import CamResults
+    from centrode.study.cam_said import CamPart
+
+_DXF = find_spec("ezdxf") is not None
+
+
+@click.command(help=mark("Compute a cam from the curvature of its roller's path."))
+@click.argument(
+    "cam", metavar=mark("FILE_OR_EXAMPLE"), help=mark("A TOML file, or the name of a built-in cam.")
+)
+@written_option
+@samples_option
+@click.option(
+    "--terms",
+    type=int,
+    metavar=mark("N"),
+    help=mark("Cut the power series after a_N; the description's own number, else 20."),
+)
+@click.option("--groove", is_flag=True, help=mark("Also the outer wall of a groove that the roller runs in."))
+@click.option("--animate", is_flag=True, help=mark("Also write an animation: the wheel walks a step."))
+@no_figures_option
+@dark_option
+def cam(
+    cam: str,
+    out: Path | None,
+    samples: int | None,
+    terms: int | None,
+    groove: bool,
+    animate: bool,
+    no_figures: bool,
+    dark: bool,
+) -> None:
+    """Print what is known of a cam, and write it where asked."""
+    description = ct.load_cam(cam)
+    names: list[str] = []
+    _check_animation(description, out, animate)
+    with about(cam), Progress() as progress:
+        progress.say(_("solving"))
+        if out is None:
+            results = ct.cam_results(description, samples, terms, groove=groove)
+        else:
+            with output.output_folder(out) as draft:
+                results = ct.cam_results(description, samples, terms, groove=groove, front=True)
+                _write(results, draft, progress, groove=groove, figures=not no_figures, dark=dark)
+                if animate and "wheel" in results.objects:
+                    _animate(results, draft, progress, dark=dark)
+                names = sorted(path.name for path in draft.iterdir())
+    click.echo(_(description.title) or cam)
+    for part in results.parts.values():
+        click.echo("\n" + _text(part))
+    if out is not None:
+        click.echo("\n" + output.files_in(out, names))
+        if "body" in results.objects and not _DXF:
+            click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
+    if results.failures:
+        raise MotionError(cam, "; ".join(results.failures))
+
+
+def _check_animation(cam: ct.Cam, out: Path | None, animate: bool) -> None:
+    """An animation needs a wheel that walks and a folder."""
+    if animate and cam.mover is None:
+        raise InputError("--animate", _("nothing walks: the cam has no [mover]"), _("leave it out"))
+    if animate and out is None:
+        raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))
+
+
+def _text(part: CamPart) -> str:
+    """A part as it is printed: heading, rows, tables."""
+    text = f"{part.heading}\n\n{output.table(part.rows)}"
+    for table in part.tables:
+        numbers = range(1 if table.named else 0, len(table.header))
+        text += f"\n\n{table.heading}\n\n{output.table(table.lines, table.header, numbers)}"
+    return text
+
+
+def _write(
+    results: CamResults, folder: Path, progress: Progress, *, groove: bool, figures: bool, dark: bool
+) -> None:
+    """Write tables, numbers and figures into a folder."""
+    progress.say(_("writing tables"))
+    datasets = {name: data for part in results.parts.values() for name, data in part.datasets.items()}
+    ct.write_cam_tables(results.cam, datasets, folder)
+    for name, data in datasets.items():
+        ct.write_motion_netcdf(data, folder / f"{name}.nc")
+    if "choice" in results.objects:
+        ct.write_choice(results.objects["choice"], folder)
+    ct.write_cam_outlines(results.cam, results.objects, folder, groove=groove, dxf=_DXF)
+    scalars = {name: one.as_dict() for name, one in results.scalars.items()}
+    text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
+    (folder / "summary.json").write_text(text, encoding="utf-8")
+    if figures:
+        progress.say(_("drawing"))
+        drawn = ct.cam_figures(results.cam, datasets)
+        drawn |= ct.cam_body_figures(results.cam, results.objects, groove=groove)
+        if "choice" in results.objects:
+            drawn |= ct.choice_figures(results.objects["choice"])
+        for number, (name, figure) in enumerate(drawn.items(), start=1):
+            progress.say(_("drawing {name}").format(name=name), number, len(drawn))
+            ct.save_figures({name: ct.darkened(figure) if dark else figure}, folder)
+
+
+def _animate(results: CamResults, folder: Path, progress: Progress, *, dark: bool) -> None:
+    """Write the walking wheel's step into a folder."""
+    name, cam = "walking-wheel.gif", results.cam
+
+    def said(done: int, of: int) -> None:
+        progress.say(_("drawing {name}").format(name=name), done, of)
+
+    wheel = results.objects["wheel"]
+    ct.animate_walking(wheel, folder / name, _(cam.title), cam.display, dark=dark, said=said)

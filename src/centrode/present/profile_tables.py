@@ -1,0 +1,46 @@
+"""Profiles of cams and shoes as CSV."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from centrode.present.shown import shown_as
+from centrode.present.tables import field, unit_of
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Display
+
+
+def write_profile_csv(dataset: xarray.Dataset, path: Path, display: Display | None = None) -> None:
+    """Write a profile as CSV: UTF-8, one line end everywhere, numbers that read back bit for bit.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Of `cam_profile` or `shoe_profile`.
+    display : Display, optional
+        Units of lengths and angles; SI and radians if left out.
+    """
+    headers, columns = [], []
+    for header, values in _columns(dataset):
+        factor, shown = shown_as(unit_of(values), display)
+        headers.append(f"{header} [{shown}]" if shown else header)
+        columns.append((values if factor == 1.0 else values * factor).values.tolist())
+    with Path(path).open("w", encoding="utf-8", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(headers)
+        writer.writerows(map(field, row) for row in zip(*columns, strict=True))
+
+
+def _columns(dataset: xarray.Dataset) -> Iterator[tuple[str, xarray.DataArray]]:
+    """One column for each variable, or each axis of places, in the order of the dataset."""
+    for name, values in dataset.data_vars.items():
+        dims = [str(dim) for dim in values.dims if dim != "sample"]
+        for labels in product(*(values[dim].values.tolist() for dim in dims)):
+            yield "_".join([str(name), *map(str, labels)]), values.sel(dict(zip(dims, labels, strict=True)))

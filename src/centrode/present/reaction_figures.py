@@ -1,0 +1,142 @@
+"""Figures of reactions: joint forces by magnitude, guides and wheels, drives, the frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from centrode.locale import _
+from centrode.present.abscissa import main_abscissa
+from centrode.present.curves import Panel, sheet
+from centrode.present.shown import formula, labelled
+from centrode.present.style import house_style, in_panels, pens
+from centrode.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+Curves = dict[str, Array]
+ALIKE = 1e-9
+"""Magnitudes that differ by less than this share of the greatest are one curve."""
+FORCES = (("guide_normal", "guide"), ("rolling_normal", "rolling"), ("rolling_tangential", "rolling"))
+
+
+def reaction_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str, Figure]:
+    """Figures of reactions, by name.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    dataset : Dataset
+        Of `reactions`.
+
+    Returns
+    -------
+    dict of name -> Figure
+        "joint-forces" (magnitudes), "other-reactions" (guides, teeth, wheels), "balancing" and "frame-force" (all of
+        it, and the part of inertia). What there is none of, or is not determined, is left out.
+    """
+    with house_style():
+        abscissa = main_abscissa(mechanism, dataset)
+        found = {
+            "joint-forces": (_("Forces in the hinges"), _hinges(dataset)),
+            "other-reactions": (_("Reactions of guides, gears and wheels"), _others(dataset)),
+            "balancing": (_("What the drives must give"), _drives(dataset)),
+            "frame-force": (_("Force and moment on the frame"), _frame(dataset)),
+        }
+        return {
+            name: sheet(title, _(mechanism.title), [[panel] for panel in panels], abscissa)
+            for name, (title, panels) in found.items()
+            if panels
+        }
+
+
+def _hinges(dataset: xarray.Dataset) -> list[Panel]:
+    """Magnitudes at the hinges: one curve of a hinge whose sides are alike, else one of each side."""
+    points, labels = dataset["side_point"].to_numpy(), dataset["side"].to_numpy()
+    sizes = _magnitude(dataset["joint_force"])
+    curves: Curves = {}
+    for point in dict.fromkeys(points.tolist()):
+        sides = np.flatnonzero(points == point)
+        first = sizes[:, sides[0]]
+        apart = np.abs(sizes[:, sides] - first[:, None])
+        if np.nanmax(apart, initial=0.0) <= ALIKE * np.nanmax(first, initial=0.0):
+            curves[point] = first
+        else:
+            curves |= {str(labels[k]): sizes[:, k] for k in sides}
+    return _panels("joint_force", curves, split=True)
+
+
+def _others(dataset: xarray.Dataset) -> list[Panel]:
+    forces: Curves = {}
+    for variable, dimension in FORCES:
+        if variable in dataset:
+            forces |= _named(dataset[variable], dimension, "" if variable == "guide_normal" else variable)
+    panels = _panels("guide_normal" if "guide_normal" in dataset else "rolling_normal", forces)
+    if "guide_moment" in dataset:
+        moments = _named(dataset["guide_moment"], "guide", "")
+        panels += _panels("guide_moment", {name: m for name, m in moments.items() if np.any(m)})
+    if "tooth_force" in dataset:
+        teeth = dataset["tooth_force"]
+        sizes = _magnitude(teeth)
+        panels += _panels("tooth_force", dict(zip(teeth["gear"].to_numpy().tolist(), sizes.T, strict=True)))
+    return panels
+
+
+def _named(values: xarray.DataArray, dimension: str, part: str) -> Curves:
+    """Curves by their labels; with what they are in front where that is needed to tell them apart."""
+    word = {"rolling_normal": _("normal"), "rolling_tangential": _("tangential")}.get(part, "")
+    names = values[dimension].to_numpy().tolist()
+    return {f"{name} {word}".rstrip(): values.sel({dimension: name}).to_numpy() for name in names}
+
+
+def _drives(dataset: xarray.Dataset) -> list[Panel]:
+    given = dataset["balancing"]
+    units = str(given.attrs["units"]).split(", ")
+    names = given["drive"].to_numpy().tolist()
+    panels = []
+    for unit in dict.fromkeys(units):
+        of_unit = [name for k, name in enumerate(names) if units[k % len(units)] == unit]
+        panels += _panels("balancing", {name: given.sel(drive=name).to_numpy() for name in of_unit}, unit)
+    return panels
+
+
+def _frame(dataset: xarray.Dataset) -> list[Panel]:
+    whole, inertia = _("all of it"), _("of inertia alone")
+    forces = {whole: _magnitude(dataset["frame_force"]), inertia: _magnitude(dataset["shaking_force"])}
+    moments = {whole: dataset["frame_moment"].to_numpy(), inertia: dataset["shaking_moment"].to_numpy()}
+    return [*_panels("frame_force", forces), *_panels("frame_moment", moments)]
+
+
+def _panels(
+    variable: str, curves: Mapping[str, Array], unit: str = "", *, split: bool = False
+) -> list[Panel]:
+    """One panel of the curves that have numbers, or as many as keep them apart."""
+    known = {name: curve for name, curve in curves.items() if np.isfinite(curve).any()}
+    quantity, drawn = QUANTITIES[variable], pens(known)
+    # a drive along a guide or of a cylinder gives a force
+    symbol = "F_b" if (variable, unit) == ("balancing", "N") else quantity.symbol
+    text = labelled(formula(symbol), unit or quantity.unit)
+    groups: Sequence[Sequence[str]] = in_panels(known) if split else [list(known)]
+    return [
+        Panel(
+            text,
+            unit or quantity.unit,
+            {name: known[name] for name in names},
+            {name: drawn[name] for name in names},
+        )
+        for names in groups
+        if names
+    ]
+
+
+def _magnitude(values: xarray.DataArray) -> Array:
+    parts = values.transpose("axis", ...).to_numpy()
+    return np.asarray(np.hypot(parts[0], parts[1]))

@@ -1,0 +1,93 @@
+"""How far the series reaches, and what its cut leaves out."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.cams.comparison import foretold_error, routes_of
+from centrode.cams.convergence import convergence
+from centrode.cams.curvature_laws import ConstantCurvature, ExponentialCurvature, LinearCurvature
+from centrode.cams.expanded import expanded_path
+from centrode.cams.text_curvature import TextCurvature
+
+EPS = float(np.finfo(np.float64).eps)
+
+
+@pytest.mark.parametrize(("gamma0", "k0"), [(0.0, 10.0), (0.3, 10.0), (-0.4, 30.0), (0.2, 70.0)])
+def test_of_a_circle_the_nearest_singularity_is_known(gamma0: float, k0: float) -> None:
+    """cos(gamma) = 0 where the ray touches the circle: |c| sin(phi - phi_c) = +-R, mostly at complex angles."""
+    x, y = math.sin(gamma0) / k0, 0.05 - math.cos(gamma0) / k0
+    towards = math.atan2(x, y)
+    root = cmath.asin(1.0 / (k0 * math.hypot(x, y)))
+    places = [towards + sign * root + half for sign in (1, -1) for half in (-math.pi, 0.0, math.pi)]
+    places += [towards + sign * (math.pi - root) for sign in (1, -1)]
+    nearest = min(abs(place) for place in places)
+    found = convergence(ConstantCurvature(k0), 0.05, gamma0)
+    assert found.singularity is not None
+    assert found.radius == pytest.approx(nearest, rel=1e3 * EPS)
+    assert found.estimate == pytest.approx(
+        nearest, rel=2e-3
+    )  # 160 coefficients, the next order of 1/n: n^-2 / 4
+
+
+def test_a_circle_about_the_centre_converges_everywhere() -> None:
+    assert convergence(ConstantCurvature(20.0), 0.05).radius == math.inf
+
+
+def test_the_stall_itself_may_be_nearest() -> None:
+    law = ExponentialCurvature(200.0, 0.75)
+    path = expanded_path(law, 0.05)
+    assert path.stall is not None
+    assert convergence(law, 0.05).radius == pytest.approx(path.stall, rel=1e3 * EPS)
+
+
+def test_a_singularity_of_the_law_is_told_by_the_coefficients_only() -> None:
+    """A pole beside the real axis, at 0.3i, where the path has no stall."""
+    found = convergence(TextCurvature("15+0.01/(0.09+phi^2)", -1.0, 1.0), 0.05)
+    assert found.singularity is None
+    assert found.radius == found.estimate == pytest.approx(0.3, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "law", [{"law": "exponential", "k0": 10, "k1": 0.75}, {"law": "linear", "k0": 12, "k1": 6}], ids=str
+)
+@pytest.mark.parametrize("terms", [8, 20, 40])
+def test_foretold_errors_cover_the_true_ones(law: dict[str, object], terms: int) -> None:
+    cam = ct.Cam(kind="cam", curvature=law, start={"radius": 0.05}, range={"to": 1.4})
+    routes = routes_of(cam, terms)
+    phi = np.linspace(0.0, min(1.4, 0.9 * routes.convergence.radius), 57)
+    foretold = foretold_error(routes, phi)
+    true = np.abs(routes.series.radius(phi)[0] - routes.steps.radius(phi)[0])
+    rounding = 0.05 * terms * 1e-13
+    assert np.all(true <= foretold + rounding)
+    # not for nothing: terms of both signs cancel in part, a hundred times too great is still a forecast
+    assert np.max(true) > 100 * rounding
+    assert np.max(foretold) <= 100 * np.max(true)
+
+
+def test_formulas_15_and_16_part_where_the_series_is_cut() -> None:
+    example = ct.example("cam-from-curvature")
+    at = np.radians([30.0, 60.0, 80.0])
+    parts = [np.abs(ct.cam_routes(example, at=at, terms=n).parting.to_numpy()) for n in (10, 20, 40)]
+    assert np.all(parts[0] > 3 * parts[1])
+    assert np.all(parts[1] > 3 * parts[2])
+    errors = np.abs(ct.cam_routes(example, at=at, terms=20).series_error.to_numpy())
+    assert np.all(parts[1] > errors)  # without knowing the path, it tells that the series is off
+
+
+def test_where_the_curvature_is_constant_formula_16_says_nothing() -> None:
+    cam = ct.Cam(kind="cam", curvature={"law": "constant", "k0": 12}, start={"radius": 0.05}, range={"to": 1})
+    found = ct.cam_routes(cam, samples=5)
+    assert np.isnan(found.radius_by_slope).all()
+    assert np.isfinite(found.series_error).all()
+
+
+def test_linear_laws_converge_alike_on_both_sides() -> None:
+    one, other = (convergence(LinearCurvature(10.0, slope), 0.05) for slope in (5.0, -5.0))
+    assert one.singularity is not None and other.singularity is not None
+    assert one.singularity.real == pytest.approx(-other.singularity.real, rel=1e4 * EPS)

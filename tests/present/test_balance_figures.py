@@ -1,0 +1,46 @@
+"""Figures of a balance: what is drawn is what was computed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.patches import Circle
+
+import centrode as ct
+
+
+@pytest.fixture(scope="module")
+def balance() -> ct.Balance:
+    return ct.balance(ct.example("single-cylinder-engine"), to="least", thickness="20 mm")
+
+
+def test_what_is_drawn(balance: ct.Balance) -> None:
+    figures = ct.balance_figures(balance, ct.motion(balance.mechanism))
+    assert list(figures) == ["shaking-hodograph", "shaking-cycle", "shaking-harmonics", "counterweights"]
+    curves = {line.get_label(): line for line in figures["shaking-hodograph"].axes[0].lines}
+    for word, data in (
+        ("without counterweights", balance.before),
+        ("with counterweights", balance.after),
+    ):
+        drawn = np.column_stack([curves[word].get_xdata(), curves[word].get_ydata()])
+        assert np.array_equal(drawn, data.shaking_force)
+    heights = [bar.get_height() for bar in figures["shaking-harmonics"].axes[0].patches]
+    assert heights == [
+        *balance.before.force_harmonic_greatest.values[1:],
+        *balance.after.force_harmonic_greatest.values[1:],
+    ]
+    (one,) = balance.counterweights
+    assert one.disc is not None
+    circles = [patch for patch in figures["counterweights"].axes[0].patches if isinstance(patch, Circle)]
+    disc = max(circles, key=lambda circle: circle.radius)
+    assert disc.radius == 1000 * one.disc  # millimetres
+    assert np.hypot(*disc.center) == pytest.approx(1000 * one.radius, rel=1e-12)
+
+
+def test_a_balanced_mechanism_and_dark_ground(balance: ct.Balance) -> None:
+    """Nothing to draw is no failure."""
+    still = ct.balance(ct.balance(ct.example("in-line-four-bar")).balanced)
+    assert still.counterweights == ()
+    for found in (balance, still):
+        for figure in ct.balance_figures(found, ct.motion(found.mechanism, samples=9)).values():
+            ct.darkened(figure).draw_without_rendering()

@@ -1,0 +1,67 @@
+"""Figures of reactions: hinges by magnitude, guides and wheels, drives, the frame."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import centrode as ct
+from mechanisms import parts_of
+
+
+def names(figure: Figure, panel: int) -> list[str]:
+    legend = figure.axes[panel].get_legend()
+    assert legend is not None
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def test_the_press() -> None:
+    """Action and reaction are one curve; at the loaded pin each side has its own."""
+    press = ct.example("six-bar-press")
+    data = ct.reactions(press, samples=37)
+    figures = ct.reaction_figures(press, data)
+    assert list(figures) == ["joint-forces", "other-reactions", "balancing", "frame-force"]
+    assert names(figures["joint-forces"], 0) == ["O", "A", "B", "C", "D", "H/DH", "H/slider"]
+    drawn = {line.get_label(): line.get_ydata() for line in figures["joint-forces"].axes[0].lines}
+    force = data.joint_force.sel(side="A/OA").to_numpy()
+    assert np.array_equal(drawn["A"], np.hypot(force[:, 0], force[:, 1]))
+    assert figures["balancing"].axes[0].get_ylabel() == "$M_b$, N m"
+    # the guide bears no moment: no panel for it
+    assert [axes.get_ylabel() for axes in figures["other-reactions"].axes] == ["$R_n$, N"]
+
+
+def test_what_is_not_determined_is_not_drawn() -> None:
+    load = {"kind": "torque", "link": "wheel", "value": 3.0}
+    loaded = ct.Mechanism(**{**parts_of(ct.example("rolling-wheel-rod")), "loads": [load]})
+    figures = ct.reaction_figures(loaded, ct.reactions(loaded, samples=9))
+    assert names(figures["joint-forces"], 0) == ["P", "B"]
+    assert names(figures["other-reactions"], 0) == ["B", "wheel tangential"]
+
+
+def test_drives_of_two_kinds_have_a_panel_each() -> None:
+    crane = ct.Mechanism(
+        gravity=[0, -9.81],
+        frame={"points": {"O": [0, 0]}},
+        links={
+            "carriage": {"points": {"A": [0, 0]}, "mass": 4},
+            "AB": {"length": 1, "mass": 2, "shape": "rod"},
+        },
+        guides=[{"point": "A", "on": "frame", "through": "O", "direction": [1, 0], "link": "carriage"}],
+        drives=[{"guide": "A", "law": "t"}, {"link": "AB", "relative_to": "carriage", "law": "0.5*t"}],
+        study={"to": 1.0},
+    )
+    figures = ct.reaction_figures(crane, ct.reactions(crane, 5))
+    assert [axes.get_ylabel() for axes in figures["balancing"].axes] == ["$F_b$, N", "$M_b$, N m"]
+    assert len(figures["other-reactions"].axes) == 2
+
+
+@pytest.mark.parametrize("name", ["a_b_c", "50 %", "#1", "A^2", "$x$"])
+def test_names_are_no_formulas(name: str) -> None:
+    rod = ct.Mechanism(
+        frame={"points": {"O": [0, 0]}},
+        links={name: {"points": {"O": [0, 0], "A": [1, 0]}, "mass": 1, "shape": "rod"}},
+        drives=[{"link": name, "speed": 1}],
+    )
+    for figure in ct.reaction_figures(rod, ct.reactions(rod, samples=5)).values():
+        figure.draw_without_rendering()
