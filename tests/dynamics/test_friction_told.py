@@ -142,6 +142,16 @@ def test_without_friction_nothing_is_said_of_it() -> None:
     assert (zero.friction_power == 0).all()
 
 
+def test_works_do_not_depend_on_the_order_of_the_samples() -> None:
+    machine = rubbing(SLIDER, guide(), hinge())
+    one, other = ct.reactions(machine, 49, 0.0, 5.0), ct.reactions(machine, 49, 5.0, 0.0)
+    assert (one.friction_work > 0).all()
+    assert np.allclose(one.friction_work, other.friction_work, rtol=1e4 * EPS)
+    assert math.isclose(one.attrs["efficiency"], other.attrs["efficiency"], rel_tol=1e4 * EPS)
+    back = rubbing({**SLIDER, "drives": [{"link": "OA", "speed": -2.0}]}, guide(), hinge())
+    assert (ct.reactions(back, 49, -5.0, 0.0).friction_work > 0).all()
+
+
 def test_works_need_a_range() -> None:
     machine = rubbing(SLIDER, guide())
     at = ct.reactions(machine, at=[2.0, 1.0])
