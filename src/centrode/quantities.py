@@ -203,6 +203,8 @@ _ALL = (
     Quantity("generalised_force", "Q", "N m", mark("generalised force"), by_drive=1),
     Quantity("generalised_force_part", "Q", "N m", mark("generalised force of a load"), by_drive=1),
     Quantity("joint_force", "R", "N", mark("force of the pin on the link")),
+    Quantity("joint_moment", "M_j", "N m", mark("moment of the hinge about the centre of the sphere")),
+    Quantity("centre_force", "R_c", "N", mark("force of the centre of the sphere")),
     Quantity("guide_force", "R", "N", mark("force of the guide on its point or slider")),
     Quantity("guide_normal", "R_n", "N", mark("normal force of the guide")),
     Quantity("guide_moment", "M_g", "N m", mark("moment of the guide on its slider")),

@@ -85,8 +85,13 @@ class Burden:
     def in_plane(cls, mechanism: Mechanism) -> Burden:
         """The same as forces on links of the plane; NotComputedYet on the sphere, InputError for what is no force."""
         if mechanism.space == "sphere":
-            what = _("reactions on the sphere are not computed yet")
+            what = _("force polygons on the sphere are not computed yet")
             raise NotComputedYet("space", what, _("describe a plane one"))
+        return cls.for_reactions(mechanism)
+
+    @classmethod
+    def for_reactions(cls, mechanism: Mechanism) -> Burden:
+        """The same as forces on points and links; InputError for what is no force."""
         found = cls.of(mechanism)
         for load in found.loads:
             if any(effort.works is not None for effort in load.efforts):

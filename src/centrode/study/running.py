@@ -102,7 +102,7 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
     if not mechanism.loads and not any(link.mass or link.inertia for link in mechanism.links.values()):
         return None, []
     try:
-        burden = Burden.in_plane(mechanism)
+        burden = Burden.for_reactions(mechanism)
         return reactions_at(solved, burden, pace_of(solved, burden)), []
     except (InputError, NotComputedYet) as missing:
         what = f"{missing.where}: {missing.what}" if missing.where else missing.what

@@ -51,7 +51,7 @@ class Found:
 
 
 def find(solved: Solved, burden: Burden, pace: Pace) -> Found:
-    """Solve for all reactions at the samples of a motion of one planar mechanism.
+    """Solve for all reactions at the samples of a motion of one mechanism.
 
     Raises InputError for a load without a finite amount, or more samples than memory holds.
     """
@@ -60,7 +60,7 @@ def find(solved: Solved, burden: Burden, pace: Pace) -> Found:
     _check_size(scheme, len(pace.acceleration))
     state = State.of(solved, pace.moving)
     system = Kinetostatics.of(scheme, prepared.kinematics.numbers, state, teeth)
-    outer = outer_of(state, burden, pace.acceleration, np.isfinite(state.columns["angle"](0)[1]))
+    outer = outer_of(state, burden, pace.acceleration, state.exists)
     forces, sides = system.forces(outer.pulls), sides_of(prepared.mechanism)
     status = reaction_status(system, solved.status[0])
     residual = float(np.nanmax(solved.residual, initial=0.0))

@@ -53,9 +53,9 @@ def reactions(
     InputError
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
-        Friction by a coefficient, the sphere.
+        Friction by a coefficient.
     """
-    burden = Burden.in_plane(mechanism)
+    burden = Burden.for_reactions(mechanism)
     if speed not in SPEEDS:
         what = _("{name} is not a speed").format(name=f'"{speed}"')
         raise InputError("speed", what, _("use one of {known}").format(known=", ".join(SPEEDS)))
