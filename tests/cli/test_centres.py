@@ -173,7 +173,14 @@ REFUSED = {
     ("centrodes", "crank-rocker", "--link", "XY"): 'there is no link "XY"',
     ("centrodes", "crank-rocker", "--link", "AB", "--against", "AB"): "AB has no centre against itself",
     ("centrodes", "crank-rocker", "--link", "AB", "--samples", "0"): "0 samples were asked for",
-    ("centrodes", "spherical-four-bar", "--link", "BC", "--at", "1"): "curvature is not computed on the sphere",
+    (
+        "centrodes",
+        "spherical-four-bar",
+        "--link",
+        "BC",
+        "--at",
+        "1",
+    ): "curvature is not computed on the sphere",
     ("centrodes", "spherical-four-bar", "--link", "BC", "--against", "XY"): 'there is no link "XY"',
     (
         "centrodes",

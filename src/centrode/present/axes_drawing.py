@@ -95,9 +95,7 @@ def _end(globe: Globe, step: Step) -> Array:
     return -end if flipped else end
 
 
-def _circles(
-    axes: Axes, globe: Globe, step: Step, ends: dict[Pair, Array]
-) -> list[tuple[Array, Array]]:
+def _circles(axes: Axes, globe: Globe, step: Step, ends: dict[Pair, Array]) -> list[tuple[Array, Array]]:
     """The great circles that an axis was found on, drawn; their pieces in front."""
     found: list[tuple[Array, Array]] = []
     for by in step.by:

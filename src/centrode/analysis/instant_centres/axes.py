@@ -50,7 +50,9 @@ def axis_cases(bodies: TurningBodies, pair: Pair) -> Kinds:
     mechanism = bodies.mechanism
     if ordered(pair) in set(rolling_pairs(mechanism, bodies)):
         found[:] = Case.ROLLING
-    if ordered(pair) in {joint.pair for joint in joints_of(mechanism, bodies)}:  # a guide's pole is a hinge too
+    if ordered(pair) in {
+        joint.pair for joint in joints_of(mechanism, bodies)
+    }:  # a guide's pole is a hinge too
         found[:] = Case.HINGE
     found[at_rest(bodies, pair)] = Case.REST
     found[~np.isfinite(spin).all(axis=-1)] = Case.ABSENT

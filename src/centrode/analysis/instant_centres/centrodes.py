@@ -115,7 +115,9 @@ def _tamed(chord: Array, first: Array, last: Array) -> tuple[Array, Array]:
     beyond the place where it ends, and back. Where the curve has a cusp the tangents point against each other.
     """
     reach = 3.0 * np.linalg.norm(chord, axis=-1)
-    onwards = [np.sum(one * other, axis=-1) > 0.0 for one, other in ((first, last), (first, chord), (last, chord))]
+    onwards = [
+        np.sum(one * other, axis=-1) > 0.0 for one, other in ((first, last), (first, chord), (last, chord))
+    ]
     same = np.logical_and.reduce(onwards)
     tamed = []
     for one in (first, last):
@@ -130,7 +132,7 @@ def _arc(curve: Array, rate: Array, pieces: npt.NDArray[np.int32]) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         chord = curve[..., 1:, :] - curve[..., :-1, :]
         first, last = _tamed(chord, rate[..., :-1, :], rate[..., 1:, :])
-        steps = np.zeros(chord.shape[:-1])
+        steps = np.zeros_like(chord[..., 0])
         for node, weight in zip(NODES, WEIGHTS, strict=True):
             t = 0.5 * (node + 1.0)
             slope = 6.0 * t * (1.0 - t) * chord + (1.0 - t) * (1.0 - 3.0 * t) * first

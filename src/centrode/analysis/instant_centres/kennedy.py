@@ -198,7 +198,7 @@ class _Constructing:
                 yield third, self.known[legs[0]], self.known[legs[1]]
 
     def _by_gear(self, gear: Gearing, pair: Pair) -> tuple[Spot | None, int]:
-        """The third centre of a gear: with A, B of the wheels on the carrier, P - A = i (P - B)."""
+        """The third centre of a gear, from those of the other two pairs."""
         legs = {
             "first": ordered((gear.first, gear.carrier)),
             "second": ordered((gear.second, gear.carrier)),
@@ -207,19 +207,10 @@ class _Constructing:
         wanted = next((name for name, leg in legs.items() if leg == pair), None)
         third = next((n for n in (gear.first, gear.second, gear.carrier) if n not in pair), gear.carrier)
         others = [self.known.get(leg) for name, leg in legs.items() if name != wanted]
-        if wanted is None or any(one is None or one.at_infinity for one in others):
+        known = [one for one in others if one is not None]
+        if wanted is None or len(known) < 2:
             return None, third
-        a, b = (complex(one.vector[0], one.vector[1]) / one.vector[2] for one in others if one is not None)
-        ratio = gear.ratio
-        x, w = {
-            "first": (ratio * a + (1.0 - ratio) * b, 1.0),
-            "second": (a - (1.0 - ratio) * b, ratio),
-            "mesh": (a - ratio * b, 1.0 - ratio),
-        }[wanted]
-        error = sum(one.error for one in others if one is not None) * (1.0 + abs(ratio)) * 4.0
-        if abs(x) <= error and abs(w) <= EPS * abs(ratio):
-            return None, third  # equal turns about one axis: at rest
-        return spot(x, w, error), third
+        return self.spots.geared(gear, wanted, known), third
 
     def _borrowed(self, unknown: Sequence[Pair]) -> Derived:
         """A centre from the velocity field, the frame's first, where one line is known already if there is such."""

@@ -47,4 +47,4 @@ def polodes_of(bodies: TurningBodies, pair: Pair) -> Polodes:
 
 def _inside(axes: Array, vector: Array) -> Array:
     """Vectors of the frame in the axes of a body."""
-    return np.einsum("...ij,...i->...j", axes, vector)
+    return np.asarray(np.einsum("...ij,...i->...j", axes, vector))

@@ -7,6 +7,7 @@ the mechanism, which keeps great circles lines, so that small linkages keep thei
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, TypeAlias
@@ -15,7 +16,7 @@ import numpy as np
 
 from centrode.analysis.instant_centres.bodies import Array, Bodies, Named, Pair
 from centrode.analysis.instant_centres.centres import upward
-from centrode.analysis.instant_centres.primary import Joint, place_of
+from centrode.analysis.instant_centres.primary import Gearing, Joint, place_of
 from centrode.analysis.instant_centres.projective import EPS, Spot, Triple, spot
 from centrode.analysis.instant_centres.turning_bodies import TurningBodies, pole_of
 from centrode.model.sphere import unit_vector
@@ -36,6 +37,12 @@ class Spots(Protocol):
 
     def read(self, where: Spot) -> tuple[Where | None, Where | None]:
         """Place of a spot, or the direction in which it lies at infinity."""
+
+    def geared(self, gear: Gearing, wanted: str, known: Sequence[Spot]) -> Spot | None:
+        """The third centre of a gear: of the "first" or the "second" wheel against the carrier, or where they "mesh".
+
+        The two others stand in this order; nothing where they do not tell it.
+        """
 
     def pole(self, pair: Pair) -> Triple:
         """The velocity field of a pair as a place times its spin, in the greatest velocity."""
@@ -70,6 +77,22 @@ class PlaneSpots:
             return None, (towards.real, towards.imag)
         at = self.middle + self.size * x / w
         return (at.real, at.imag), None
+
+    def geared(self, gear: Gearing, wanted: str, known: Sequence[Spot]) -> Spot | None:
+        """With A, B of the wheels on the carrier, P - A = i (P - B)."""
+        if any(one.at_infinity for one in known):
+            return None
+        a, b = (complex(one.vector[0], one.vector[1]) / one.vector[2] for one in known)
+        ratio = gear.ratio
+        x, w = {
+            "first": (ratio * a + (1.0 - ratio) * b, 1.0),
+            "second": (a - (1.0 - ratio) * b, ratio),
+            "mesh": (a - ratio * b, 1.0 - ratio),
+        }[wanted]
+        error = _geared_error(gear, known)
+        if abs(x) <= error and abs(w) <= EPS * abs(ratio):
+            return None  # equal turns about one axis: at rest
+        return spot(x, w, error)
 
     def pole(self, pair: Pair) -> Triple:
         moving, spin = self.bodies.relative(pair)
@@ -121,9 +144,32 @@ class SphereSpots:
         vector *= (1.0 if where.vector[2] >= 0.0 else -1.0) / np.linalg.norm(vector)
         return tuple(map(float, vector)), None
 
+    def geared(self, gear: Gearing, wanted: str, known: Sequence[Spot]) -> Spot | None:
+        """With A, B where the wheels are hinged to the carrier, the wheels turn about A - i B against each other."""
+        pivots = [_hinge(self.bodies, wheel, gear.carrier) for wheel in (gear.first, gear.second)]
+        if wanted != "mesh" or None in pivots:
+            return None
+        a, b = (self.bodies.points[pivot] for pivot in pivots if pivot is not None)
+        axis = a - gear.ratio * b
+        error = _geared_error(gear, known)
+        if np.linalg.norm(axis) <= error:
+            return None  # equal turns about one axis: at rest
+        x, y, w = self.chart @ axis
+        return spot(complex(x, y), float(w), error)
+
     def pole(self, pair: Pair) -> Triple:
         x, y, w = self.chart @ self.bodies.relative(pair) / self.rate
         return float(x), float(y), float(w)
+
+
+def _geared_error(gear: Gearing, known: Sequence[Spot]) -> float:
+    return sum(one.error for one in known) * (1.0 + abs(gear.ratio)) * 4.0
+
+
+def _hinge(bodies: TurningBodies, wheel: int, carrier: int) -> str | None:
+    """The point in which a wheel is hinged to its carrier."""
+    own, held = (bodies.mechanism.points_of(bodies.names[number]) for number in (wheel, carrier))
+    return next((name for name in own if name in held), None)
 
 
 def spots_of(bodies: Named) -> Spots:

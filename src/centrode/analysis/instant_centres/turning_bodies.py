@@ -98,7 +98,7 @@ def _of_one(motion: xr.Dataset) -> TurningBodies:
     spin, spin_rate, speed = (
         _angular(motion, f"angular_{order}", len(names)) for order in (*orders, "velocity")
     )
-    for number, (name, guide) in enumerate(sliders.items(), start=len(names) - len(sliders)):
+    for number, guide in enumerate(sliders.values(), start=len(names) - len(sliders)):
         base = names.index(guide.on)
         slides = [motion[v].sel(guide=guide.id).to_numpy() / math.sin(guide.arc) for v in _slides(orders)]
         pole = axes[:, base] @ np.array(unit_vector(pole_of(mechanism, guide)))
@@ -157,8 +157,8 @@ def pole_of(mechanism: Mechanism, guide: Guide) -> tuple[float, float]:
     pole = guide.pole
     if isinstance(pole, str):
         return mechanism.points_of(guide.on)[pole]
-    x, y = getattr(pole, "at", pole) or (0.0, 0.0)
-    return x, y
+    assert isinstance(pole, tuple)  # a pole cannot be placed
+    return pole
 
 
 def _turned(axis: Array, angle: Array) -> Array:
