@@ -89,7 +89,7 @@ class Quantity:
         """The same quantity on the unit sphere, where displacements along guides are arcs and places plain numbers."""
         powers = _powers(self.unit)
         length = powers.pop("m", 0)
-        if self.name.startswith("slide"):
+        if self.name.startswith("slide") or self.name in ("fixed_arc", "moving_arc"):
             powers = {"rad": length + powers.pop("rad", 0), **powers}
         return replace(self, unit=_unit_text({base: power for base, power in powers.items() if power}))
 
@@ -133,6 +133,7 @@ _ALL = (
     Quantity("centre", "P", "m", mark("instant centre")),
     Quantity("centre_direction", "", "1", mark("direction of an instant centre at infinity")),
     Quantity("centre_case", "", "1", mark("how an instant centre is located")),
+    Quantity("relative_speed", "ω", "rad/s", mark("relative angular velocity")),
     Quantity("fixed_centrode", "P", "m", mark("fixed centrode")),
     Quantity("moving_centrode", "p", "m", mark("moving centrode")),
     Quantity("fixed_arc", "s_P", "m", mark("arc of the fixed centrode")),

@@ -43,6 +43,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
         "centre",
         "centre_direction",
         "centre_case",
+        "relative_speed",
         "fixed_centrode",
         "moving_centrode",
         "fixed_arc",
