@@ -90,7 +90,7 @@ class Quantity:
         """The same quantity on the unit sphere, where displacements along guides are arcs and places plain numbers."""
         powers = _powers(self.unit)
         length = powers.pop("m", 0)
-        if self.name.startswith("slide"):
+        if self.name.startswith("slide") or self.name in ("fixed_arc", "moving_arc"):
             powers = {"rad": length + powers.pop("rad", 0), **powers}
         return replace(self, unit=_unit_text({base: power for base, power in powers.items() if power}))
 
@@ -134,6 +134,7 @@ _ALL = (
     Quantity("centre", "P", "m", mark("instant centre")),
     Quantity("centre_direction", "", "1", mark("direction of an instant centre at infinity")),
     Quantity("centre_case", "", "1", mark("how an instant centre is located")),
+    Quantity("relative_speed", "ω", "rad/s", mark("relative angular velocity")),
     Quantity("fixed_centrode", "P", "m", mark("fixed centrode")),
     Quantity("moving_centrode", "p", "m", mark("moving centrode")),
     Quantity("fixed_arc", "s_P", "m", mark("arc of the fixed centrode")),
@@ -204,6 +205,8 @@ _ALL = (
     Quantity("generalised_force", "Q", "N m", mark("generalised force"), by_drive=1),
     Quantity("generalised_force_part", "Q", "N m", mark("generalised force of a load"), by_drive=1),
     Quantity("joint_force", "R", "N", mark("force of the pin on the link")),
+    Quantity("joint_moment", "M_j", "N m", mark("moment of the hinge about the centre of the sphere")),
+    Quantity("centre_force", "R_c", "N", mark("force of the centre of the sphere")),
     Quantity("guide_force", "R", "N", mark("force of the guide on its point or slider")),
     Quantity("guide_normal", "R_n", "N", mark("normal force of the guide")),
     Quantity("guide_moment", "M_g", "N m", mark("moment of the guide on its slider")),

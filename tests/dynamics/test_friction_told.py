@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from mechanisms import EPS
+from mechanisms import EPS, parts_of
 
 PUSH = {"kind": "force", "point": "B", "vector": [-5, 3]}
 FOUR: dict[str, Any] = {
@@ -241,6 +241,15 @@ def test_what_knows_no_reactions_refuses() -> None:
             compute(machine)
     with pytest.raises(ct.NotComputedYet, match="the real speed of a machine with friction"):
         ct.reactions(machine, speed="steady")
+
+
+def test_there_is_none_on_the_sphere_yet() -> None:
+    parts = parts_of(ct.example("spherical-crank-rocker"))
+    load = {"kind": "friction", "point": "A", "coefficient": 0.1, "radius": 0.01}
+    rocker = ct.Mechanism(**{**parts, "loads": [load]})
+    with pytest.raises(ct.NotComputedYet, match="friction by a coefficient on the sphere"):
+        ct.reactions(rocker, 5)
+    assert "friction_power" not in ct.reactions(rocker, 5, friction=False)
 
 
 def test_the_description_comes_back() -> None:

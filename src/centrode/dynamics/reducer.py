@@ -79,8 +79,7 @@ class Burden:
 
     @classmethod
     def for_reactions(cls, mechanism: Mechanism) -> Burden:
-        """The same as `in_plane` without friction by coefficients, which those who know the reactions add."""
-        _refuse_sphere(mechanism)
+        """The same without friction by coefficients, as forces on points and links; InputError for what is no force."""
         loads = [load for load in mechanism.loads if load.coefficient is None]
         return cls._of(mechanism, None, ARRAYS, loads)._as_forces()
 
@@ -98,7 +97,9 @@ class Burden:
     @classmethod
     def in_plane(cls, mechanism: Mechanism) -> Burden:
         """The same as forces on links of the plane; NotComputedYet on the sphere, InputError for what is no force."""
-        _refuse_sphere(mechanism)
+        if mechanism.space == "sphere":
+            what = _("force polygons on the sphere are not computed yet")
+            raise NotComputedYet("space", what, _("describe a plane one"))
         return cls.of(mechanism)._as_forces()
 
     def _as_forces(self) -> Burden:
@@ -122,12 +123,6 @@ class Burden:
     def needs_law(self) -> bool:
         """Whether a load depends on time or on speeds, so that it matters how the drive moves."""
         return any(effort.needs_law for load in self.loads for effort in load.efforts)
-
-
-def _refuse_sphere(mechanism: Mechanism) -> None:
-    if mechanism.space == "sphere":
-        what = _("reactions on the sphere are not computed yet")
-        raise NotComputedYet("space", what, _("describe a plane one"))
 
 
 class Reducer:

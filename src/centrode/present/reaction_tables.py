@@ -19,6 +19,8 @@ VARIABLES = (
     "drive_rate",
     "balancing",
     "joint_force",
+    "joint_moment",
+    "centre_force",
     "guide_force",
     "guide_normal",
     "guide_moment",

@@ -97,7 +97,7 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
     header = [_("reaction"), _("unit"), _("least"), _("at"), _("greatest"), _("at")]
     rows = []
     for label, unit, values in _reactions(mechanism, found):
-        size = np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values
+        size = np.hypot.reduce(values, axis=1) if values.ndim == 2 else values
         known = np.flatnonzero(np.isfinite(size))
         if not len(known):
             rows.append([label, unit, _("not determined"), "", "", ""])
@@ -114,7 +114,7 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
 
 def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     """The joint force that is greatest over the samples, in one row; none where none is determined."""
-    size = np.hypot(*np.moveaxis(found["joint_force"].to_numpy(), -1, 0))
+    size = np.hypot.reduce(found["joint_force"].to_numpy(), axis=-1)
     if not np.isfinite(size).any():
         return []
     sample, side = np.unravel_index(np.nanargmax(size), size.shape)
@@ -127,25 +127,27 @@ def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
 
 
 def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: int = 0) -> Table:
-    """Header and rows of all reactions at one sample: components, magnitude and direction, or the one number."""
-    header = [_("reaction"), _("unit"), "x", "y", _("magnitude"), _("direction, deg")]
+    """Header and rows of all reactions at one sample: components and magnitude, or the one number.
+
+    In the plane a column of directions follows.
+    """
+    axes = found["axis"].to_numpy().tolist()
+    aside, flat = [""] * len(axes), len(axes) == 2
+    header = [_("reaction"), _("unit"), *axes, _("magnitude"), *([_("direction, deg")] if flat else [])]
     rows = []
     for label, unit, values in _reactions(mechanism, found):
         here = values[sample]
+        noise = ROUNDING * float(np.nanmax(np.abs(values), initial=0.0))
         if not np.all(np.isfinite(here)):
-            rows.append([label, unit, "", "", _missing(found, sample), ""])
-            continue
-        noise = ROUNDING * float(np.nanmax(np.abs(values)))
-        if values.ndim == 1:
-            rows.append([label, unit, "", "", _number(float(here), noise), ""])
-            continue
-        size, direction = (
-            float(np.hypot(*here)),
-            round(float(np.degrees(np.arctan2(here[1], here[0]))), 2) + 0.0,
-        )
-        components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
-        still = size <= noise
-        rows.append([label, unit, *components, _number(size, noise), "" if still else f"{direction:.2f}"])
+            row = [*aside, _missing(found, sample), ""]
+        elif values.ndim == 1:
+            row = [*aside, _number(float(here), noise), ""]
+        else:
+            size = float(np.hypot.reduce(here))
+            components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
+            direction = round(float(np.degrees(np.arctan2(here[1], here[0]))), 2) + 0.0
+            row = [*components, _number(size, noise), "" if size <= noise else f"{direction:.2f}"]
+        rows.append([label, unit, *(row if flat else row[:-1])])
     return header, rows
 
 
@@ -156,9 +158,11 @@ def _missing(found: xarray.Dataset, sample: int) -> str:
 
 
 def _reactions(mechanism: Mechanism, found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
-    """Name, unit and values (samples) or (samples, 2) of everything that a table of reactions shows."""
+    """Name, unit and values (samples) or (samples, axes) of everything that a table of reactions shows."""
     turning = [guide.id for guide in mechanism.guides if guide.link is not None]
     yield from _hinges(found)
+    if "centre_force" in found:
+        yield from _of(found["centre_force"], "held", _("centre on {name}"))
     for variable, dimension, text in (
         ("guide_normal", "guide", _("guide {name}, normal")),
         ("guide_moment", "guide", _("guide {name}, moment")),

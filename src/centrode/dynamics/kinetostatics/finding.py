@@ -67,7 +67,7 @@ class Found:
 
 
 def find(solved: Solved, burden: Burden, pace: Pace, contacts: Sequence[Contact] = ()) -> Found:
-    """Solve for all reactions at the samples of a motion of one planar mechanism.
+    """Solve for all reactions at the samples of a motion of one mechanism.
 
     Raises InputError for a load without a finite amount, more samples than memory holds, or friction in a contact whose
     reaction nothing determines.
@@ -77,7 +77,7 @@ def find(solved: Solved, burden: Burden, pace: Pace, contacts: Sequence[Contact]
     _check_size(scheme, len(pace.acceleration))
     state = State.of(solved, pace.moving)
     system = Kinetostatics.of(scheme, prepared.kinematics.numbers, state, teeth)
-    outer = outer_of(state, burden, pace.acceleration, np.isfinite(state.columns["angle"](0)[1]))
+    outer = outer_of(state, burden, pace.acceleration, state.exists)
     forces, sides = system.forces(outer.pulls), sides_of(prepared.mechanism)
     status = reaction_status(system, solved.status[0])
     residual = float(np.nanmax(solved.residual, initial=0.0))

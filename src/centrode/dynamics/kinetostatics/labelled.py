@@ -16,7 +16,8 @@ from centrode.dynamics.friction.labelled import (
 from centrode.dynamics.kinetostatics.checking import checks_of
 from centrode.dynamics.kinetostatics.finding import Found
 from centrode.dynamics.kinetostatics.moving import rates_of
-from centrode.dynamics.kinetostatics.totals import totals_of
+from centrode.dynamics.kinetostatics.results import centre_forces
+from centrode.dynamics.kinetostatics.totals import joint_moments, totals_of
 from centrode.dynamics.reducer import Burden
 from centrode.errors import Status
 from centrode.kinematics.dataset import (
@@ -32,9 +33,13 @@ from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
+SPATIAL = ("inertia_moment", "frame_moment", "shaking_moment")
+"""Moments that have components on the sphere."""
 GEAR_BODIES = ("first", "second", "carrier")
 DIMENSIONS = {
     "joint_force": ("side", "axis"),
+    "joint_moment": ("side", "axis"),
+    "centre_force": ("held", "axis"),
     "guide_force": ("guide", "axis"),
     "guide_normal": ("guide",),
     "guide_moment": ("guide",),
@@ -64,11 +69,14 @@ def labelled(solved: Solved, burden: Burden, found: Found, whole: bool) -> xr.Da
     # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
     absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
     undetermined = _masked(parts, found)
+    if "centre_force" in parts:
+        parts["joint_moment"] = joint_moments(found, parts["joint_force"])
     for values in parts.values():
         values[absent] = np.nan
     units = units_of_drives(solved)
     variables = {
-        name: named(name, ("sample", *DIMENSIONS[name]), values, units[0]) for name, values in parts.items()
+        name: named(name, ("sample", *_dimensions(name, values)), values, units[0])
+        for name, values in parts.items()
     }
     if len(set(units)) > 1:
         variables["balancing"][2]["units"] = ", ".join("N m" if unit == "rad" else "N" for unit in units)
@@ -86,6 +94,11 @@ def labelled(solved: Solved, burden: Burden, found: Found, whole: bool) -> xr.Da
         coordinates |= friction_coordinates(rubbed.contacts)
         attributes |= friction_attributes(solved, rubbed, powers, whole)
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _dimensions(name: str, values: Array) -> tuple[str, ...]:
+    known = DIMENSIONS[name]
+    return (*known, "axis") if name in SPATIAL and values.ndim > 1 + len(known) else known
 
 
 def _statuses(solved: Solved, found: Found) -> dict[str, Variable]:
@@ -113,6 +126,8 @@ def _coordinates(solved: Solved, burden: Burden, found: Found) -> dict[str, Any]
     coordinates["side"] = labels_of(tuple(side.label for side in found.sides))
     coordinates["side_point"] = (("side",), np.array([side.point for side in found.sides], dtype=str))
     coordinates["side_link"] = (("side",), np.array([side.body for side in found.sides], dtype=str))
+    if "centre_force" in found.parts:
+        coordinates["held"] = labels_of(tuple(centre_forces(found.forces)))
     if mechanism.gears:
         coordinates["gear"] = labels_of(tuple(gear.id for gear in mechanism.gears))
         coordinates["gear_body"] = labels_of(GEAR_BODIES)
@@ -140,6 +155,7 @@ def _names(found: Found) -> dict[str, list[str]]:
     wheels = [f"rolling {wheel.id}" for wheel in mechanism.rolling]
     return {
         "joint_force": [side.label for side in found.sides],
+        "centre_force": [f"centre on {name}" for name in centre_forces(found.forces)],
         "guide_force": [f"guide {guide}" for guide in guides],
         "guide_normal": [f"guide {guide}" for guide in guides],
         "guide_moment": [f"moment of guide {guide}" for guide in guides],
