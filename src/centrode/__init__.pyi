@@ -82,6 +82,7 @@ from .study.reacting import reaction_rows as reaction_rows
 from .study.reacting import reaction_extremes as reaction_extremes
 from .study.reacting import reactions_at_instant as reactions_at_instant
 from .study.reacting import greatest_reaction as greatest_reaction
+from .study.rubbing import friction_losses as friction_losses
 
 # Forces by hand
 from .dynamics.force_polygons.solving import force_polygons as force_polygons

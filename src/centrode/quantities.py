@@ -35,6 +35,7 @@ STATUS_WORDS: Mapping[Status, str] = {
     Status.CUT_OFF: mark("cut off"),
     Status.SINGULAR: mark("singular"),
     Status.UNCONVERGED: mark("unconverged"),
+    Status.SELF_LOCKING: mark("self-locking"),
 }
 
 
@@ -235,6 +236,13 @@ _ALL = (
         "moment_harmonic_amplitude", "M_k", "N m", mark("amplitude of a harmonic of the shaking moment")
     ),
     Quantity("moment_harmonic_phase", "", "rad", mark("phase of a harmonic of the shaking moment")),
+    Quantity("friction_moment", "M_f", "N m", mark("moment of friction on the link")),
+    Quantity("friction_force", "F_f", "N", mark("force of friction along the guide")),
+    Quantity("friction_power", "P_f", "W", mark("power that friction takes")),
+    Quantity("friction_work", "A_f", "J", mark("work that friction takes")),
+    Quantity("friction_turns", "", "1", mark("whether friction changes its sense at the sample")),
+    Quantity("efficiency", "η", "1", mark("efficiency")),
+    Quantity("self_locking", "", "1", mark("whether friction holds the mechanism")),
     Quantity("reaction_status", "", "1", mark("status of the reactions")),
     Quantity("reaction_loss", "", "1", mark("share of the reactions that rounding can make wrong")),
     Quantity("determined", "", "1", mark("whether the constraints determine the force")),

@@ -41,8 +41,8 @@ def reaction_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str,
     -------
     dict of name -> Figure
         "joint-forces" (magnitudes), on the sphere "centre-forces", "other-reactions" (guides, teeth, wheels),
-        "balancing" and "frame-force" (all of it, and the part of inertia). What there is none of, or is not determined,
-        is left out.
+        "balancing", "friction" (by coefficients: its power, the efficiency) and "frame-force" (all of it, and the part
+        of inertia). What there is none of, or is not determined, is left out.
     """
     with house_style():
         abscissa = main_abscissa(mechanism, dataset)
@@ -51,6 +51,7 @@ def reaction_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str,
             "centre-forces": (_("Forces of the centre of the sphere"), _centre(dataset)),
             "other-reactions": (_("Reactions of guides, gears and wheels"), _others(dataset)),
             "balancing": (_("What the drives must give"), _drives(dataset)),
+            "friction": (_("What friction takes"), _friction(dataset)),
             "frame-force": (_("Force and moment on the frame"), _frame(dataset)),
         }
         return {
@@ -121,6 +122,20 @@ def _drives(dataset: xarray.Dataset) -> list[Panel]:
         of_unit = [name for k, name in enumerate(names) if units[k % len(units)] == unit]
         panels += _panels("balancing", {name: given.sel(drive=name).to_numpy() for name in of_unit}, unit)
     return panels
+
+
+def _friction(dataset: xarray.Dataset) -> list[Panel]:
+    """Power that friction takes at each contact, and the efficiency."""
+    if "friction_power" not in dataset:
+        return []
+    power = dataset["friction_power"]
+    powers = {}
+    for label in power["friction"].to_numpy().tolist():
+        guide = label.removeprefix("guide ")
+        name = label if guide == label else _("guide {name}").format(name=guide)
+        powers[name] = power.sel(friction=label).to_numpy()
+    efficiency = {_("efficiency"): dataset["efficiency"].to_numpy()}
+    return [*_panels("friction_power", powers), *_panels("efficiency", efficiency)]
 
 
 def _frame(dataset: xarray.Dataset) -> list[Panel]:

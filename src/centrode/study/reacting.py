@@ -14,6 +14,7 @@ from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import status_word
+from centrode.study.rubbing import friction_rows
 from centrode.study.wording import value_text
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
         known = np.isfinite(found["gear_moment"].to_numpy()).any()
         if gears and known:
             rows.append((_("no tooth force"), _("{gears}: nothing tells the radii").format(gears=gears)))
+    rows += friction_rows(found)
     texts = (_("equilibrium of links"), _("sum over the frame"), _("power balance"))
     words = (
         _("off by {share:.1e} of the greatest force"),
@@ -175,8 +177,23 @@ def _reactions(mechanism: Mechanism, found: xarray.Dataset) -> Iterator[tuple[st
             # a guide without a slider of its own bears no moment
             values = values.sel(guide=turning) if variable == "guide_moment" else values
             yield from _of(values, dimension, text)
+    if "friction" in found.dims:
+        yield from _friction(found)
     yield _("force on the frame"), "N", found["frame_force"].to_numpy()
     yield _("moment on the frame"), "N m", found["frame_moment"].to_numpy()
+
+
+def _friction(found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
+    """Moments and forces of friction, and the efficiency."""
+    for label in found["friction"].to_numpy().tolist():
+        guide = label.removeprefix("guide ")
+        if label == guide:
+            values = found["friction_moment"].sel(bearing=label).to_numpy()
+            yield _("{side}, moment of friction").format(side=label), "N m", values
+        else:
+            values = found["friction_force"].sel(guide=guide).to_numpy()
+            yield _("guide {name}, friction").format(name=guide), "N", values
+    yield _("efficiency"), "", found["efficiency"].to_numpy()
 
 
 def _of(values: xarray.DataArray, dimension: str, text: str) -> Iterator[tuple[str, str, Array]]:

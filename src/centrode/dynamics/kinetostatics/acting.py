@@ -52,11 +52,14 @@ class Outer:
     inertia : of each link that has mass
     moment : (1, n)
         What both do along the path's parameter, by virtual work: power over its rate.
+    shares : (loads, 1, n)
+        What each load does.
     """
 
     loads: tuple[Pull, ...]
     inertia: tuple[InertiaForce, ...]
     moment: Array
+    shares: Array
 
     @property
     def pulls(self) -> tuple[Pull, ...]:
@@ -69,22 +72,22 @@ def outer_of(state: State, burden: Burden, acceleration: Array, known: Any) -> O
 
     Raises InputError for a load without a finite amount although the positions are `known`.
     """
-    pulls, moment = _loads(state, burden.loads, known)
-    inertia, slope = (part.sum(axis=0) for part in shares(state, burden.masses, moment.shape))
-    moment = moment - inertia * acceleration - 0.5 * slope * state.rate**2
-    return Outer(tuple(pulls), _inertia_forces(state, burden.masses, acceleration), moment)
+    pulls, by_load = _loads(state, burden.loads, known)
+    inertia, slope = (part.sum(axis=0) for part in shares(state, burden.masses, by_load.shape[1:]))
+    moment = by_load.sum(axis=0) - inertia * acceleration - 0.5 * slope * state.rate**2
+    return Outer(tuple(pulls), _inertia_forces(state, burden.masses, acceleration), moment, by_load)
 
 
 def _loads(state: State, loads: Sequence[Acting], known: Any) -> tuple[list[Pull], Array]:
     pulls: list[Pull] = []
-    moment = np.zeros((1, len(state.parameter)))
+    done = np.zeros((len(loads), 1, len(state.parameter)))
     with np.errstate(all="ignore"):
-        for load in loads:
+        for k, load in enumerate(loads):
             strengths = load.strengths(state, known)
-            moment = moment + load.along(state, strengths)
+            done[k] = load.along(state, strengths)
             for effort, strength in zip(load.efforts, strengths, strict=True):
                 pulls += [pull.times(strength) for pull in effort.pulls(state)]
-    return pulls, moment
+    return pulls, done
 
 
 def _inertia_forces(state: State, masses: Sequence[Mass], acceleration: Array) -> tuple[InertiaForce, ...]:

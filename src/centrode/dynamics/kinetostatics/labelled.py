@@ -8,9 +8,14 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.jets import Jet
+from centrode.dynamics.friction.labelled import (
+    friction_attributes,
+    friction_coordinates,
+    friction_variables,
+)
 from centrode.dynamics.kinetostatics.checking import checks_of
 from centrode.dynamics.kinetostatics.finding import Found
+from centrode.dynamics.kinetostatics.moving import rates_of
 from centrode.dynamics.kinetostatics.results import centre_forces
 from centrode.dynamics.kinetostatics.totals import joint_moments, totals_of
 from centrode.dynamics.reducer import Burden
@@ -24,7 +29,6 @@ from centrode.kinematics.dataset import (
     named,
     units_of_drives,
 )
-from centrode.kinematics.paths import JETS
 from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
 
@@ -44,6 +48,10 @@ DIMENSIONS = {
     "rolling_force": ("rolling", "axis"),
     "rolling_normal": ("rolling",),
     "rolling_tangential": ("rolling",),
+    "friction_moment": ("bearing",),
+    "friction_force": ("guide",),
+    "friction_power": ("friction",),
+    "efficiency": (),
     "balancing": ("drive",),
     "inertia_force": ("link", "axis"),
     "inertia_moment": ("link",),
@@ -54,10 +62,10 @@ DIMENSIONS = {
 }
 
 
-def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
-    """The dataset of `reactions`."""
+def labelled(solved: Solved, burden: Burden, found: Found, whole: bool) -> xr.Dataset:
+    """The dataset of `reactions`; `whole` where the samples are a range, and works over it have a sense."""
     parts = found.parts | totals_of(found)
-    checks = checks_of(found, _rates(solved, found))
+    checks = checks_of(found, rates_of(solved, found.pace))
     # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
     absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
     undetermined = _masked(parts, found)
@@ -79,7 +87,13 @@ def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
     variables["determined"] = named("determined", ("side",), sides)
     attributes = attributes_of(solved) | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
-    return xr.Dataset(variables, coords=_coordinates(solved, burden, found), attrs=attributes)
+    coordinates = _coordinates(solved, burden, found)
+    if found.rubbing is not None:
+        rubbed, powers = found.rubbing.rubbed, found.rubbing.powers
+        variables |= friction_variables(solved, rubbed, powers, whole)
+        coordinates |= friction_coordinates(rubbed.contacts)
+        attributes |= friction_attributes(solved, rubbed, powers, whole)
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
 def _dimensions(name: str, values: Array) -> tuple[str, ...]:
@@ -87,20 +101,12 @@ def _dimensions(name: str, values: Array) -> tuple[str, ...]:
     return (*known, "axis") if name in SPATIAL and values.ndim > 1 + len(known) else known
 
 
-def _rates(solved: Solved, found: Found) -> Array:
-    """Speeds of the drives (samples, drives)."""
-    path = solved.ready.kinematics.path
-    if not path.by_time:
-        return found.pace.moving.rate[:, None]
-    time = Jet.variable(solved.span.time, 1)
-    values = path.drive_values(JETS, time).values()
-    speeds = [value.derivative(1) if isinstance(value, Jet) else 0.0 for value in values]
-    return np.stack([np.broadcast_to(speed, solved.span.time.shape) for speed in speeds], axis=-1)
-
-
 def _statuses(solved: Solved, found: Found) -> dict[str, Variable]:
     motion = judgements_of(solved, ())["status"]
-    flags = {key: motion[2][key] for key in ("flag_values", "flag_meanings")}
+    flags = {
+        "flag_values": np.array(list(Status), dtype=np.int8),
+        "flag_meanings": " ".join(status.name.lower() for status in Status),
+    }
     dimensions, values, attributes = named("reaction_status", ("sample",), found.status)
     loss = found.forces.system.inverse.loss[0]
     return {
