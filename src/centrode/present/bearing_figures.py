@@ -36,6 +36,8 @@ NAMED = 12
 """Into so many parts a turn of the drive is cut by the values that stand along a hodograph."""
 ROOM = 1.36
 """A panel is so many times as wide as its hodograph: values stand outside it."""
+MOST_SEGMENTS = 90
+"""Of so many parts of a hodograph its texts keep clear."""
 DEPTH = 0.42
 """The deepest wear, over the radius of the circle."""
 JOURNAL, BUSH = PALETTE[0], PALETTE[1]
@@ -145,16 +147,15 @@ def _marks(mechanism: Mechanism, bearings: xarray.Dataset) -> list[tuple[str, tu
     reach = abs(float(values[-1] - values[0]))
     step = turn / NAMED if turn and 0.4 * turn <= reach <= 1.01 * turn else _round_step(reach)
     forward = bool(values[-1] > values[0])
-    grid = step * np.arange(
-        np.ceil(min(values[0], values[-1]) / step - 1e-9), max(values[0], values[-1]) / step + 1e-9
-    )
+    low, high = sorted((float(values[0]), float(values[-1])))
+    grid = step * np.round(np.arange(np.ceil(low / step - 1e-9), high / step + 1e-9))
     whole = turn > 0.0 and abs(reach - turn) < 1e-6 * turn
     found = []
     sense = 1.0 if forward else -1.0
     for value in grid[: NAMED if whole else None].tolist():
         k = int(np.clip(np.searchsorted(sense * values, sense * value), 1, len(values) - 1))
         share = float(np.clip((value - values[k - 1]) / (values[k] - values[k - 1]), 0.0, 1.0))
-        text = f"{value:.4g}{'°' if unit == 'deg' else ''}".replace("-", "−")
+        text = f"{value + 0.0:.4g}{'°' if unit == 'deg' else ''}".replace("-", "−")
         found.append((text, (k - 1, share) if share < 1.0 else (k, 0.0)))
     return found
 
@@ -186,11 +187,13 @@ def _mark(axes: Axes, force: Array, places: dict[str, Array]) -> None:
     low, high = axes.get_xlim()
     height = NAME_POINTS * (high - low) / (72.0 * PANEL)
     apart: dict[str, Array] = {}
+    dots = np.array(list(places.values())).reshape(-1, 2)
+    axes.plot(dots[:, 0], dots[:, 1], "o", color=JOURNAL, markersize=3.2, zorder=4)
     for text, place in places.items():
-        axes.plot(*place[:, None], "o", color=JOURNAL, markersize=3.2, zorder=4)
         if all(np.hypot(*(place - other)) > 1.6 * height for other in apart.values()):
             apart[text] = place
-    segments = [(a, b) for a, b in pairwise(force) if np.isfinite([a, b]).all()]
+    coarse = force[:: max(1, len(force) // MOST_SEGMENTS)]
+    segments = [(a, b) for a, b in pairwise(coarse) if np.isfinite([a, b]).all()]
     for text, centre in label_places(apart, segments, 1.1 * height, height).items():
         axes.text(
             centre[0], centre[1], text, fontsize=NAME_POINTS, color=INK, ha="center", va="center", zorder=5
@@ -206,12 +209,14 @@ def _wear(axes: Axes, one: xarray.Dataset) -> None:
     axes.set_ylim(-reach, reach)
     around = np.linspace(0.0, 2.0 * np.pi, 361)
     axes.plot(np.cos(around), np.sin(around), color=INK, linewidth=1.0, zorder=3)
-    for turn in range(0, 360, 30):
-        way = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn))])
-        axes.plot(*np.outer(way, [0.3, 1.0 + DEPTH]), color=MUTED, linewidth=0.4, zorder=1)
-        if turn % 90 == 0:
-            x, y = (1.0 + DEPTH + 0.14) * way
-            axes.text(x, y, f"{turn}°", fontsize=NAME_POINTS, color=MUTED, ha="center", va="center")
+    ways = np.radians(np.arange(0, 360, 30))[:, None]
+    spokes = np.array([0.3, 1.0 + DEPTH, np.nan])
+    axes.plot(
+        (np.cos(ways) * spokes).ravel(), (np.sin(ways) * spokes).ravel(), color=MUTED, linewidth=0.4, zorder=1
+    )
+    for turn, (x, y) in {0: (1, 0), 90: (0, 1), 180: (-1, 0), 270: (0, -1)}.items():
+        far = 1.0 + DEPTH + 0.14
+        axes.text(far * x, far * y, f"{turn}°", fontsize=NAME_POINTS, color=MUTED, ha="center", va="center")
     wear = one["wear"].transpose("surface", "sector").to_numpy()
     if not np.isfinite(wear).all():
         axes.text(0.0, 0.0, _("no turning\nunder load"), color=MUTED, ha="center", va="center")

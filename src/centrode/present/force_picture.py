@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from centrode.analysis.graphic.board import round_scale
 from centrode.locale import _
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, write_head
-from centrode.present.drawing import draw_drive, draw_frame, draw_hinges, draw_links
+from centrode.present.drawing import draw_frame, draw_hinges, draw_links
 from centrode.present.force_signs import moment_arc
 from centrode.present.obstacles import lines
 from centrode.present.page import Array, Page, View, new_page
@@ -53,7 +53,6 @@ def force_page(mechanism: Mechanism, reactions: xarray.Dataset, motion: xarray.D
     draw_frame(axes, scene, sample)
     draw_links(axes, scene, sample, links)
     draw_hinges(axes, scene, sample, links)
-    draw_drive(axes, scene, sample)
     page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, sample))
     for name, place in places.items():
         page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
@@ -65,7 +64,7 @@ def force_page(mechanism: Mechanism, reactions: xarray.Dataset, motion: xarray.D
             _vector(page, view.mm(places[points[k]]), force[sample, k] / per_mm, label, colour)
     _guides(page, view, reactions.isel(sample=sample), scene, sample, per_mm)
     _moments(page, view, mechanism, reactions.isel(sample=sample), places)
-    factor, unit = shown_as("m", mechanism.display)
+    unit = shown_as("m", mechanism.display)[1]
     head = [
         caption(mechanism, motion, sample),
         f"μ_l = {view.scale:g} {unit} " + _("per mm"),
@@ -142,8 +141,6 @@ def _list(here: xarray.Dataset) -> list[str]:
     units = str(here["balancing"].attrs["units"]).split(", ")
     for k, name in enumerate(here["drive"].to_numpy().tolist()):
         value = float(here["balancing"].to_numpy()[k])
-        found.append(
-            _("drive {name} gives").format(name=plain(name))
-            + f" {value:.5g} {units[k % len(units)]}".replace("-", "−")
-        )
+        text = f"{value:.5g} {units[k % len(units)]}".replace("-", "−")
+        found.append(_("drive {name} gives").format(name=plain(name)) + " " + text)
     return found

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.kinetostatics.reactions import Speed
 from centrode.dynamics.kinetostatics.reactions import reactions as reactions_of
 from centrode.errors import Status
 from centrode.kinematics.several_drives.holding import unit_of_value
@@ -80,9 +81,9 @@ def bearing_loads(mechanism: Mechanism, reactions: xr.Dataset) -> tuple[BearingL
 
     Notes
     -----
-    Extremes of the samples are narrowed down by computing reactions again in between, to 1e-5 of a sample's step: places
-    to this, values of smooth curves to its square times their curvature, and beside a jump to its slope times it. An
-    extreme that no sample is near is missed. Means are by the trapezoid rule over time; what is not reached is left out.
+    Extremes of the samples are narrowed down by computing reactions again in between: places to 1e-4 of the step
+    of samples, values of smooth curves to its square times their curvature, beside a jump to it times their slope. An
+    extreme that no sample is near is missed. Means are by the trapezoid rule over time, of what is reached.
     """
     places, time = places_of(mechanism, reactions), reactions["time"].to_numpy()
     curves = [one for one in each_reaction(mechanism, reactions) if np.isfinite(one[3]).any()]
@@ -135,7 +136,7 @@ def bearing_load_scalars(mechanism: Mechanism, loads: tuple[BearingLoad, ...]) -
     """The same as numbers of a summary, in SI."""
     by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
     unit = unit_of_value(mechanism, mechanism.drives[0]) if by_value else "s"
-    found = {}
+    found: dict[str, Scalar] = {}
     for one in loads:
         found |= {
             f"greatest_{one.key}": Scalar(one.greatest, one.unit),
@@ -187,7 +188,7 @@ def _narrow(mechanism: Mechanism, reactions: xr.Dataset, keys: list[str], tops: 
     """Compute reactions between the ends of every stretch, and go on with the part about the best of them."""
     cuts = [np.linspace(top.low, top.high, PARTS + 1) for top in tops]
     asked, back = np.unique(np.concatenate(cuts), return_inverse=True)
-    speed = "steady" if reactions.attrs.get("rate_from") == "steady" else "mean"
+    speed: Speed = "steady" if reactions.attrs.get("rate_from") == "steady" else "mean"
     there = reactions_of(mechanism, at=asked, speed=speed)
     good = np.isin(there["reaction_status"].to_numpy(), (Status.OK, Status.CUT_OFF))
     found = {key: values for key, _name, _unit, values in each_reaction(mechanism, there, reactions)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -100,9 +100,9 @@ def bearings(
         "load_path": (("bearing",), path.sum(axis=(0, 1))),
         "wear": (("bearing", "surface", "sector"), wear),
     }
-    variables = {name: named(name, dimensions, data) for name, (dimensions, data) in values.items()}
-    variables |= {name: reactions[name].variable for name in ("status", "reaction_status")}
-    coordinates = {
+    variables: dict[str, Any] = {name: reactions[name].variable for name in ("status", "reaction_status")}
+    variables |= {name: named(name, dimensions, data) for name, (dimensions, data) in values.items()}
+    coordinates: dict[str, Any] = {
         name: reactions.coords[name].variable for name in ("time", "drive_value", "drive", "axis")
     } | {
         "bearing": labels_of(tuple(one.label for one in found)),
@@ -176,7 +176,7 @@ def _path(size: Array, turning: Array) -> Array:
 
 
 def _wear(path: Array, places: Array, sectors: int, arc: float) -> Array:
-    """Shares (bearing, surface, sector) of the whole path, each half step spread evenly over the arc about its place."""
+    """Shares (bearing, surface, sector) of the whole path, each half step spread over the arc about its place."""
     weights = np.zeros(places.shape[1:])
     weights[:-1] += path[0]
     weights[1:] += path[1]
@@ -189,7 +189,8 @@ def _wear(path: Array, places: Array, sectors: int, arc: float) -> Array:
             shared = _overlap(away, arc, wide) / arc
             found[:, surface, sector] = np.where(weights > 0.0, weights * shared, 0.0).sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return found / whole[:, None, None]
+        found /= whole[:, None, None]
+    return found
 
 
 def _overlap(away: Array, arc: float, wide: float) -> Array:
