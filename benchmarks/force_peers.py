@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.model.bodies import Link
 from centrode.model.mechanism import Mechanism
 
 Array = npt.NDArray[np.float64]
@@ -27,7 +28,6 @@ def _loaded(module: str, there: bool) -> Any:
     return lazy_loader.load(module) if there else None
 
 
-kinepy_units = _loaded("kinepy.units", HAS_KINEPY)
 kinepy_system = _loaded("kinepy.interface.system", HAS_KINEPY)
 fourbarhinge = _loaded("fourbarhinge", HAS_FOURBARHINGE)
 
@@ -54,14 +54,14 @@ def kinepy_press(press: Mechanism, motion: xr.Dataset, rate: float) -> ForcePeer
     Its second derivatives are differences of neighbouring samples, so the first and the last have none. The load
     that changes with the velocity is given to it as numbers.
     """
-    kinepy_units.SYSTEM.dct[kinepy_units.LENGTH] = kinepy_units.METER
+    units = kinepy_system.units
+    units.SYSTEM.dct[units.LENGTH] = units.METER
     with contextlib.redirect_stdout(io.StringIO()):
         system = kinepy_system.System()
         bodies: dict[str, Any] = {"frame": system.ground}
         for name, link in press.links.items():
             centre = link.coordinates[link.centre] if isinstance(link.centre, str) else (0.0, 0.0)
-            mass, inertia = float(link.mass or 0.0), float(link.inertia or 0.0)
-            bodies[name] = system.add_solid(name, mass, inertia, tuple(map(float, centre)))
+            bodies[name] = system.add_solid(name, *_weight(link), tuple(map(float, centre)))
         joints = {}
         for point, first, second in (
             ("O", "frame", "OA"), ("A", "OA", "AB"), ("B", "AB", "CD"), ("C", "frame", "CD"), ("D", "CD", "DH"),
@@ -103,6 +103,13 @@ def kinepy_press(press: Mechanism, motion: xr.Dataset, rate: float) -> ForcePeer
     )
 
 
+def _weight(link: Link) -> tuple[float, float]:
+    """Mass and moment of inertia."""
+    inertia = link.inertia or 0.0
+    assert isinstance(inertia, float)
+    return float(link.mass or 0.0), inertia
+
+
 def _choose_signs(system: Any, bodies: dict[str, Any], crank: Array, motion: xr.Dataset) -> None:
     """The assembly that is the motion's; raises ValueError if none is."""
     names = list(system._object.signs)
@@ -115,7 +122,7 @@ def _choose_signs(system: Any, bodies: dict[str, Any], crank: Array, motion: xr.
             np.abs(bodies[link].origin.T - motion["position"].sel(point=point).to_numpy()).max()
             for link, point in (("CD", "C"), ("DH", "D"), ("slider", "H"))
         ]
-        if max(apart) < 1e-9:
+        if np.max(apart) < 1e-6:  # not so with NaN among them
             return
     raise ValueError("no assembly of the peer is that of the motion")
 
@@ -134,18 +141,17 @@ def hinge(linkage: Mechanism, motion: xr.Dataset, rate: float) -> ForcePeer:
         assert link.length is not None and link.centre is not None and not isinstance(link.centre, str)
         centre = fourbarhinge.Point(x=float(link.centre[0]), y=float(link.centre[1]))
         bars[which] = fourbarhinge.Bar(
-            length=float(link.length), mass=float(link.mass or 0.0), inertia=float(link.inertia or 0.0),
+            length=float(link.length),
             center_of_mass=centre,
-        )  # fmt: skip
+            **dict(zip(("mass", "inertia"), _weight(link), strict=True)),
+        )
     geometry = fourbarhinge.FourBarGeometry(position_ground=fourbarhinge.Point(x=0.0, y=0.0), bar=bars)
     kinematics = fourbarhinge.FourBarKinematics(geometry, theta_ground=0.0)
     dynamics = fourbarhinge.FourBarDynamics(
         kinematics, gravity=tuple(map(float, linkage.gravity or (0.0, 0.0)))
     )
-    motor, reactions = (
-        fourbarhinge.Actuator(bar=fourbarhinge.BarId.INPUT),
-        fourbarhinge.FourBarReactions(dynamics),
-    )
+    motor = fourbarhinge.Actuator(bar=fourbarhinge.BarId.INPUT)
+    reactions = fourbarhinge.FourBarReactions(dynamics)
     crank = motion["angle"].sel(link="OA").to_numpy().tolist()
     found: list[Any] = []
 

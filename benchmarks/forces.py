@@ -95,7 +95,7 @@ def against_peers() -> Iterator[Row]:
     else:
         yield Row("KinePy", note="left out: it is not installed")
     if force_peers.HAS_FOURBARHINGE:
-        yield _against("four-bar linkage, fourbarhinge", four_bar, force_peers.hinge, SAMPLES)
+        yield _against("four-bar, fourbarhinge", four_bar, force_peers.hinge, SAMPLES)
     else:
         yield Row("fourbarhinge", note="left out: it is not installed")
 
