@@ -106,6 +106,7 @@ def write(
     progress: Progress,
     *,
     figures: bool,
+    loads: tuple[ct.BearingLoad, ...] | None = None,
     over_range: bool = True,
 ) -> None:
     """Write reactions and the table of joints into a folder; over a range worst cases, and figures where asked."""
@@ -117,7 +118,8 @@ def write(
         return
     motion = ct.motion_beside(mechanism, found)
     bearings = ct.bearings(mechanism, found, motion)
-    ct.write_bearing_loads_csv(mechanism, ct.bearing_loads(mechanism, found), folder / "bearing-loads.csv")
+    loads = ct.bearing_loads(mechanism, found) if loads is None else loads
+    ct.write_bearing_loads_csv(mechanism, loads, folder / "bearing-loads.csv")
     ct.write_motion_netcdf(bearings, folder / "bearings.nc")
     if figures:
         progress.say(_("drawing"))

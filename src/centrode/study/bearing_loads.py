@@ -25,9 +25,9 @@ Table: TypeAlias = tuple[list[str], list[list[str]]]
 PARTS = 12
 ROUNDS = 5
 """A stretch about an extreme is cut into so many parts, so often."""
-NEAR = 0.01
-"""Share of the range within which another extreme of the samples may be the greater one between them."""
-TOPS = 4
+BEND = 2.0
+"""How many times its second difference an extreme between samples may be above its sample."""
+TOPS = 6
 """Most extremes of one curve that are looked at."""
 NOISE = 1e-12
 """Values below this share of the greatest are zero."""
@@ -103,7 +103,7 @@ def bearing_loads(mechanism: Mechanism, reactions: xr.Dataset) -> tuple[BearingL
         )
         x, y = high.vector if values.ndim == 2 else (0.0, 0.0)
         direction = float(np.arctan2(y, x)) if values.ndim == 2 and high.value > 0.0 else None
-        mean, rms = _means(time, _size(values))
+        mean, rms = mean_over_time(time, _size(values))
         found.append(
             BearingLoad(key, name, unit, high.value, high.place, direction, low.value, low.place, mean, rms)
         )
@@ -162,13 +162,15 @@ def _size(values: Array) -> Array:
 
 
 def _tops(curve: int, sign: float, places: Array, values: Array) -> list[_Top]:
-    """Samples that no neighbour exceeds and that are near the extreme of all, with their neighbours' places."""
+    """Samples that no neighbour exceeds, where the extreme of all may be, with their neighbours' places."""
     size = sign * _size(values)
     known = np.where(np.isfinite(size), size, -np.inf)
     before, after = np.append(-np.inf, known[:-1]), np.append(known[1:], -np.inf)
-    best, span = float(known.max()), float(np.ptp(size[np.isfinite(size)]))
-    near = np.flatnonzero((known >= before) & (known >= after) & (known >= best - NEAR * span))
-    near = near[np.argsort(-known[near], kind="stable")][:TOPS]
+    # how far it falls on both sides; nothing where it or its neighbour is not known
+    falls = sum(np.nan_to_num(size - sign * _size(np.roll(values, k, axis=0))).clip(min=0.0) for k in (1, -1))
+    hoped = known + BEND * falls
+    near = np.flatnonzero((known >= before) & (known >= after) & (hoped >= known.max()))
+    near = near[np.argsort(-hoped[near], kind="stable")][:TOPS]
     last = len(places) - 1
     return [
         _Top(
@@ -206,8 +208,8 @@ def _best(tops: list[_Top]) -> _Top:
     return max(tops, key=lambda top: top.sign * top.value)
 
 
-def _means(time: Array, size: Array) -> tuple[float, float]:
-    """Mean and root mean square over the stretches between samples that are known."""
+def mean_over_time(time: Array, size: Array) -> tuple[float, float]:
+    """Mean and root mean square of values (n) over the stretches between samples that are known."""
     order = np.argsort(time, kind="stable")
     time, size = time[order], size[order]
     step = np.diff(time)
