@@ -245,6 +245,13 @@ _ALL = (
     Quantity("self_locking", "", "1", mark("whether friction holds the mechanism")),
     Quantity("reaction_status", "", "1", mark("status of the reactions")),
     Quantity("reaction_loss", "", "1", mark("share of the reactions that rounding can make wrong")),
+    Quantity("bearing_load", "R", "N", mark("load of the bearing, of the journal on the bush")),
+    Quantity("load_on_journal", "R", "N", mark("load on the journal in its own axes")),
+    Quantity("load_on_bush", "R", "N", mark("load on the bush in its own axes")),
+    Quantity("relative_turning", "φ", "rad", mark("angle of the journal in the bush")),
+    Quantity("load_path", "", "N", mark("integral of the load over the relative turning")),
+    Quantity("sector", "ψ", "rad", mark("middle of a sector of the surface")),
+    Quantity("wear", "w", "1", mark("share of the wear of the surface")),
     Quantity("determined", "", "1", mark("whether the constraints determine the force")),
     Quantity("turned", "φ", "rad", mark("angle turned in the cycle"), by_drive=-1),
     Quantity(

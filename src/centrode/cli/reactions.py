@@ -79,7 +79,7 @@ def reactions(
             with output.output_folder(out) as draft, Progress() as progress:
                 progress.say(_("solving"))
                 found = solved()
-                write(description, found, draft, progress, figures=not no_figures and not instants)
+                write(description, found, draft, progress, figures=not no_figures, over_range=not instants)
                 names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
     click.echo("\n" + report(description, found, instants))
@@ -103,16 +103,34 @@ def _check(instants: tuple[str, ...], samples: int | None, start: str | None, st
 
 
 def write(
-    mechanism: ct.Mechanism, found: xarray.Dataset, folder: Path, progress: Progress, *, figures: bool
+    mechanism: ct.Mechanism,
+    found: xarray.Dataset,
+    folder: Path,
+    progress: Progress,
+    *,
+    figures: bool,
+    loads: tuple[ct.BearingLoad, ...] | None = None,
+    over_range: bool = True,
 ) -> None:
-    """Write reactions and the table of joints into a folder, and figures where asked."""
+    """Write reactions and the table of joints into a folder; over a range worst cases, and figures where asked."""
     progress.say(_("writing tables"))
     ct.write_reactions_csv(found, folder / "reactions.csv", mechanism.display)
     ct.write_motion_netcdf(found, folder / "reactions.nc")
     ct.write_joint_table_csv(ct.joint_table(mechanism), folder / "joints.csv")
+    if not over_range:
+        return
+    motion = ct.motion_beside(mechanism, found)
+    bearings = ct.bearings(mechanism, found, motion)
+    loads = ct.bearing_loads(mechanism, found) if loads is None else loads
+    ct.write_bearing_loads_csv(mechanism, loads, folder / "bearing-loads.csv")
+    ct.write_motion_netcdf(bearings, folder / "bearings.nc")
     if figures:
         progress.say(_("drawing"))
-        ct.save_figures(ct.reaction_figures(mechanism, found), folder)
+        drawn = ct.reaction_figures(mechanism, found)
+        drawn |= ct.bearing_figures(mechanism, found, bearings, motion)
+        for number, (name, figure) in enumerate(drawn.items(), start=1):
+            progress.say(_("drawing {name}").format(name=name), number, len(drawn))
+            ct.save_figures({name: figure}, folder)
 
 
 def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, ...]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,8 +14,9 @@ from centrode.locale import _
 from centrode.present.abscissa import main_abscissa
 from centrode.present.curves import Panel, sheet
 from centrode.present.shown import formula, labelled
-from centrode.present.style import house_style, in_panels, pens
+from centrode.present.style import DASHES, INK, Pen, house_style, in_panels, pens
 from centrode.quantities import QUANTITIES
+from centrode.study.bearing_loads import mean_over_time
 
 if TYPE_CHECKING:
     import xarray
@@ -120,7 +122,8 @@ def _drives(dataset: xarray.Dataset) -> list[Panel]:
     panels = []
     for unit in dict.fromkeys(units):
         of_unit = [name for k, name in enumerate(names) if units[k % len(units)] == unit]
-        panels += _panels("balancing", {name: given.sel(drive=name).to_numpy() for name in of_unit}, unit)
+        curves = {name: given.sel(drive=name).to_numpy() for name in of_unit}
+        panels += [_with_mean(panel, dataset) for panel in _panels("balancing", curves, unit)]
     return panels
 
 
@@ -136,6 +139,19 @@ def _friction(dataset: xarray.Dataset) -> list[Panel]:
         powers[name] = power.sel(friction=label).to_numpy()
     efficiency = {_("efficiency"): dataset["efficiency"].to_numpy()}
     return [*_panels("friction_power", powers), *_panels("efficiency", efficiency)]
+
+
+def _with_mean(panel: Panel, dataset: xarray.Dataset) -> Panel:
+    """A panel of one curve with its mean over time as a line across; of several it stays as it is."""
+    if len(panel.curves) != 1:
+        return panel
+    (curve,) = panel.curves.values()
+    mean, word = mean_over_time(dataset["time"].to_numpy(), curve)[0], _("mean")
+    return replace(
+        panel,
+        curves={**panel.curves, word: np.where(np.isfinite(curve), mean, np.nan)},
+        pens={**panel.pens, word: Pen(INK, DASHES[1])},
+    )
 
 
 def _frame(dataset: xarray.Dataset) -> list[Panel]:

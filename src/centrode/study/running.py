@@ -21,6 +21,7 @@ from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.structure.dimensions import SPACES
+from centrode.study.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
 from centrode.study.checking import Check, check_of
 from centrode.study.machines import MachineResults, flywheel_scalars, machine_results
 from centrode.study.scalars import Scalar
@@ -41,6 +42,7 @@ class StudyResults:
     coefficients : kinematic coefficients by each drive, where there are several
     machine : energies, flywheel and real motion, where the description has a machine that can be computed
     reactions : forces in every joint at the samples, where the description has masses or loads
+    bearing_loads : greatest, least and mean of each reaction
     scalars : name -> number and SI unit, as `summary.json` holds them
     failure : why the mechanism cannot do what was asked, in a sentence; None if it can
     notes : what a reader should know besides
@@ -54,6 +56,7 @@ class StudyResults:
     coefficients: xr.Dataset | None
     machine: MachineResults | None
     reactions: xr.Dataset | None
+    bearing_loads: tuple[BearingLoad, ...]
     scalars: dict[str, Scalar]
     failure: str | None
     notes: tuple[str, ...]
@@ -71,6 +74,7 @@ def study(
     words = Words(solved)
     machine, notes = _machine(mechanism, samples)
     reactions, lacking = _reactions(mechanism, solved)
+    loads = () if reactions is None else bearing_loads(mechanism, reactions)
     notes = [*_notes(mechanism, solved, words), *notes, *lacking]
     return StudyResults(
         mechanism,
@@ -80,7 +84,10 @@ def study(
         coefficients_of(solved) if _by_each_drive(solved) else None,
         machine,
         reactions,
-        _scalars(checked, solved) | (flywheel_scalars(machine.flywheel) if machine else {}),
+        loads,
+        _scalars(checked, solved)
+        | (flywheel_scalars(machine.flywheel) if machine else {})
+        | bearing_load_scalars(mechanism, loads),
         _failure(solved, words),
         tuple(notes),
         words,

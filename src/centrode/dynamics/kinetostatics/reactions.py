@@ -58,7 +58,7 @@ def reactions(
     InputError
         As `motion` does; masses or loads that are not complete, or none; a formula without a value.
     NotComputedYet
-        Friction by a coefficient on the sphere, or at the real speed.
+        Friction by a coefficient on the sphere, and at the real speed.
     """
     mechanism = mechanism if friction else without_friction(mechanism)
     burden, contacts = Burden.for_reactions(mechanism), contacts_of(mechanism)
