@@ -250,11 +250,11 @@ def test_a_run_says_why_reactions_are_left_out(centrode: Centrode, folder: Path)
     assert not (folder / "s" / "reactions.csv").exists()
 
 
-def test_friction_by_a_coefficient_and_plain_sums_are_refused(centrode: Centrode, folder: Path) -> None:
+def test_friction_that_no_joint_bears_is_refused(centrode: Centrode, folder: Path) -> None:
     example = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
     link = list(ct.example("crank-rocker").links)[-1]
     for keys, message in (
-        ("coefficient = 0.1", "friction by a coefficient needs the reactions"),
+        ("coefficient = 0.1", "friction by a coefficient in a hinge needs the point"),
         ('quadratic = 0.1\nform = "plain sum"', "a plain sum is no moment in a hinge"),
     ):
         (folder / "r.toml").write_text(example.replace('"DB"', f'"{link}"') + keys + "\n")
