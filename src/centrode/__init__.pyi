@@ -82,6 +82,7 @@ from .study.reacting import reaction_rows as reaction_rows
 from .study.reacting import reaction_extremes as reaction_extremes
 from .study.reacting import reactions_at_instant as reactions_at_instant
 from .study.reacting import greatest_reaction as greatest_reaction
+from .study.rubbing import friction_losses as friction_losses
 from .study.bearings import bearings as bearings
 from .study.bearings import motion_beside as motion_beside
 from .study.bearing_loads import bearing_loads as bearing_loads

@@ -14,6 +14,7 @@ from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import status_word
+from centrode.study.rubbing import friction_rows
 from centrode.study.wording import value_text
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
         known = np.isfinite(found["gear_moment"].to_numpy()).any()
         if gears and known:
             rows.append((_("no tooth force"), _("{gears}: nothing tells the radii").format(gears=gears)))
+    rows += friction_rows(found)
     texts = (_("equilibrium of links"), _("sum over the frame"), _("power balance"))
     words = (
         _("off by {share:.1e} of the greatest force"),
@@ -97,7 +99,7 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
     header = [_("reaction"), _("unit"), _("least"), _("at"), _("greatest"), _("at")]
     rows = []
     for _key, label, unit, values in each_reaction(mechanism, found):
-        size = np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values
+        size = np.hypot.reduce(values, axis=1) if values.ndim == 2 else values
         known = np.flatnonzero(np.isfinite(size))
         if not len(known):
             rows.append([label, unit, _("not determined"), "", "", ""])
@@ -114,7 +116,7 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
 
 def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     """The joint force that is greatest over the samples, in one row; none where none is determined."""
-    size = np.hypot(*np.moveaxis(found["joint_force"].to_numpy(), -1, 0))
+    size = np.hypot.reduce(found["joint_force"].to_numpy(), axis=-1)
     if not np.isfinite(size).any():
         return []
     sample, side = np.unravel_index(np.nanargmax(size), size.shape)
@@ -127,25 +129,27 @@ def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
 
 
 def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: int = 0) -> Table:
-    """Header and rows of all reactions at one sample: components, magnitude and direction, or the one number."""
-    header = [_("reaction"), _("unit"), "x", "y", _("magnitude"), _("direction, deg")]
+    """Header and rows of all reactions at one sample: components and magnitude, or the one number.
+
+    In the plane a column of directions follows.
+    """
+    axes = found["axis"].to_numpy().tolist()
+    aside, flat = [""] * len(axes), len(axes) == 2
+    header = [_("reaction"), _("unit"), *axes, _("magnitude"), *([_("direction, deg")] if flat else [])]
     rows = []
     for _key, label, unit, values in each_reaction(mechanism, found):
         here = values[sample]
+        noise = ROUNDING * float(np.nanmax(np.abs(values), initial=0.0))
         if not np.all(np.isfinite(here)):
-            rows.append([label, unit, "", "", _missing(found, sample), ""])
-            continue
-        noise = ROUNDING * float(np.nanmax(np.abs(values)))
-        if values.ndim == 1:
-            rows.append([label, unit, "", "", _number(float(here), noise), ""])
-            continue
-        size, direction = (
-            float(np.hypot(*here)),
-            round(float(np.degrees(np.arctan2(here[1], here[0]))), 2) + 0.0,
-        )
-        components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
-        still = size <= noise
-        rows.append([label, unit, *components, _number(size, noise), "" if still else f"{direction:.2f}"])
+            row = [*aside, _missing(found, sample), ""]
+        elif values.ndim == 1:
+            row = [*aside, _number(float(here), noise), ""]
+        else:
+            size = float(np.hypot.reduce(here))
+            components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
+            direction = round(float(np.degrees(np.arctan2(here[1], here[0]))), 2) + 0.0
+            row = [*components, _number(size, noise), "" if size <= noise else f"{direction:.2f}"]
+        rows.append([label, unit, *(row if flat else row[:-1])])
     return header, rows
 
 
@@ -165,6 +169,8 @@ def each_reaction(
     like = found if like is None else like
     turning = [guide.id for guide in mechanism.guides if guide.link is not None]
     yield from _hinges(found, like)
+    if "centre_force" in found:
+        yield from _of(found["centre_force"], like["centre_force"], "held", _("centre on {name}"))
     for variable, dimension, text in (
         ("guide_normal", "guide", _("guide {name}, normal")),
         ("guide_moment", "guide", _("guide {name}, moment")),
@@ -179,8 +185,28 @@ def each_reaction(
             # a guide without a slider of its own bears no moment
             values = values.sel(guide=turning) if variable == "guide_moment" else values
             yield from _of(values, known, dimension, text)
+    if "friction" in found.dims:
+        yield from _friction(found)
     yield "frame_force", _("force on the frame"), "N", found["frame_force"].to_numpy()
     yield "frame_moment", _("moment on the frame"), "N m", found["frame_moment"].to_numpy()
+
+
+def _friction(found: xarray.Dataset) -> Iterator[Named]:
+    """Moments and forces of friction, and the efficiency."""
+    for label in found["friction"].to_numpy().tolist():
+        guide = label.removeprefix("guide ")
+        if label == guide:
+            values = found["friction_moment"].sel(bearing=label).to_numpy()
+            yield (
+                f"friction_moment_{label}",
+                _("{side}, moment of friction").format(side=label),
+                "N m",
+                values,
+            )
+        else:
+            values = found["friction_force"].sel(guide=guide).to_numpy()
+            yield f"friction_force_{guide}", _("guide {name}, friction").format(name=guide), "N", values
+    yield "efficiency", _("efficiency"), "", found["efficiency"].to_numpy()
 
 
 def _of(values: xarray.DataArray, like: xarray.DataArray, dimension: str, text: str) -> Iterator[Named]:

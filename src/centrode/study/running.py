@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from centrode.dynamics.friction.contacts import contacts_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.reducer import Burden
-from centrode.errors import InputError, MotionError, NotComputedYet, Status
+from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.several_drives.coefficients import coefficients_of, most_samples
@@ -109,11 +110,23 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
     if not mechanism.loads and not any(link.mass or link.inertia for link in mechanism.links.values()):
         return None, []
     try:
-        burden = Burden.in_plane(mechanism)
-        return reactions_at(solved, burden, pace_of(solved, burden)), []
+        burden = Burden.for_reactions(mechanism)
+        found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
+        return found, _jams(found)
     except (InputError, NotComputedYet) as missing:
         what = f"{missing.where}: {missing.what}" if missing.where else missing.what
         return None, [_("reactions are left out: {reason}").format(reason=what)]
+
+
+def _jams(reactions: xr.Dataset) -> list[str]:
+    """A note where friction lets nothing move."""
+    locked = int((reactions["reaction_status"] == Status.SELF_LOCKING).sum())
+    text = ngettext(
+        "self-locking: at {n} sample no drive overcomes the friction",
+        "self-locking: at {n} samples no drive overcomes the friction",
+        locked,
+    )
+    return [text.format(n=locked)] if locked else []
 
 
 def _by_each_drive(solved: Solved) -> bool:
@@ -171,7 +184,7 @@ def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
         **_times(solved),
         "worst_residual": Scalar(float(np.nanmax(solved.residual, initial=0.0)), "1"),
     }
-    for status in Status:
+    for status in STATUSES_OF_MOTION:
         found[f"samples_{status.name.lower()}"] = Scalar(int(np.sum(solved.status == status)), "1")
     for kind in ("limit", "change point"):
         places = dict.fromkeys(event.at for event in solved.events() if event.kind == kind)
