@@ -147,8 +147,12 @@ def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> No
     assert done.code == 0, done
     assert sorted(path.name for path in (folder / "result").glob("*.png")) == [
         "balancing.png",
+        "bearing-loads.png",
+        "bearing-wear.png",
+        "bush-loads.png",
         "frame-force.png",
         "joint-forces.png",
+        "journal-loads.png",
         "other-reactions.png",
     ]
     assert done.rows["not determined"] == "C/wheel; guide C; wheel wheel"

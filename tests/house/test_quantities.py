@@ -93,6 +93,15 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {f"contact_{name}" for name in ("stress", "stress_by_source", "shear", "depth", "half_width")}
     cams |= {"cam_curvature_radius"}
     known |= cams
+    known |= {
+        "bearing_load",
+        "load_on_journal",
+        "load_on_bush",
+        "relative_turning",
+        "load_path",
+        "sector",
+        "wear",
+    }
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

@@ -134,3 +134,32 @@ def test_one_sample() -> None:
     one = found(ct.bearing_loads(turning(), ct.reactions(turning(), at=[1.0])), "joint_force_O/OA")
     assert one.greatest == one.least == one.mean == one.rms
     assert one.at_greatest == 1.0
+
+
+def test_with_friction_and_without() -> None:
+    """Extremes between samples are those of the reactions that were given."""
+    parts = parts_of(ct.example("single-cylinder-engine"))
+    rubbing = {"kind": "friction", "guide": "B", "coefficient": 0.1}
+    engine = ct.Mechanism(**{**parts, "loads": [rubbing]})
+    smooth = ct.bearing_loads(ct.Mechanism(**parts), ct.reactions(ct.Mechanism(**parts), 37))
+    without = ct.bearing_loads(engine, ct.reactions(engine, 37, friction=False))
+    assert [one.key for one in without] == [one.key for one in smooth]
+    for one, other in zip(without, smooth, strict=True):
+        assert abs(one.greatest - other.greatest) <= 1e4 * EPSILON * abs(other.greatest)
+    reactions = ct.reactions(engine, 37)
+    rubbed = found(ct.bearing_loads(engine, reactions), "joint_force_B/rod")
+    there = ct.reactions(engine, at=[rubbed.at_greatest]).joint_force.sel(side="B/rod").to_numpy()[0]
+    assert abs(math.hypot(*there) - rubbed.greatest) <= 1e-9 * rubbed.greatest
+
+
+def test_on_the_sphere() -> None:
+    """Magnitudes of vectors in space; they have no direction in a plane."""
+    linkage = ct.example("spherical-crank-rocker-rigid")
+    reactions = ct.reactions(linkage, 37)
+    one = found(ct.bearing_loads(linkage, reactions), "joint_force_A/AB")
+    dense = ct.reactions(linkage, 36 * 20 + 1).joint_force.sel(side="A/AB").to_numpy()
+    size = np.sqrt((dense**2).sum(axis=-1))
+    assert one.direction is None
+    assert -1e-6 <= (one.greatest - size.max()) / np.abs(np.diff(size, 2)).max() <= 1.0
+    with pytest.raises(ct.NotComputedYet, match="sphere"):
+        ct.bearings(linkage, reactions)

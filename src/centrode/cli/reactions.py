@@ -119,18 +119,20 @@ def write(
     ct.write_joint_table_csv(ct.joint_table(mechanism), folder / "joints.csv")
     if not over_range:
         return
-    motion = ct.motion_beside(mechanism, found)
-    bearings = ct.bearings(mechanism, found, motion)
     loads = ct.bearing_loads(mechanism, found) if loads is None else loads
     ct.write_bearing_loads_csv(mechanism, loads, folder / "bearing-loads.csv")
-    ct.write_motion_netcdf(bearings, folder / "bearings.nc")
+    drawn = {}
     if figures:
         progress.say(_("drawing"))
         drawn = ct.reaction_figures(mechanism, found)
-        drawn |= ct.bearing_figures(mechanism, found, bearings, motion)
-        for number, (name, figure) in enumerate(drawn.items(), start=1):
-            progress.say(_("drawing {name}").format(name=name), number, len(drawn))
-            ct.save_figures({name: figure}, folder)
+    if mechanism.space == "plane":
+        motion = ct.motion_beside(mechanism, found)
+        bearings = ct.bearings(mechanism, found, motion)
+        ct.write_motion_netcdf(bearings, folder / "bearings.nc")
+        drawn |= ct.bearing_figures(mechanism, found, bearings, motion) if figures else {}
+    for number, (name, figure) in enumerate(drawn.items(), start=1):
+        progress.say(_("drawing {name}").format(name=name), number, len(drawn))
+        ct.save_figures({name: figure}, folder)
 
 
 def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, ...]) -> str:

@@ -179,7 +179,7 @@ def _frame_about(axes: Axes, force: Array) -> None:
     axes.set_ylim(middle[1] - half, middle[1] + half)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(Decimals())
-        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
 
 
 def _mark(axes: Axes, force: Array, places: dict[str, Array]) -> None:

@@ -11,7 +11,6 @@ import xarray as xr
 
 from centrode.dynamics.kinetostatics.reactions import Speed
 from centrode.dynamics.kinetostatics.reactions import reactions as reactions_of
-from centrode.errors import Status
 from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -41,7 +40,7 @@ class BearingLoad:
     ----------
     key, name, unit : variable and side, guide or drive; the same in words; N or N m
     greatest, at_greatest : its greatest value, and the value of the drive there [rad or m], or the time [s]
-    direction : direction of a force where it is greatest [rad], in the frame's axes; None of what is no vector
+    direction : direction of a planar force where it is greatest [rad], in the frame's axes; else None
     least, at_least : its least value, and where
     mean, rms : mean, and root of the mean square, over time
     """
@@ -101,8 +100,8 @@ def bearing_loads(mechanism: Mechanism, reactions: xr.Dataset) -> tuple[BearingL
         high, low = (
             _best([top for top in tops if (top.curve, top.sign) == (k, sign)]) for sign in (1.0, -1.0)
         )
-        x, y = high.vector if values.ndim == 2 else (0.0, 0.0)
-        direction = float(np.arctan2(y, x)) if values.ndim == 2 and high.value > 0.0 else None
+        planar = values.ndim == 2 and values.shape[1] == 2 and high.value > 0.0
+        direction = float(np.arctan2(high.vector[1], high.vector[0])) if planar else None
         mean, rms = mean_over_time(time, _size(values))
         found.append(
             BearingLoad(key, name, unit, high.value, high.place, direction, low.value, low.place, mean, rms)
@@ -158,7 +157,8 @@ def _place(mechanism: Mechanism, at: float) -> str:
 
 
 def _size(values: Array) -> Array:
-    return np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values
+    """Magnitudes of vectors (n, axes), the numbers themselves of numbers (n)."""
+    return np.asarray(np.sqrt((values**2).sum(axis=-1))) if values.ndim == 2 else values
 
 
 def _tops(curve: int, sign: float, places: Array, values: Array) -> list[_Top]:
@@ -191,13 +191,13 @@ def _narrow(mechanism: Mechanism, reactions: xr.Dataset, keys: list[str], tops: 
     cuts = [np.linspace(top.low, top.high, PARTS + 1) for top in tops]
     asked, back = np.unique(np.concatenate(cuts), return_inverse=True)
     speed: Speed = "steady" if reactions.attrs.get("rate_from") == "steady" else "mean"
-    there = reactions_of(mechanism, at=asked, speed=speed)
-    good = np.isin(there["reaction_status"].to_numpy(), (Status.OK, Status.CUT_OFF))
+    rubs = any(str(name).startswith("friction_") for name in reactions)
+    there = reactions_of(mechanism, at=asked, speed=speed, friction=rubs)
     found = {key: values for key, _name, _unit, values in each_reaction(mechanism, there, reactions)}
     for top, cut, where in zip(tops, cuts, back.reshape(len(tops), -1), strict=True):
         values = found[keys[top.curve]][where]
         size = top.sign * _size(values)
-        size = np.where(good[where] & np.isfinite(size), size, -np.inf)
+        size = np.where(np.isfinite(size), size, -np.inf)
         k = int(np.argmax(size))
         if size[k] >= top.sign * top.value:
             top.place, top.value, top.vector = float(cut[k]), top.sign * float(size[k]), values[k]

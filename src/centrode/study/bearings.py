@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.dataset import labels_of, named
 from centrode.kinematics.motion import motion
 from centrode.locale import _
@@ -69,6 +69,8 @@ def bearings(
     ------
     InputError
         Less than one or more than 3600 sectors, an arc that is no part of a turn, a motion of other samples.
+    NotComputedYet
+        The sphere.
 
     Notes
     -----
@@ -76,6 +78,9 @@ def bearings(
     and radius. Each sample's part of it is spread evenly over the arc. Kolchin and Demidov, Design of Automotive
     Engines, draw the wear of a crank pin so, with forces alone. The trapezoid rule takes it from sample to sample.
     """
+    if mechanism.space != "plane":
+        what = _("loads of bearings in the axes of their links are not computed on the sphere yet")
+        raise NotComputedYet("space", what, _("the forces are in the reactions"))
     _check(sectors, arc)
     links = _moving(mechanism, reactions, motion_there)
     found = list(_bearings(mechanism, reactions))
