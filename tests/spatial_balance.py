@@ -96,7 +96,9 @@ class Balance:
             else:
                 point = load.point or ""
                 force = np.asarray(load.vector if load.kind == "force" else down() * PUSH, dtype=np.float64)
-                turned = rotation(self.mechanism, self.motion, load.axes) @ force if load.axes != FRAME else force
+                turned = (
+                    rotation(self.mechanism, self.motion, load.axes) @ force if load.axes != FRAME else force
+                )
                 self.add(self.bearer(point, hinges), turned, self.at(point))
 
     def torque(self, load: Any) -> None:
@@ -128,7 +130,12 @@ class Balance:
 
     def reactions(self, found: xr.Dataset) -> None:
         for k, point in enumerate(found.side_point.to_numpy()):
-            self.pair(str(found.side_link[k].item()), f"pin {point}", found.joint_force[:, k].to_numpy(), self.at(point))
+            self.pair(
+                str(found.side_link[k].item()),
+                f"pin {point}",
+                found.joint_force[:, k].to_numpy(),
+                self.at(point),
+            )
         for k, body in enumerate(found.held.to_numpy()):
             self.pair(str(body), FRAME, found.centre_force[:, k].to_numpy())
         hinges = set(found.side_point.to_numpy().tolist())

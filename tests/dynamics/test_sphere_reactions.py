@@ -35,7 +35,11 @@ def test_a_pendulum(arc: float) -> None:
     )  # fmt: skip
     turned = np.linspace(0.0, 6.0, 13)
     found = ct.reactions(pendulum, at=turned)
-    x, y, z = radius * cos(arc) + 0 * turned, radius * sin(arc) * np.cos(turned), radius * sin(arc) * np.sin(turned)
+    x, y, z = (
+        radius * cos(arc) + 0 * turned,
+        radius * sin(arc) * np.cos(turned),
+        radius * sin(arc) * np.sin(turned),
+    )
     away = mass * rate**2
     # moment of weight and inertia about O: r x (0, away y, away z - m g)
     moment = np.cross(np.stack([x, y, z], 1), np.stack([0 * x, away * y, away * z - mass * g], 1))
@@ -127,7 +131,9 @@ def test_hookes_joint(bend: float) -> None:
     assert abs(np.max(other) - sin(a)) <= size / load * 4 / cos(a)
     assert np.min(other) <= size / load * 4 / cos(a)
     # forces in the hinges are those of couples with the radius as their arm
-    assert np.allclose(np.linalg.norm(found.joint_force, axis=2) * 0.05, np.linalg.norm(moment, axis=2), rtol=1e-14)
+    assert np.allclose(
+        np.linalg.norm(found.joint_force, axis=2) * 0.05, np.linalg.norm(moment, axis=2), rtol=1e-14
+    )
 
 
 def crank(**more: Any) -> dict[str, Any]:
@@ -172,7 +178,9 @@ def test_a_guide_beside_a_rocker_is_not_determined() -> None:
     assert not {"A/AB", "B/AB", "B/BC", "centre on AB"} & set(said)
     assert np.isnan(found.guide_force).all()
     assert np.isnan(found.joint_moment.sel(side="C/DC")).all()
-    allowed = ROUNDING * float(np.sqrt(np.max(alone.reaction_loss) / EPS)) * float(np.max(abs(alone.joint_force)))
+    allowed = (
+        ROUNDING * float(np.sqrt(np.max(alone.reaction_loss) / EPS)) * float(np.max(abs(alone.joint_force)))
+    )
     assert np.max(abs(found.balancing - alone.balancing)) <= allowed
     assert np.max(abs(force(found, "B/BC") - force(alone, "B/BC"))) <= allowed
     assert np.max(abs(found.frame_moment - alone.frame_moment)) <= allowed
@@ -267,7 +275,9 @@ def test_what_makes_no_reactions() -> None:
     with pytest.raises(ct.InputError, match="no moment in a hinge"):
         ct.reactions(ct.example("spherical-crank-rocker"))
     parts = crank(by="rocker")
-    parts["loads"] = [{"kind": "friction", "link": "BC", "relative_to": "DC", "coefficient": 0.1, "radius": 0.01}]
+    parts["loads"] = [
+        {"kind": "friction", "link": "BC", "relative_to": "DC", "coefficient": 0.1, "radius": 0.01}
+    ]
     with pytest.raises(ct.InputError):
         ct.reactions(ct.Mechanism(**parts))
 

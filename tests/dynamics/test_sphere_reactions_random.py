@@ -39,7 +39,9 @@ def check(growing: Growing, mechanism: ct.Mechanism, balance: Balance, found: xr
             assert (np.abs(force).max(axis=1) <= limit)[good].all(), body
             # forces on a pin meet in one place
             assert (np.abs(moment).max(axis=1) <= limit)[good].all(), body
-    for name, own, all_outer in zip(("force", "moment"), frame, map(sum, zip(*outer, strict=True)), strict=True):
+    for name, own, all_outer in zip(
+        ("force", "moment"), frame, map(sum, zip(*outer, strict=True)), strict=True
+    ):
         given = found[f"frame_{name}"].to_numpy()
         assert (np.abs(given - own).max(axis=1) <= limit)[good].all()
         # by the law of momentum
