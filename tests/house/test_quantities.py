@@ -39,6 +39,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
     reactions += [f"rolling_{name}" for name in ("force", "normal", "tangential")]
     reactions += [f"{of}_{name}" for of in ("inertia", "frame", "shaking") for name in ("force", "moment")]
     reactions += ["balancing", "determined", "reaction_status", "reaction_loss"]
+    reactions += ["joint_moment", "centre_force"]
     centres = (
         "centre",
         "centre_direction",

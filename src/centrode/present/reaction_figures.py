@@ -41,8 +41,8 @@ def reaction_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str,
     -------
     dict of name -> Figure
         "joint-forces" (magnitudes), on the sphere "joint-components" (x, y and z at the first link of each hinge) and
-        "centre-forces" (magnitudes), "other-reactions" (guides, teeth, wheels), "balancing" and "frame-force" (all of it, and the part of inertia). What there is none of, or is not determined,
-        is left out.
+        "centre-forces" (magnitudes), "other-reactions" (guides, teeth, wheels), "balancing" and "frame-force" (all of
+        it, and the part of inertia). What there is none of, or is not determined, is left out.
     """
     with house_style():
         abscissa = main_abscissa(mechanism, dataset)
