@@ -17,6 +17,14 @@ from spherical_bodies import dot, place
 
 Array = npt.NDArray[np.float64]
 ROUNDING = 256 * EPS
+RING = {
+    "points": ["C", "B"],
+    "length": pi / 4,
+    "centre": "C",
+    "mass": 1.5,
+    "inertia": 0.8,
+    "model": "ring and point mass",
+}
 
 
 def force(found: xr.Dataset, side: str) -> Array:
@@ -286,16 +294,9 @@ def test_what_makes_no_reactions() -> None:
 
 def test_rings_and_inertia_without_mass() -> None:
     """The moment of momentum of a ring of a moving coupler is I (w . e) e, of a ball without mass I w."""
-    ring = {"model": "ring and point mass"}
     parts = crank(by="rocker", loads=[], gravity=[1.0, -9.0, 3.0])
     parts["links"]["AB"] |= {"inertia": [0.3, 0.5, 0.7]}
-    parts["links"]["BC"] = {
-        "points": ["C", "B"],
-        "length": pi / 4,
-        "centre": "C",
-        "mass": 1.5,
-        "inertia": 0.8,
-    } | ring
+    parts["links"]["BC"] = RING
     parts["links"]["DC"] |= {"inertia": 0.6}
     mechanism = ct.Mechanism(**parts)
     values = np.linspace(0.1, 6.0, 15)
@@ -319,11 +320,15 @@ def test_rings_and_inertia_without_mass() -> None:
     assert np.array_equal(found.inertia_force.sel(link=["AB", "DC"]), np.zeros((15, 2, 3)))
 
 
-def test_steady_motion() -> None:
+@pytest.mark.parametrize("ring", [False, True])
+def test_steady_motion(ring: bool) -> None:
     """At the real speed of a machine the drive gives J q'' + J' q'^2/2 - M, and bearings what that motion asks for."""
     torque = {"kind": "torque", "link": "DC", "value": "-2*v - 0.5*v*abs(v)"}
     machine = {"mean_speed": 5.0, "fluctuation": 0.05}
-    mechanism = ct.Mechanism(**crank(by="rocker", machine=machine, loads=[torque]))
+    parts = crank(by="rocker", machine=machine, loads=[torque])
+    if ring:
+        parts["links"]["BC"] = RING
+    mechanism = ct.Mechanism(**parts)
     found, steady = ct.reactions(mechanism, 25, speed="steady"), ct.steady_motion(mechanism, 25)
     rate, bend = steady.drive_speed.to_numpy(), steady.drive_acceleration.to_numpy()
     reduced = Reducer.of(mechanism).at(found.drive_value.to_numpy()[:, 0], rate)
