@@ -40,9 +40,7 @@ speed = 1.0
 
 
 @settings(max_examples=25, deadline=None)
-@given(
-    st.floats(10, 80), st.floats(10, 80), st.floats(0.5, 2.5), st.floats(-2, 2), st.floats(-3, 3)
-)
+@given(st.floats(10, 80), st.floats(10, 80), st.floats(0.5, 2.5), st.floats(-2, 2), st.floats(-3, 3))
 def test_wheels_turn_in_their_ratio_and_do_not_slip(
     first: float, second: float, shafts: float, start: float, stand: float
 ) -> None:
