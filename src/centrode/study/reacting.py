@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -94,14 +94,18 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
     """Header and rows: least and greatest of each reaction over the samples, and where; forces by their magnitude."""
     header = [_("reaction"), _("unit"), _("least"), _("at"), _("greatest"), _("at")]
     rows = []
-    for label, unit, values in _reactions(mechanism, found):
+    shown = list(_reactions(mechanism, found))
+    noises = _noises(shown)
+    for label, unit, values in shown:
         size = np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values
         known = np.flatnonzero(np.isfinite(size))
         if not len(known):
             rows.append([label, unit, _("not determined"), "", "", ""])
             continue
-        low, high = (int(known[which(size[known])]) for which in (np.argmin, np.argmax))
-        noise = ROUNDING * float(np.max(np.abs(size[known])))
+        noise = noises[unit]
+        # of values that are alike but for rounding the first
+        low = int(known[np.argmax(size[known] <= np.min(size[known]) + noise)])
+        high = int(known[np.argmax(size[known] >= np.max(size[known]) - noise)])
         cells = []
         for k in (low, high):
             still = abs(float(size[high] - size[low])) <= noise
@@ -128,12 +132,14 @@ def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: in
     """Header and rows of all reactions at one sample: components, magnitude and direction, or the one number."""
     header = [_("reaction"), _("unit"), "x", "y", _("magnitude"), _("direction, deg")]
     rows = []
-    for label, unit, values in _reactions(mechanism, found):
+    shown = list(_reactions(mechanism, found))
+    noises = _noises(shown)
+    for label, unit, values in shown:
         here = values[sample]
         if not np.all(np.isfinite(here)):
             rows.append([label, unit, "", "", _missing(found, sample), ""])
             continue
-        noise = ROUNDING * float(np.nanmax(np.abs(values)))
+        noise = noises[unit]
         if values.ndim == 1:
             rows.append([label, unit, "", "", _number(float(here), noise), ""])
             continue
@@ -145,6 +151,15 @@ def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: in
         still = size <= noise
         rows.append([label, unit, *components, _number(size, noise), "" if still else f"{direction:.2f}"])
     return header, rows
+
+
+def _noises(shown: Iterable[tuple[str, str, Array]]) -> dict[str, float]:
+    """Unit -> what is rounding in that unit, over all reactions that are shown."""
+    found: dict[str, float] = {}
+    for _label, unit, values in shown:
+        greatest = float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
+        found[unit] = max(found.get(unit, 0.0), ROUNDING * greatest)
+    return found
 
 
 def _missing(found: xarray.Dataset, sample: int) -> str:
