@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -177,6 +178,21 @@ def test_of_values_alike_the_first_is_named() -> None:
     assert np.isclose(size[0], size[-1], rtol=1e-12) and np.max(size) == max(size[0], size[-1])
     rows = {row[0]: row for row in ct.reaction_extremes(press, found)[1]}
     assert rows["force on the frame"][5] == "219.1 deg"
+
+
+def test_extremes_of_a_drive_by_a_law_are_told_by_their_time(centrode: Centrode, folder: Path) -> None:
+    """A drive that turns back passes its values more than once; --at takes a time too."""
+    text = ct.example_text("in-line-four-bar").replace('speed = "500 rpm"', 'law = "sin(2*t)"')
+    (folder / "l.toml").write_text(text + "\n[study]\nto = 3\n")
+    done = centrode("reactions", "l.toml", "--samples", 31)
+    assert done.code == 0, done
+    line = next(line for line in done.out.splitlines() if line.startswith("A: "))
+    match = re.search(r"(\S+) +(\S+) s$", line)
+    assert match
+    greatest, time = match.groups()
+    there = centrode("reactions", "l.toml", "--at", f"{time} s").out
+    row = next(line for line in there.splitlines() if line.startswith("A: "))
+    assert math.isclose(float(row.split()[-2]), float(greatest), rel_tol=1e-5)
 
 
 def test_the_real_speed_of_a_machine(centrode: Centrode) -> None:

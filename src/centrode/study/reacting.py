@@ -233,8 +233,8 @@ def _number(value: float, noise: float) -> str:
 
 
 def _place(mechanism: Mechanism, found: xarray.Dataset, sample: int) -> str:
-    """The drive's value at a sample, or with several drives the time."""
-    if len(mechanism.drives) > 1:
+    """The drive's value at a sample; with several drives, or one by a law, the time: what instants are asked for by."""
+    if len(mechanism.drives) > 1 or mechanism.drives[0].speed is None:
         return f"{float(found['time'].to_numpy()[sample]):.6g} s"
     unit = unit_of_value(mechanism, mechanism.drives[0])
     return value_text(float(found["drive_value"].to_numpy()[sample, 0]), unit, mechanism.display)
