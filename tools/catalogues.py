@@ -83,7 +83,7 @@ def extracted() -> Catalog:
         place = file.relative_to(ROOT).as_posix()
         for line, message, _comments, _context in extract_from_file("python", file, keywords=KEYWORDS):
             catalogue.add(message, locations=[(place, line)])
-    for file in sorted((CODE / "model" / "examples").glob("*.toml")):
+    for file in sorted((CODE / "model" / "examples").rglob("*.toml")):
         title = tomllib.loads(file.read_text(encoding="utf-8")).get("title")
         if title:
             catalogue.add(title, locations=[(file.relative_to(ROOT).as_posix(), 1)])

@@ -82,6 +82,13 @@ from .study.reacting import reaction_rows as reaction_rows
 from .study.reacting import reaction_extremes as reaction_extremes
 from .study.reacting import reactions_at_instant as reactions_at_instant
 from .study.reacting import greatest_reaction as greatest_reaction
+from .study.rubbing import friction_losses as friction_losses
+from .study.bearings import bearings as bearings
+from .study.bearings import motion_beside as motion_beside
+from .study.bearing_loads import bearing_loads as bearing_loads
+from .study.bearing_loads import BearingLoad as BearingLoad
+from .study.bearing_loads import bearing_load_rows as bearing_load_rows
+from .study.bearing_loads import bearing_load_scalars as bearing_load_scalars
 
 # Forces by hand
 from .dynamics.force_polygons.solving import force_polygons as force_polygons
@@ -228,6 +235,8 @@ from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
 from .present import reduction_figures as reduction_figures
 from .present import reaction_figures as reaction_figures
+from .present import bearing_figures as bearing_figures
+from .present import write_bearing_loads_csv as write_bearing_loads_csv
 from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures

@@ -35,6 +35,7 @@ STATUS_WORDS: Mapping[Status, str] = {
     Status.CUT_OFF: mark("cut off"),
     Status.SINGULAR: mark("singular"),
     Status.UNCONVERGED: mark("unconverged"),
+    Status.SELF_LOCKING: mark("self-locking"),
 }
 
 
@@ -89,7 +90,7 @@ class Quantity:
         """The same quantity on the unit sphere, where displacements along guides are arcs and places plain numbers."""
         powers = _powers(self.unit)
         length = powers.pop("m", 0)
-        if self.name.startswith("slide"):
+        if self.name.startswith("slide") or self.name in ("fixed_arc", "moving_arc"):
             powers = {"rad": length + powers.pop("rad", 0), **powers}
         return replace(self, unit=_unit_text({base: power for base, power in powers.items() if power}))
 
@@ -133,6 +134,7 @@ _ALL = (
     Quantity("centre", "P", "m", mark("instant centre")),
     Quantity("centre_direction", "", "1", mark("direction of an instant centre at infinity")),
     Quantity("centre_case", "", "1", mark("how an instant centre is located")),
+    Quantity("relative_speed", "ω", "rad/s", mark("relative angular velocity")),
     Quantity("fixed_centrode", "P", "m", mark("fixed centrode")),
     Quantity("moving_centrode", "p", "m", mark("moving centrode")),
     Quantity("fixed_arc", "s_P", "m", mark("arc of the fixed centrode")),
@@ -203,6 +205,8 @@ _ALL = (
     Quantity("generalised_force", "Q", "N m", mark("generalised force"), by_drive=1),
     Quantity("generalised_force_part", "Q", "N m", mark("generalised force of a load"), by_drive=1),
     Quantity("joint_force", "R", "N", mark("force of the pin on the link")),
+    Quantity("joint_moment", "M_j", "N m", mark("moment of the hinge about the centre of the sphere")),
+    Quantity("centre_force", "R_c", "N", mark("force of the centre of the sphere")),
     Quantity("guide_force", "R", "N", mark("force of the guide on its point or slider")),
     Quantity("guide_normal", "R_n", "N", mark("normal force of the guide")),
     Quantity("guide_moment", "M_g", "N m", mark("moment of the guide on its slider")),
@@ -232,8 +236,22 @@ _ALL = (
         "moment_harmonic_amplitude", "M_k", "N m", mark("amplitude of a harmonic of the shaking moment")
     ),
     Quantity("moment_harmonic_phase", "", "rad", mark("phase of a harmonic of the shaking moment")),
+    Quantity("friction_moment", "M_f", "N m", mark("moment of friction on the link")),
+    Quantity("friction_force", "F_f", "N", mark("force of friction along the guide")),
+    Quantity("friction_power", "P_f", "W", mark("power that friction takes")),
+    Quantity("friction_work", "A_f", "J", mark("work that friction takes")),
+    Quantity("friction_turns", "", "1", mark("whether friction changes its sense at the sample")),
+    Quantity("efficiency", "η", "1", mark("efficiency")),
+    Quantity("self_locking", "", "1", mark("whether friction holds the mechanism")),
     Quantity("reaction_status", "", "1", mark("status of the reactions")),
     Quantity("reaction_loss", "", "1", mark("share of the reactions that rounding can make wrong")),
+    Quantity("bearing_load", "R", "N", mark("load of the bearing, of the journal on the bush")),
+    Quantity("load_on_journal", "R", "N", mark("load on the journal in its own axes")),
+    Quantity("load_on_bush", "R", "N", mark("load on the bush in its own axes")),
+    Quantity("relative_turning", "φ", "rad", mark("angle of the journal in the bush")),
+    Quantity("load_path", "", "N", mark("integral of the load over the relative turning")),
+    Quantity("sector", "ψ", "rad", mark("middle of a sector of the surface")),
+    Quantity("wear", "w", "1", mark("share of the wear of the surface")),
     Quantity("determined", "", "1", mark("whether the constraints determine the force")),
     Quantity("turned", "φ", "rad", mark("angle turned in the cycle"), by_drive=-1),
     Quantity(

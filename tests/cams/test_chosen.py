@@ -125,6 +125,34 @@ def test_letters_of_a_formula_are_chosen() -> None:
     assert sizes[0] == pytest.approx(sizes[1], rel=1e-7)
 
 
+WILD = """
+kind = "cam"
+curvature = {{ law = "formula", formula = "{formula}", constants = {{ a = 18, b = 1.5 }} }}
+start = {{ radius = 0.05 }}
+range = {{ to = 1 }}
+{roller}
+[choose]
+minimise = "{minimise}"
+lift = 0.002
+[choose.parameters]
+"curvature.constants.a" = [5, 40]
+"curvature.constants.b" = [0.2, 2]
+"""
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("formula", ["a*sqrt(b-phi)", "a/(b-phi)", "a-30*b*phi", "a*log(b+phi)"])
+@pytest.mark.parametrize(
+    ("minimise", "roller"), [("size", ""), ("pressure_angle", "roller = { radius = 0.01 }")]
+)
+def test_laws_that_are_none_in_much_of_the_box(formula: str, minimise: str, roller: str) -> None:
+    """No curvature, an infinite or a negative one: such designs are left, the chosen one is a cam."""
+    found = choose_cam(ct.parse_cam(WILD.format(formula=formula, minimise=minimise, roller=roller)))
+    assert found.choice.admissible
+    assert found.proof.excess <= 1e-8
+    assert found.proof.better is None
+
+
 def test_a_linear_law_and_a_roller_on_one_side() -> None:
     cam = Cam(
         kind="cam",

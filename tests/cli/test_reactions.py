@@ -59,6 +59,8 @@ def test_the_press(centrode: Centrode, folder: Path) -> None:
     assert done.rows["samples"] == "37: ok 37"
     assert "not determined" not in done.rows
     assert sorted(path.name for path in (folder / "result").iterdir()) == [
+        "bearing-loads.csv",
+        "bearings.nc",
         "joints.csv",
         "reactions.csv",
         "reactions.nc",

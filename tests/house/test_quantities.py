@@ -38,11 +38,13 @@ def test_every_variable_of_a_motion_is_named() -> None:
     reactions = ["joint_force", "guide_force", "guide_normal", "guide_moment", "gear_moment", "tooth_force"]
     reactions += [f"rolling_{name}" for name in ("force", "normal", "tangential")]
     reactions += [f"{of}_{name}" for of in ("inertia", "frame", "shaking") for name in ("force", "moment")]
-    reactions += ["balancing", "determined", "reaction_status", "reaction_loss"]
+    reactions += [f"friction_{name}" for name in ("moment", "force", "power", "work", "turns")]
+    reactions += ["efficiency", "self_locking", "balancing", "determined", "reaction_status", "reaction_loss"]
     centres = (
         "centre",
         "centre_direction",
         "centre_case",
+        "relative_speed",
         "fixed_centrode",
         "moving_centrode",
         "fixed_arc",
@@ -87,6 +89,8 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {"path_curvature", "profile", "profile_radius", "profile_angle", "profile_bend", "groove"}
     cams |= {f"shoe_{name}" for name in ("profile", "radius", "angle", "bend", "along", "upright")}
     cams |= {"hub_travel", "hub_rate"}
+    cams |= {f"contact_{name}" for name in ("stress", "stress_by_source", "shear", "depth", "half_width")}
+    cams |= {"cam_curvature_radius"}
     known |= cams
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())

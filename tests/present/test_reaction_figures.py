@@ -65,3 +65,25 @@ def test_names_are_no_formulas(name: str) -> None:
     )
     for figure in ct.reaction_figures(rod, ct.reactions(rod, samples=5)).values():
         figure.draw_without_rendering()
+
+
+def test_friction_has_a_figure() -> None:
+    sled = ct.Mechanism(
+        frame={"points": {"O": [0, 0]}},
+        links={"OA": {"length": 1}, "AB": {"length": 3}},
+        guides=[{"point": "B", "on": "frame", "through": "O", "direction": [1, 0]}],
+        drives=[{"link": "OA", "speed": 2.0}],
+        loads=[
+            {"kind": "force", "guide": "B", "value": -5},
+            {"kind": "friction", "guide": "B", "coefficient": 0.1},
+            {"kind": "friction", "point": "A", "coefficient": 0.1, "radius": 0.1},
+        ],
+        assembly={"sides": {"B": "ahead"}},
+    )
+    data = ct.reactions(sled, 25)
+    figures = ct.reaction_figures(sled, data)
+    power, efficiency = figures["friction"].axes
+    assert names(figures["friction"], 0) == ["guide B", "A/AB"]
+    drawn = {line.get_label(): line.get_ydata() for line in power.lines}
+    assert np.array_equal(drawn["A/AB"], data.friction_power.sel(friction="A/AB"))
+    assert (power.get_ylabel(), efficiency.get_ylabel()) == ("$P_f$, W", "$η$")

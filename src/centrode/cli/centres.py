@@ -26,7 +26,7 @@ MOST_ROWS = 300
 """Centres of one place that are printed without being asked for by name."""
 
 
-@click.command(help=mark("Find the instant centres of velocity of every pair of links."))
+@click.command(help=mark("Find the instant centres (on the sphere, axes) of every pair of links."))
 @mechanism_argument
 @click.option(
     "--at",
@@ -147,7 +147,7 @@ def _text(
 ) -> str:
     """A heading with the place and a table of its centres; of pairs asked for also what they were found from."""
     rows = ct.centres_rows(description, found, sample, names, made)
-    text = f"{ct.place_words(description, motion, sample)}\n{output.table(rows, ct.centres_header())}"
+    text = f"{ct.place_words(description, motion, sample)}\n{output.table(rows, ct.centres_header(found))}"
     if asked is None or made is None:
         return text
     steps = [_unbroken(step) for step in ct.steps_leading_to(made, asked)]

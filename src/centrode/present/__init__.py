@@ -15,6 +15,8 @@ from centrode.locale import _
 if TYPE_CHECKING:
     from centrode.present.balance_figures import balance_figures
     from centrode.present.balance_tables import write_balance_csv, write_harmonics_csv
+    from centrode.present.bearing_figures import bearing_figures
+    from centrode.present.bearing_tables import write_bearing_loads_csv
     from centrode.present.cam_bodies import cam_body_figures
     from centrode.present.cam_choice import choice_figures, trade_off_figure
     from centrode.present.cam_choice_tables import write_choice
@@ -96,6 +98,7 @@ __all__ = [
     "integration_figures",
     "motion_figures",
     "motion_table",
+    "bearing_figures",
     "reaction_figures",
     "reduction_figures",
     "plan_figure",
@@ -124,6 +127,7 @@ __all__ = [
     "write_joint_table_csv",
     "write_motion_csv",
     "write_motion_netcdf",
+    "write_bearing_loads_csv",
     "write_reactions_csv",
     "write_reduction_csv",
     "write_region_csv",
@@ -162,6 +166,8 @@ _attached, __dir__, _names = lazy_loader.attach(
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
         "polygon_drawing": ["polygon_figures"],
+        "bearing_figures": ["bearing_figures"],
+        "bearing_tables": ["write_bearing_loads_csv"],
         "reaction_figures": ["reaction_figures"],
         "reaction_tables": ["write_joint_table_csv", "write_reactions_csv"],
         "reading": ["scene_of"],

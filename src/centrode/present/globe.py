@@ -45,15 +45,15 @@ class Globe(Sheet):
         return np.asarray(places @ self.view[2] >= 0.0)
 
     def carried(self, link: str, local: Array, sample: int) -> Array | None:
-        """Where a place in a link's own axes is; nothing if the link has no position, or one point alone."""
+        """Where places (..., 3) in a link's own axes are; nothing if it has no position, or one point alone."""
         if link == "frame":
             return local
         inside = [np.array(unit_vector(at)) for at in self.mechanism.links[link].coordinates.values()]
         outside = [self.tracks[name][sample] for name in self.mechanism.links[link].coordinates]
         if len(inside) < 2 or not np.isfinite(outside[:2]).all():
             return None
-        weights = np.linalg.solve(np.column_stack(_three(inside)), local)
-        return np.asarray(np.column_stack(_three(outside)) @ weights)
+        turned = np.column_stack(_three(outside)) @ np.linalg.inv(np.column_stack(_three(inside)))
+        return np.asarray(local @ turned.T)
 
     def circle(self, guide: Guide, sample: int) -> Array | None:
         """The circle of a guide (steps, 3); nothing if the link that carries it has no position."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,8 +14,9 @@ from centrode.locale import _
 from centrode.present.abscissa import main_abscissa
 from centrode.present.curves import Panel, sheet
 from centrode.present.shown import formula, labelled
-from centrode.present.style import house_style, in_panels, pens
+from centrode.present.style import DASHES, INK, Pen, house_style, in_panels, pens
 from centrode.quantities import QUANTITIES
+from centrode.study.bearing_loads import mean_over_time
 
 if TYPE_CHECKING:
     import xarray
@@ -40,15 +42,18 @@ def reaction_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str,
     Returns
     -------
     dict of name -> Figure
-        "joint-forces" (magnitudes), "other-reactions" (guides, teeth, wheels), "balancing" and "frame-force" (all of
-        it, and the part of inertia). What there is none of, or is not determined, is left out.
+        "joint-forces" (magnitudes), on the sphere "centre-forces", "other-reactions" (guides, teeth, wheels),
+        "balancing", "friction" (by coefficients: its power, the efficiency) and "frame-force" (all of it, and the part
+        of inertia). What there is none of, or is not determined, is left out.
     """
     with house_style():
         abscissa = main_abscissa(mechanism, dataset)
         found = {
             "joint-forces": (_("Forces in the hinges"), _hinges(dataset)),
+            "centre-forces": (_("Forces of the centre of the sphere"), _centre(dataset)),
             "other-reactions": (_("Reactions of guides, gears and wheels"), _others(dataset)),
             "balancing": (_("What the drives must give"), _drives(dataset)),
+            "friction": (_("What friction takes"), _friction(dataset)),
             "frame-force": (_("Force and moment on the frame"), _frame(dataset)),
         }
         return {
@@ -72,6 +77,19 @@ def _hinges(dataset: xarray.Dataset) -> list[Panel]:
         else:
             curves |= {str(labels[k]): sizes[:, k] for k in sides}
     return _panels("joint_force", curves, split=True)
+
+
+def _centre(dataset: xarray.Dataset) -> list[Panel]:
+    """Magnitudes of what the centre of a sphere exerts; none in the plane, or where there is nothing but rounding."""
+    if "centre_force" not in dataset:
+        return []
+    sizes = _magnitude(dataset["centre_force"])
+    least = ALIKE * np.nanmax(_magnitude(dataset["joint_force"]), initial=0.0)
+    names = dataset["held"].to_numpy().tolist()
+    curves = {
+        name: sizes[:, k] for k, name in enumerate(names) if np.nanmax(sizes[:, k], initial=0.0) > least
+    }
+    return _panels("centre_force", curves, split=True)
 
 
 def _others(dataset: xarray.Dataset) -> list[Panel]:
@@ -104,14 +122,42 @@ def _drives(dataset: xarray.Dataset) -> list[Panel]:
     panels = []
     for unit in dict.fromkeys(units):
         of_unit = [name for k, name in enumerate(names) if units[k % len(units)] == unit]
-        panels += _panels("balancing", {name: given.sel(drive=name).to_numpy() for name in of_unit}, unit)
+        curves = {name: given.sel(drive=name).to_numpy() for name in of_unit}
+        panels += [_with_mean(panel, dataset) for panel in _panels("balancing", curves, unit)]
     return panels
+
+
+def _friction(dataset: xarray.Dataset) -> list[Panel]:
+    """Power that friction takes at each contact, and the efficiency."""
+    if "friction_power" not in dataset:
+        return []
+    power = dataset["friction_power"]
+    powers = {}
+    for label in power["friction"].to_numpy().tolist():
+        guide = label.removeprefix("guide ")
+        name = label if guide == label else _("guide {name}").format(name=guide)
+        powers[name] = power.sel(friction=label).to_numpy()
+    efficiency = {_("efficiency"): dataset["efficiency"].to_numpy()}
+    return [*_panels("friction_power", powers), *_panels("efficiency", efficiency)]
+
+
+def _with_mean(panel: Panel, dataset: xarray.Dataset) -> Panel:
+    """A panel of one curve with its mean over time as a line across; of several it stays as it is."""
+    if len(panel.curves) != 1:
+        return panel
+    (curve,) = panel.curves.values()
+    mean, word = mean_over_time(dataset["time"].to_numpy(), curve)[0], _("mean")
+    return replace(
+        panel,
+        curves={**panel.curves, word: np.where(np.isfinite(curve), mean, np.nan)},
+        pens={**panel.pens, word: Pen(INK, DASHES[1])},
+    )
 
 
 def _frame(dataset: xarray.Dataset) -> list[Panel]:
     whole, inertia = _("all of it"), _("of inertia alone")
     forces = {whole: _magnitude(dataset["frame_force"]), inertia: _magnitude(dataset["shaking_force"])}
-    moments = {whole: dataset["frame_moment"].to_numpy(), inertia: dataset["shaking_moment"].to_numpy()}
+    moments = {whole: _size(dataset["frame_moment"]), inertia: _size(dataset["shaking_moment"])}
     return [*_panels("frame_force", forces), *_panels("frame_moment", moments)]
 
 
@@ -137,6 +183,10 @@ def _panels(
     ]
 
 
+def _size(moment: xarray.DataArray) -> Array:
+    """A moment of the plane with its sign, one of the sphere by its magnitude."""
+    return _magnitude(moment) if "axis" in moment.dims else moment.to_numpy()
+
+
 def _magnitude(values: xarray.DataArray) -> Array:
-    parts = values.transpose("axis", ...).to_numpy()
-    return np.asarray(np.hypot(parts[0], parts[1]))
+    return np.asarray(np.hypot.reduce(values.transpose(..., "axis").to_numpy(), axis=-1))

@@ -89,7 +89,7 @@ def _proof(found: CamChoice) -> Rows:
     proof = found.proof
     kept = _("kept along the path itself, to {excess:.0e} of them").format(excess=max(proof.excess, 1e-9))
     near = _("{admissible} of {all} near by keep the bounds, none of them is better")
-    if proof.gain > 0:
+    if proof.better is not None:
         near = _("{admissible} of {all} near by keep the bounds, one is better by {gain:.2g} of the value")
     told = near.format(admissible=proof.admissible, all=proof.neighbours, gain=proof.gain)
     return [(_("bounds"), kept), (_("other designs"), told)]

@@ -20,7 +20,7 @@ def joint_table(mechanism: Mechanism) -> tuple[list[str], list[list[str]]]:
     names = [*mechanism.links, FRAME]
     rows = []
     for number, name in enumerate(names, start=1):
-        label = f"{number} {name}" if name != FRAME else f"0 {_('frame')}"
+        label = f"{number} {name}" if name != FRAME else "0 " + _("frame")
         rows.append([label, *(str((one == name) - (other == name)) for _joint, one, other in joints)])
     return [_("link"), *(joint for joint, _one, _other in joints)], rows
 

@@ -14,6 +14,7 @@ from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import status_word
+from centrode.study.rubbing import friction_rows
 from centrode.study.wording import value_text
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 Rows: TypeAlias = list[tuple[str, str]]
 Table: TypeAlias = tuple[list[str], list[list[str]]]
 Array: TypeAlias = npt.NDArray[np.float64]
+Named: TypeAlias = tuple[str, str, str, Array]
+"""A key that no language changes, the name, the unit, and values (samples) or (samples, 2)."""
 CHECKS = ("equilibrium_residual", "frame_residual", "power_residual")
 ROUNDING = 1e-12
 """Components below this share of the greatest force or moment are shown as zero."""
@@ -46,6 +49,7 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
         known = np.isfinite(found["gear_moment"].to_numpy()).any()
         if gears and known:
             rows.append((_("no tooth force"), _("{gears}: nothing tells the radii").format(gears=gears)))
+    rows += friction_rows(found)
     texts = (_("equilibrium of links"), _("sum over the frame"), _("power balance"))
     words = (
         _("off by {share:.1e} of the greatest force"),
@@ -94,10 +98,10 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
     """Header and rows: least and greatest of each reaction over the samples, and where; forces by their magnitude."""
     header = [_("reaction"), _("unit"), _("least"), _("at"), _("greatest"), _("at")]
     rows = []
-    shown = list(_reactions(mechanism, found))
+    shown = list(each_reaction(mechanism, found))
     noises = _noises(shown)
-    for label, unit, values in shown:
-        size = np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values
+    for _key, label, unit, values in shown:
+        size = np.hypot.reduce(values, axis=1) if values.ndim == 2 else values
         known = np.flatnonzero(np.isfinite(size))
         if not len(known):
             rows.append([label, unit, _("not determined"), "", "", ""])
@@ -116,7 +120,7 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
 
 def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     """The joint force that is greatest over the samples, in one row; none where none is determined."""
-    size = np.hypot(*np.moveaxis(found["joint_force"].to_numpy(), -1, 0))
+    size = np.hypot.reduce(found["joint_force"].to_numpy(), axis=-1)
     if not np.isfinite(size).any():
         return []
     sample, side = np.unravel_index(np.nanargmax(size), size.shape)
@@ -129,34 +133,36 @@ def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
 
 
 def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: int = 0) -> Table:
-    """Header and rows of all reactions at one sample: components, magnitude and direction, or the one number."""
-    header = [_("reaction"), _("unit"), "x", "y", _("magnitude"), _("direction, deg")]
+    """Header and rows of all reactions at one sample: components and magnitude, or the one number.
+
+    In the plane a column of directions follows.
+    """
+    axes = found["axis"].to_numpy().tolist()
+    aside, flat = [""] * len(axes), len(axes) == 2
+    header = [_("reaction"), _("unit"), *axes, _("magnitude"), *([_("direction, deg")] if flat else [])]
     rows = []
-    shown = list(_reactions(mechanism, found))
+    shown = list(each_reaction(mechanism, found))
     noises = _noises(shown)
-    for label, unit, values in shown:
+    for _key, label, unit, values in shown:
         here = values[sample]
-        if not np.all(np.isfinite(here)):
-            rows.append([label, unit, "", "", _missing(found, sample), ""])
-            continue
         noise = noises[unit]
-        if values.ndim == 1:
-            rows.append([label, unit, "", "", _number(float(here), noise), ""])
-            continue
-        size, direction = (
-            float(np.hypot(*here)),
-            round(float(np.degrees(np.arctan2(here[1], here[0]))), 2) + 0.0,
-        )
-        components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
-        still = size <= noise
-        rows.append([label, unit, *components, _number(size, noise), "" if still else f"{direction:.2f}"])
+        if not np.all(np.isfinite(here)):
+            row = [*aside, _missing(found, sample), ""]
+        elif values.ndim == 1:
+            row = [*aside, _number(float(here), noise), ""]
+        else:
+            size = float(np.hypot.reduce(here))
+            components = [_number(float(x), ROUNDING * max(size, noise)) for x in here]
+            direction = round(float(np.degrees(np.arctan2(here[1], here[0]))), 2) + 0.0
+            row = [*components, _number(size, noise), "" if size <= noise else f"{direction:.2f}"]
+        rows.append([label, unit, *(row if flat else row[:-1])])
     return header, rows
 
 
-def _noises(shown: Iterable[tuple[str, str, Array]]) -> dict[str, float]:
+def _noises(shown: Iterable[tuple[str, str, str, Array]]) -> dict[str, float]:
     """Unit -> what is rounding in that unit, over all reactions that are shown."""
     found: dict[str, float] = {}
-    for _label, unit, values in shown:
+    for _key, _label, unit, values in shown:
         greatest = float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
         found[unit] = max(found.get(unit, 0.0), ROUNDING * greatest)
     return found
@@ -168,10 +174,18 @@ def _missing(found: xarray.Dataset, sample: int) -> str:
     return _("not determined") if status in (Status.OK, Status.CUT_OFF) else status_word(status)
 
 
-def _reactions(mechanism: Mechanism, found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
-    """Name, unit and values (samples) or (samples, 2) of everything that a table of reactions shows."""
+def each_reaction(
+    mechanism: Mechanism, found: xarray.Dataset, like: xarray.Dataset | None = None
+) -> Iterator[Named]:
+    """Everything that a table of reactions shows.
+
+    With other reactions that it is to be `like`, it yields the same as for these.
+    """
+    like = found if like is None else like
     turning = [guide.id for guide in mechanism.guides if guide.link is not None]
-    yield from _hinges(found)
+    yield from _hinges(found, like)
+    if "centre_force" in found:
+        yield from _of(found["centre_force"], like["centre_force"], "held", _("centre on {name}"))
     for variable, dimension, text in (
         ("guide_normal", "guide", _("guide {name}, normal")),
         ("guide_moment", "guide", _("guide {name}, moment")),
@@ -182,43 +196,63 @@ def _reactions(mechanism: Mechanism, found: xarray.Dataset) -> Iterator[tuple[st
         ("balancing", "drive", _("drive {name} gives")),
     ):
         if variable in found:
-            values = found[variable]
+            values, known = found[variable], like[variable]
             # a guide without a slider of its own bears no moment
             values = values.sel(guide=turning) if variable == "guide_moment" else values
-            yield from _of(values, dimension, text)
-    yield _("force on the frame"), "N", found["frame_force"].to_numpy()
-    yield _("moment on the frame"), "N m", found["frame_moment"].to_numpy()
+            yield from _of(values, known, dimension, text)
+    if "friction" in found.dims:
+        yield from _friction(found)
+    yield "frame_force", _("force on the frame"), "N", found["frame_force"].to_numpy()
+    yield "frame_moment", _("moment on the frame"), "N m", found["frame_moment"].to_numpy()
 
 
-def _of(values: xarray.DataArray, dimension: str, text: str) -> Iterator[tuple[str, str, Array]]:
+def _friction(found: xarray.Dataset) -> Iterator[Named]:
+    """Moments and forces of friction, and the efficiency."""
+    for label in found["friction"].to_numpy().tolist():
+        guide = label.removeprefix("guide ")
+        if label == guide:
+            values = found["friction_moment"].sel(bearing=label).to_numpy()
+            yield (
+                f"friction_moment_{label}",
+                _("{side}, moment of friction").format(side=label),
+                "N m",
+                values,
+            )
+        else:
+            values = found["friction_force"].sel(guide=guide).to_numpy()
+            yield f"friction_force_{guide}", _("guide {name}, friction").format(name=guide), "N", values
+    yield "efficiency", _("efficiency"), "", found["efficiency"].to_numpy()
+
+
+def _of(values: xarray.DataArray, like: xarray.DataArray, dimension: str, text: str) -> Iterator[Named]:
     units = str(values.attrs["units"]).split(", ")
     for number, name in enumerate(values[dimension].to_numpy().tolist()):
         one, unit = values.sel({dimension: name}), units[number % len(units)]
+        key = f"{values.name}_{name}"
         if "gear_body" in values.dims:
             for body in values["gear_body"].to_numpy().tolist():
                 words = {"first": _("the first"), "second": _("the second"), "carrier": _("the carrier")}
-                yield text.format(name=name, body=words[body]), unit, one.sel(gear_body=body).to_numpy()
-        elif not np.isnan(one.to_numpy()).all() or "axis" not in one.dims:
-            yield text.format(name=name), unit, one.to_numpy()
+                label = text.format(name=name, body=words[body])
+                yield f"{key}_{body}", label, unit, one.sel(gear_body=body).to_numpy()
+        elif "axis" not in one.dims or not np.isnan(like.sel({dimension: name}).to_numpy()).all():
+            yield key, text.format(name=name), unit, one.to_numpy()
 
 
-def _hinges(found: xarray.Dataset) -> Iterator[tuple[str, str, Array]]:
+def _hinges(found: xarray.Dataset, like: xarray.Dataset) -> Iterator[Named]:
     """Sides of hinges; of two that are action and reaction one, named after both bodies."""
     points, bodies = found["side_point"].to_numpy(), found["side_link"].to_numpy()
-    values = found["joint_force"].to_numpy()
+    values, known = found["joint_force"].to_numpy(), like["joint_force"].to_numpy()
     said = {"frame": _("frame")}
     for point in dict.fromkeys(points.tolist()):
         sides = np.flatnonzero(points == point)
         names = [said.get(str(bodies[k]), str(bodies[k])) for k in sides]
-        if len(sides) == 2 and _opposite(values[:, sides[0]], values[:, sides[1]]):
-            yield (
-                _("{point}: {other} on {body}").format(point=point, other=names[1], body=names[0]),
-                "N",
-                values[:, sides[0]],
-            )
+        keys = [f"joint_force_{point}/{bodies[k]}" for k in sides]
+        if len(sides) == 2 and _opposite(known[:, sides[0]], known[:, sides[1]]):
+            label = _("{point}: {other} on {body}").format(point=point, other=names[1], body=names[0])
+            yield keys[0], label, "N", values[:, sides[0]]
             continue
-        for k, name in zip(sides, names, strict=True):
-            yield _("{point}: pin on {body}").format(point=point, body=name), "N", values[:, k]
+        for k, key, name in zip(sides, keys, names, strict=True):
+            yield key, _("{point}: pin on {body}").format(point=point, body=name), "N", values[:, k]
 
 
 def _opposite(one: Array, other: Array) -> bool:

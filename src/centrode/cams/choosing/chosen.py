@@ -11,6 +11,9 @@ from centrode.cams.choosing.proving import Proof, prove
 from centrode.cams.choosing.trade_off import POINTS, TradeOff, trade_off
 from centrode.model.cams import Cam
 
+MORE = 3
+"""So often the search goes on from a neighbour that is better, as there are where a law is not smooth."""
+
 
 @dataclass(frozen=True)
 class CamChoice:
@@ -75,7 +78,15 @@ def choose_cam(
     start, best, bounds = start_of(cam, family), cam.choose.minimise, bounds_of(cam)
     choice = choose(family, start, best, bounds)
     chosen = chosen_cam(cam, choice)
+    proof = prove(chosen, bounds, best)
+    for _again in range(MORE):
+        if proof.better is None:
+            break
+        warm = [start_of(proof.better, family), start_of(chosen, family)]
+        choice = choose(family, start, best, bounds, warm=warm)
+        chosen = chosen_cam(cam, choice)
+        proof = prove(chosen, bounds, best)
     against = cam.choose.trade_off
     wanted = front and against is not None
     found = trade_off(family, start, best, against or "", bounds, points, said) if wanted else None
-    return CamChoice(chosen, choice, prove(chosen, bounds, best), found)
+    return CamChoice(chosen, choice, proof, found)

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 BLUNT = 0.98
 """Greatest curvature of the path times the roller's radius: at 1 the cam has a cusp."""
 FLATTEST = 1e-6
-"""Least curvature of the path times the roller's radius: a law of the path is positive."""
+"""Least curvature of the path times its radius: a law of the path is positive."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def _sharp(tried: Tried, _contact: Contact | None) -> Array:
 
 
 def _flat(tried: Tried, _contact: Contact | None) -> Array:
-    return -tried.roller_radius * tried.curvature
+    return -tried.rho * tried.curvature
 
 
 def _zero(tried: Tried) -> slice:

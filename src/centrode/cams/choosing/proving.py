@@ -46,6 +46,8 @@ class Proof:
         Designs near by that were looked at, and how many of them keep the bounds.
     gain : float
         By which part the best of them is better than the chosen one; not positive at an optimum.
+    better : Cam or None
+        That neighbour, where it is better.
     """
 
     values: Mapping[str, float]
@@ -53,6 +55,7 @@ class Proof:
     neighbours: int
     admissible: int
     gain: float
+    better: Cam | None = None
 
 
 def prove(cam: Cam, bounds: Mapping[str, float], best: str) -> Proof:
@@ -61,13 +64,15 @@ def prove(cam: Cam, bounds: Mapping[str, float], best: str) -> Proof:
     values = measures_of(cam, ANGLES)
     own = MEASURES[best].sign * values[best]
     near = _neighbours(cam)
-    gains, admissible = [-np.inf], 0
+    gain, better, admissible = -math.inf, None, 0
     for one in near:
         found = measures_of(one, NEAR_ANGLES)
         if excess_of(found, bounds) <= 0:
             admissible += 1
-            gains.append((own - MEASURES[best].sign * found[best]) / abs(own))
-    return Proof(values, excess_of(values, bounds), len(near), admissible, float(max(gains)))
+            by = (own - MEASURES[best].sign * found[best]) / (abs(own) or 1.0)
+            gain, better = (by, one) if by > gain else (gain, better)
+    kept = better if gain > ROUNDING else None
+    return Proof(values, excess_of(values, bounds), len(near), admissible, gain, kept)
 
 
 def measures_of(cam: Cam, angles: int) -> dict[str, float]:

@@ -25,6 +25,8 @@ PANEL = 0.45
 """Greatest length of a panel [rad]."""
 STEEPEST = math.radians(75)
 """Pressure angles are held below this, so that every design has a path: one that gets there is not admissible."""
+MOST = 1e3
+"""Greatest curvature times the radius at the start."""
 ROUNDS = 60
 SETTLED = 1e-14
 """Change of a round, relative, at which the iteration has settled."""
@@ -106,7 +108,7 @@ def paths_of(trials: Sequence[Trial], mesh: Mesh, phi: Array) -> Tried:
     panels = mesh.panels
     nodes = [first + (last - first) * _unit_nodes() for first, last in panels]
     everywhere = np.concatenate([*nodes, phi])
-    curvature = np.stack([trial.curvature(everywhere) for trial in trials], axis=1)
+    curvature = np.stack([_held(trial, everywhere) for trial in trials], axis=1)
     for number, (first, last) in enumerate(panels):
         bent = curvature[number * (DEGREE + 1) : (number + 1) * (DEGREE + 1)]
         u, angle = _solved(states[first], bent, last - first)
@@ -118,6 +120,13 @@ def paths_of(trials: Sequence[Trial], mesh: Mesh, phi: Array) -> Tried:
     rho[at_zero], gamma[at_zero] = np.exp(start[0]), start[1]
     rollers = np.array([trial.roller_radius for trial in trials])
     return Tried(phi, rho, gamma, curvature[len(panels) * (DEGREE + 1) :], rollers, mesh.mirrored)
+
+
+def _held(trial: Trial, phi: Array) -> Array:
+    """The curvature of a design: 0, which no cam has, where it is none; not beyond what any cam has."""
+    with np.errstate(all="ignore"):
+        found = trial.curvature(phi)
+    return np.clip(np.where(np.isnan(found), 0.0, found), -MOST / trial.radius, MOST / trial.radius)
 
 
 def _starts(trials: Sequence[Trial]) -> Array:
