@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -186,6 +187,45 @@ def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> No
     assert done.rows["not determined"] == "C/wheel; guide C; wheel wheel"
     assert "nan" not in done.out
     assert {row["rolling_normal_wheel [N]"] for row in rows_of(folder / "result" / "reactions.csv")} == {""}
+
+
+def test_what_is_rounding_is_shown_as_zero(centrode: Centrode, folder: Path) -> None:
+    """A torque between a rocker and the frame, and the drive's moment: nothing is left for the frame as a whole."""
+    text = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "torque"\nlink = "DB"\nvalue = 3\n'
+    (folder / "w.toml").write_text(text)
+    mechanism = ct.read_mechanism(folder / "w.toml")
+    found = ct.reactions(mechanism, samples=361)
+    assert found.frame_moment.to_numpy().any()  # but for rounding
+    rows = {row[0]: row[1:] for row in ct.reaction_extremes(mechanism, found)[1]}
+    assert rows["moment on the frame"] == ["N m", "0", "", "0", ""]
+    done = centrode("reactions", "w.toml", "--at", "100 deg", "--at", "200 deg")
+    assert done.code == 0, done
+    assert "e-1" not in done.out.split("\nreaction ", 1)[1]
+
+
+def test_of_values_alike_the_first_is_named() -> None:
+    """The last sample of a turn repeats the first, and one of them is the greater by rounding."""
+    press = ct.example("six-bar-press")
+    found = ct.reactions(press, samples=5)
+    size = np.hypot(*found.frame_force.to_numpy().T)
+    assert np.isclose(size[0], size[-1], rtol=1e-12) and np.max(size) == max(size[0], size[-1])
+    rows = {row[0]: row for row in ct.reaction_extremes(press, found)[1]}
+    assert rows["force on the frame"][5] == "219.1 deg"
+
+
+def test_extremes_of_a_drive_by_a_law_are_told_by_their_time(centrode: Centrode, folder: Path) -> None:
+    """A drive that turns back passes its values more than once; --at takes a time too."""
+    text = ct.example_text("in-line-four-bar").replace('speed = "500 rpm"', 'law = "sin(2*t)"')
+    (folder / "l.toml").write_text(text + "\n[study]\nto = 3\n")
+    done = centrode("reactions", "l.toml", "--samples", 31)
+    assert done.code == 0, done
+    line = next(line for line in done.out.splitlines() if line.startswith("A: "))
+    match = re.search(r"(\S+) +(\S+) s$", line)
+    assert match
+    greatest, time = match.groups()
+    there = centrode("reactions", "l.toml", "--at", f"{time} s").out
+    row = next(line for line in there.splitlines() if line.startswith("A: "))
+    assert math.isclose(float(row.split()[-2]), float(greatest), rel_tol=1e-5)
 
 
 def test_the_real_speed_of_a_machine(centrode: Centrode) -> None:

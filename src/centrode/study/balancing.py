@@ -90,7 +90,7 @@ def _one_text(one: Counterweight, display: Display) -> str:
 
 def _proof_rows(found: Balance) -> Rows:
     rows = []
-    if found.bound is not None:
+    if found.bound is not None and found.bound > NOTHING * found.before.attrs["greatest_shaking_force"]:
         text = _("no counterweights on these links bring the greatest force below {force:.6g} N")
         rows.append((_("proved"), text.format(force=found.bound)))
     elif found.proved:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -98,14 +98,18 @@ def reaction_extremes(mechanism: Mechanism, found: xarray.Dataset) -> Table:
     """Header and rows: least and greatest of each reaction over the samples, and where; forces by their magnitude."""
     header = [_("reaction"), _("unit"), _("least"), _("at"), _("greatest"), _("at")]
     rows = []
-    for _key, label, unit, values in each_reaction(mechanism, found):
+    shown = list(each_reaction(mechanism, found))
+    noises = _noises(shown)
+    for _key, label, unit, values in shown:
         size = np.hypot.reduce(values, axis=1) if values.ndim == 2 else values
         known = np.flatnonzero(np.isfinite(size))
         if not len(known):
             rows.append([label, unit, _("not determined"), "", "", ""])
             continue
-        low, high = (int(known[which(size[known])]) for which in (np.argmin, np.argmax))
-        noise = ROUNDING * float(np.max(np.abs(size[known])))
+        noise = noises[unit]
+        # of values that are alike but for rounding the first
+        low = int(known[np.argmax(size[known] <= np.min(size[known]) + noise)])
+        high = int(known[np.argmax(size[known] >= np.max(size[known]) - noise)])
         cells = []
         for k in (low, high):
             still = abs(float(size[high] - size[low])) <= noise
@@ -137,9 +141,11 @@ def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: in
     aside, flat = [""] * len(axes), len(axes) == 2
     header = [_("reaction"), _("unit"), *axes, _("magnitude"), *([_("direction, deg")] if flat else [])]
     rows = []
-    for _key, label, unit, values in each_reaction(mechanism, found):
+    shown = list(each_reaction(mechanism, found))
+    noises = _noises(shown)
+    for _key, label, unit, values in shown:
         here = values[sample]
-        noise = ROUNDING * float(np.nanmax(np.abs(values), initial=0.0))
+        noise = noises[unit]
         if not np.all(np.isfinite(here)):
             row = [*aside, _missing(found, sample), ""]
         elif values.ndim == 1:
@@ -151,6 +157,15 @@ def reactions_at_instant(mechanism: Mechanism, found: xarray.Dataset, sample: in
             row = [*components, _number(size, noise), "" if size <= noise else f"{direction:.2f}"]
         rows.append([label, unit, *(row if flat else row[:-1])])
     return header, rows
+
+
+def _noises(shown: Iterable[tuple[str, str, str, Array]]) -> dict[str, float]:
+    """Unit -> what is rounding in that unit, over all reactions that are shown."""
+    found: dict[str, float] = {}
+    for _key, _label, unit, values in shown:
+        greatest = float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
+        found[unit] = max(found.get(unit, 0.0), ROUNDING * greatest)
+    return found
 
 
 def _missing(found: xarray.Dataset, sample: int) -> str:
@@ -252,8 +267,8 @@ def _number(value: float, noise: float) -> str:
 
 
 def _place(mechanism: Mechanism, found: xarray.Dataset, sample: int) -> str:
-    """The drive's value at a sample, or with several drives the time."""
-    if len(mechanism.drives) > 1:
+    """The drive's value at a sample; with several drives, or one by a law, the time: what instants are asked for by."""
+    if len(mechanism.drives) > 1 or mechanism.drives[0].speed is None:
         return f"{float(found['time'].to_numpy()[sample]):.6g} s"
     unit = unit_of_value(mechanism, mechanism.drives[0])
     return value_text(float(found["drive_value"].to_numpy()[sample, 0]), unit, mechanism.display)

@@ -22,7 +22,7 @@ from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
-Speed: TypeAlias = Literal["drive", "steady"]
+Speed: TypeAlias = Literal["mean", "steady"]
 SPEEDS = get_args(Speed)
 
 
@@ -44,7 +44,7 @@ class Instants:
     _places: Places | None = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, mechanism: Mechanism, speed: Speed = "drive") -> Instants:
+    def of(cls, mechanism: Mechanism, speed: Speed = "mean") -> Instants:
         """The mechanism at the speed that loads see (see `ct.reduce`), or at its real one (`ct.steady_motion`).
 
         Raises InputError for several drives, for a drive without a constant speed, and as `steady_motion`.

@@ -44,7 +44,7 @@ def shaking(
     at: npt.ArrayLike | None = None,
     *,
     about: About = (0.0, 0.0),
-    speed: Speed = "drive",
+    speed: Speed = "mean",
     orders: int = ORDERS,
 ) -> xr.Dataset:
     """Force and moment that the inertia of a mechanism puts on its frame, at the samples of a motion.
@@ -55,7 +55,7 @@ def shaking(
         As for `motion`; in steady motion as for `steady_motion`, over its cycle.
     about : name of a point of the frame, or (x, y) [m]
         What moments are taken about; the frame's origin if left out.
-    speed : "drive" or "steady"
+    speed : "mean" or "steady"
         The machine's mean speed, or the drive's own where there is none; or the real one of `steady_motion`.
     orders : int
         Harmonics up to this multiple of the drive's turns.
