@@ -39,7 +39,7 @@ _NEEDED: dict[str, tuple[str, ...]] = {
 MOST_TERMS = 2000
 """Terms of a power series; the recursions cost their square."""
 
-MOST_LEGS = 24
+LEAST_LEGS, MOST_LEGS = 3, 24
 MINIMISED = ("size", "stress", "pressure_angle")
 MEASURED = (*MINIMISED, "lift", "gap")
 
@@ -161,10 +161,10 @@ class Mover(Part):
     post : float [m]
         C, the length of the shoe's post: the hub stands at rho(0) + C.
     working_arc : (from, to) [rad]
-        Where a leg stands; -pi/N to pi/N if left out.
+        Where the law holds, the return arc goes over the rest; -pi/N to pi/N if left out.
     """
 
-    legs: Annotated[int, whole(2, MOST_LEGS)]
+    legs: Annotated[int, whole(LEAST_LEGS, MOST_LEGS)]
     post: Annotated[float, quantity("length", not_negative)] = 0.0
     working_arc: Annotated[tuple[Angle, ...], listed(2)] | None = None
 

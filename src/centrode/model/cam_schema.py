@@ -6,6 +6,7 @@ from centrode.model import limits
 from centrode.model.asked import Display
 from centrode.model.cam_parts import (
     LAWS,
+    LEAST_LEGS,
     MEASURED,
     MINIMISED,
     MOST_LEGS,
@@ -66,7 +67,7 @@ CAM_PROPERTIES: dict[type[Part], Schema] = {
         "convex": _FLAG,
     },
     Mover: {
-        "legs": {"type": "integer", "minimum": 2, "maximum": MOST_LEGS},
+        "legs": {"type": "integer", "minimum": LEAST_LEGS, "maximum": MOST_LEGS},
         "post": quantity_schema("length"),
         "working_arc": list_of(quantity_schema("angle"), 2, 2),
     },

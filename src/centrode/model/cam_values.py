@@ -74,7 +74,7 @@ def read_steepness(value: object, kind: str) -> float:
 def read_poisson(value: object, kind: str) -> float:
     """A Poisson's ratio."""
     number = si(value, kind)
-    if not 0 <= number < 0.5:
+    if not 0 <= number <= 0.5:
         what = _("{key} must lie between 0 and 0.5, got {value}").format(key=KEY, value=shown(value))
         raise Problem(what, _("it is 0.3 for steel"))
     return number

@@ -69,9 +69,10 @@ def _draw_stress(axes: Axes, contact: xarray.Dataset, phi: Array, factor: float,
         line = axes.axhline(MEGA * admissible, color=PALETTE[3], linestyle="--", linewidth=1.2)
         key.append((line, _("admissible stress")))
     greatest, at = MEGA * contact.attrs["greatest_stress"], factor * contact.attrs["greatest_stress_at"]
-    told = _("{stress:.5g} MPa at {angle:.5g} {unit}").format(stress=greatest, angle=at, unit=unit)
-    (dot,) = axes.plot([at], [greatest], "o", color=INK, markersize=5, clip_on=False, zorder=5)
-    key.append((dot, told))
+    if np.isfinite(greatest):
+        told = _("{stress:.5g} MPa at {angle:.5g} {unit}").format(stress=greatest, angle=at, unit=unit)
+        (dot,) = axes.plot([at], [greatest], "o", color=INK, markersize=5, clip_on=False, zorder=5)
+        key.append((dot, told))
     axes.set_ylim(bottom=0)
     axes.set_ylabel(labelled(formula("σ") + ", " + formula("τ"), "MPa"))
     axes.yaxis.set_major_formatter(Decimals())

@@ -86,8 +86,8 @@ def cam_path_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
     with house_style():
         factor, unit = shown_as("m", cam.display)
         x, y = (factor * dataset["roller_centre"].sel(axis=axis).to_numpy() for axis in ("x", "y"))
-        width, height = (max(np.nanmax(one), 0.0) - min(np.nanmin(one), 0.0) for one in (x, y))
-        scale = INCHES / max(width, height)
+        width, height = (float(np.nanmax([*one, 0.0]) - np.nanmin([*one, 0.0])) for one in (x, y))
+        scale = INCHES / (max(width, height) or 1.0)
         figure = Figure(figsize=(scale * width + 4.2, max(scale * height + 1.5, 3.2)), layout="constrained")
         axes = figure.subplots()
         _draw_rays(axes, dataset, factor)
@@ -114,6 +114,8 @@ def _draw_rays(axes: Axes, dataset: xarray.Dataset, factor: float) -> None:
     radius = factor * dataset["path_radius"].to_numpy()
     gamma = dataset["cam_pressure_angle"].to_numpy()
     known = np.isfinite(radius)
+    if not known.any():
+        return
     low, high = np.degrees(phi[known].min()), np.degrees(phi[known].max())
     greatest = float(radius[known].max())
     for degrees in np.arange(RAYS * math.ceil(low / RAYS - 1e-9), high + 1e-9, RAYS):

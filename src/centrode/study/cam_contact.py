@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, isinf, isnan
 
 import numpy as np
 import xarray as xr
@@ -40,7 +40,12 @@ def contact_rows(cam: Cam, contact: xr.Dataset) -> Rows:
         Of `cam_contact`.
     """
     facts = contact.attrs
-    if not isfinite(facts["greatest_stress"]):
+    if isinf(facts["greatest_stress"]):
+        told = _("without bound towards {angle}, where the follower stalls")
+        return [
+            (_("greatest contact stress"), told.format(angle=Units(cam).angle(facts["greatest_stress_at"])))
+        ]
+    if isnan(facts["greatest_stress"]):
         return [(_("greatest contact stress"), _("none: the cam is undercut all along"))]
     sign = "±" if cam.curvature.symmetric and facts["greatest_stress_at"] else ""
     told = _("{stress} at {sign}{angle}").format(

@@ -10,7 +10,7 @@ import xarray as xr
 from centrode.cams.described import half_path, path_of
 from centrode.cams.extremes import curvature_extremes, pressure_extremes, radius_extremes
 from centrode.cams.labelled import dataset_of_path
-from centrode.cams.path import RollerPath
+from centrode.cams.path import RollerPath, stalls_of
 from centrode.cams.sampled import angles_of, ends_of
 from centrode.errors import CentrodeError
 from centrode.locale import _
@@ -111,7 +111,9 @@ def _stall(cam: Cam, path: RollerPath) -> tuple[dict[str, Scalar], tuple[str, st
     """Where the follower stalls: its number, its row, and the sentence if that lies in the range."""
     units = Units(cam)
     if path.stall is not None:
-        place = units.angle(path.stall, 9)
+        sign = "±" if cam.curvature.symmetric else ""
+        places = [path.stall] if sign else stalls_of(path)
+        place = _(" and ").join(f"{sign}{units.angle(one, 9)}" for one in places)
         failure = _("the follower stalls at {place}, where the pressure angle is 90 deg").format(place=place)
         failure += "; " + _("end the range before that angle")
         row = (_("stall"), _("at {place}, inside the range").format(place=place))

@@ -40,12 +40,7 @@ def thinned(found: xr.Dataset) -> xr.Dataset:
 
 
 def _rows(cam: Cam, found: xr.Dataset) -> Rows:
-    units, told = Units(cam), found.attrs
-    worst = _greatest(found["series_error"])
-    terms = int(told["terms"])
-    series = _("power series about φ = 0, cut after a_{terms}: greatest error of ρ {error}").format(
-        terms=terms, error=units.text(worst, digits=3)
-    )
+    told = found.attrs
     steps = int(told["steps"])
     expanded = ngettext(
         "{count} series of degree {order} expanded anew, tolerance {tolerance:g}",
@@ -56,13 +51,37 @@ def _rows(cam: Cam, found: xr.Dataset) -> Rows:
         share=told["worst_difference"]
     )
     return [
-        (_("(a) one series"), series),
+        (_("(a) one series"), _series(cam, found)),
+        *_lost(found),
         ("", _reach(cam, found)),
         ("", _valid(cam, found)),
         (_("(b) by steps"), expanded),
         (_("(c) integrated"), integrated),
         *_stalls(cam, found),
     ]
+
+
+def _series(cam: Cam, found: xr.Dataset) -> str:
+    """The cut series and its greatest error."""
+    terms, worst = int(found.attrs["terms"]), _greatest(found["series_error"])
+    if math.isnan(worst):
+        return _("power series about φ = 0, cut after a_{terms}: no sample to compare it at").format(
+            terms=terms
+        )
+    return _("power series about φ = 0, cut after a_{terms}: greatest error of ρ {error}").format(
+        terms=terms, error=Units(cam).text(worst, digits=3)
+    )
+
+
+def _lost(found: xr.Dataset) -> Rows:
+    """Samples of the path at which the cut series gives none: its sine is no sine there."""
+    radii = found["path_radius"].to_numpy()
+    sine = np.abs(found["pressure_sine"].to_numpy()[0])
+    lost = int(np.count_nonzero((sine > 1.0) & np.isnan(radii[0]) & np.isfinite(radii[1])))
+    if not lost:
+        return []
+    said = _("it gives no path at {count} of {of} samples: the sine η is beyond 1 there")
+    return [("", said.format(count=lost, of=found.sizes["sample"]))]
 
 
 def _reach(cam: Cam, found: xr.Dataset) -> str:

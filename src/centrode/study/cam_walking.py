@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from centrode.cams.profiles.bodies import cam_body
+from centrode.cams.profiles.bodies import CamBody, cam_body
 from centrode.cams.profiles.tables import count_of, shoe_dataset, wheel_of
 from centrode.cams.wheel.rolling import Rolling, rolling
 from centrode.cams.wheel.walking import Mover
@@ -34,17 +34,45 @@ def walking_part(cam: Cam, asked: Asked) -> CamPart | None:
     except MotionError as refusal:
         return CamPart(heading, [(_("shoe"), _("none"))], {}, failures=(f"{refusal.what}; {refusal.repair}",))
     proof, units = rolling(wheel), Units(cam)
-    rows = [*_travel(wheel, units), *_shoe(wheel, units), *_proof(wheel, proof, units)]
+    rows = [*_travel(wheel, units), *_shoe(wheel, units), *_proof(wheel, proof, units, uneven(body, wheel))]
     dataset = shoe_dataset(wheel, count_of(cam, asked.samples))
-    failures: tuple[str, ...] = ()
+    return CamPart(
+        heading,
+        rows,
+        _scalars(wheel, proof),
+        {"shoe-profile": dataset},
+        (),
+        _failures(wheel, proof, units),
+        {"wheel": wheel},
+    )
+
+
+def uneven(body: CamBody, wheel: Mover) -> list[tuple[float, float]]:
+    """Stretches [rad] of a standing leg on which the profile is undercut: the roller leaves its path there."""
+    found = []
+    for one in body.undercuts:
+        for turn in (0.0, math.tau):
+            start, stop = max(one.start - turn, -wheel.half), min(one.stop - turn, wheel.half)
+            if stop - start > LEAST_ANGLE:
+                found.append((start, stop))
+    return sorted(found)
+
+
+def _failures(wheel: Mover, proof: Rolling, units: Units) -> tuple[str, ...]:
+    """What keeps the wheel from walking."""
+    failures = []
     if proof.clearance < -DUG * wheel.height:
         text = _(
             "a returning shoe digs {depth} into the ground where its leg is at {at}; bound greatest_radius in [return]"
         )
-        failures = (text.format(depth=units.text(-proof.clearance), at=units.angle(proof.clearance_at)),)
-    return CamPart(
-        heading, rows, _scalars(wheel, proof), {"shoe-profile": dataset}, (), failures, {"wheel": wheel}
-    )
+        failures.append(text.format(depth=units.text(-proof.clearance), at=units.angle(proof.clearance_at)))
+    if proof.room < -DUG * wheel.height:
+        text = _(
+            "the rollers of neighbouring legs overlap by {depth} where one leg is at {at}; "
+            "take smaller rollers or fewer legs"
+        )
+        failures.append(text.format(depth=units.text(-proof.room), at=units.angle(proof.room_at)))
+    return tuple(failures)
 
 
 def _travel(wheel: Mover, units: Units) -> Rows:
@@ -80,17 +108,26 @@ def _shoe(wheel: Mover, units: Units) -> Rows:
         (_("footprints"), f"{prints}, {gap.format(gap=units.text(abs(wheel.print_gap)))}"),
         (
             _("shoe"),
-            _("radius of curvature from {bend} at {at}").format(bend=units.text(bend), at=units.angle(at)),
+            _("radius of curvature from {bend} at {at}").format(
+                bend=units.text(bend), at=_both_sides(at, units)
+            ),
         ),
     ]
 
 
-def _proof(wheel: Mover, proof: Rolling, units: Units) -> Rows:
+def _proof(wheel: Mover, proof: Rolling, units: Units, cut: list[tuple[float, float]]) -> Rows:
     level = _("the shoe put on the ground holds the hub level to {error}")
     slip = _("the shoe's point at the contact moves at {slip:.1g} of the hub's speed")
     arcs = _("arc of the shoe {arc}, ground travelled {ground}, apart by {apart}")
-    rows = [
-        (_("level"), level.format(error=units.text(proof.level, digits=2))),
+    rows = [(_("level"), level.format(error=units.text(proof.level, digits=2)))]
+    if cut:
+        where = ", ".join(
+            _("{first} to {last}").format(first=units.angle(first), last=units.angle(last))
+            for first, last in cut
+        )
+        lost = _("but not from {where}: the profile is undercut there and the roller leaves its path")
+        rows.append(("", lost.format(where=where)))
+    rows += [
         (_("no slip"), slip.format(slip=proof.slip)),
         (
             "",
@@ -106,6 +143,8 @@ def _proof(wheel: Mover, proof: Rolling, units: Units) -> Rows:
         rows.append((_("change of legs"), jump.format(jump=units.text(proof.joint, "m/rad"))))
     if proof.clearance >= -DUG * wheel.height:
         rows.append((_("returning legs"), _("clear of the ground")))
+    if proof.room >= -DUG * wheel.height:
+        rows.append((_("neighbouring rollers"), _("{room} apart").format(room=units.text(proof.room))))
     return rows
 
 
@@ -124,6 +163,7 @@ def _scalars(wheel: Mover, proof: Rolling) -> dict[str, Scalar]:
         "walking_slip": Scalar(proof.slip, "1"),
         "walking_arc_difference": Scalar(abs(proof.shoe_arc - proof.ground), "m"),
         "walking_clearance": Scalar(proof.clearance, "m"),
+        "walking_roller_room": Scalar(proof.room, "m"),
         "walking_half": Scalar(math.pi / wheel.legs, "rad"),
     }
 
