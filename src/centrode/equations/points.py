@@ -28,7 +28,6 @@ class PointVelocity:
     place : its coordinates in symbols
     x, y, z : components along the frame's axes, in the rates; z on the sphere alone
     along : for a point on a guide of the frame, the component in the guide's direction
-    squared : square of the speed
     closed_x, closed_y, closed_z, closed_along : the same in time and unknowns alone, where one product comes out
     """
 
@@ -38,11 +37,16 @@ class PointVelocity:
     y: Formula
     z: Formula | None
     along: Formula | None
-    squared: Formula
     closed_x: Formula | None
     closed_y: Formula | None
     closed_z: Formula | None
     closed_along: Formula | None
+
+    @cached_property
+    def squared(self) -> Formula:
+        """Square of the speed."""
+        components = [one.total for one in (self.x, self.y, self.z) if one is not None]
+        return formula_of(sum((one * one for one in components), ZERO))
 
     @cached_property
     def expressions(self) -> tuple[Any, ...]:
@@ -70,8 +74,7 @@ def velocity_of(
         found = formula_of(formula.total.replaced(closed))
         return found if found.single else None
 
-    squared = formula_of(sum((one * one for one in rates), ZERO))
-    return PointVelocity(point, place, x, y, z, along, squared, short(x), short(y), short(z), short(along))
+    return PointVelocity(point, place, x, y, z, along, short(x), short(y), short(z), short(along))
 
 
 def _along(point: str, rates: Place, board: Board) -> Formula | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +22,8 @@ Vector = npt.NDArray[np.float64]
 
 ARC = -500_000
 """Arcs stand before the angles of links."""
+LONGEST = 16
+"""Terms of the longest coordinate of a place on which anything more is laid."""
 
 
 class SphereBoard(Lettering):
@@ -42,7 +43,18 @@ class SphereBoard(Lettering):
             body: {name: np.array(unit_vector((float(a), float(b)))) for name, (a, b) in points.items()}
             for body, points in {FRAME: self.numbers.frame, **self.numbers.local}.items()
         }
+        self.poles = {guide: self._pole(guide, body) for guide, body in self.numbers.bodies.items()}
+        """Of every guide the point about which its circle runs."""
         self._begin(pivots)
+
+    def _pole(self, guide: str, body: str) -> str:
+        """The point of a body in the pole of a guide; a name for the pole where there is none."""
+        a, b = self.numbers.through[guide]
+        at = np.array(unit_vector((float(a), float(b))))
+        same = [name for name, place in self.inside[body].items() if np.array_equal(place, at)]
+        name = same[0] if same else f"pole-{guide}"
+        self.inside[body][name] = at
+        return name
 
     def _begin(self, pivots: list[str]) -> None:
         """The axes of the frame: through two of its points that make an arc, pivots first."""
@@ -65,10 +77,6 @@ class SphereBoard(Lettering):
     def at(self, point: str) -> Vector:
         """Where a point lies in the initial position."""
         return np.array([float(x) for x in self.ready.assembled.positions.points[point]])
-
-    def points_of(self, body: str) -> Mapping[str, tuple[float, float]]:
-        """Coordinates of a body's points in its axes."""
-        return self.numbers.frame if body == FRAME else self.numbers.local[body]
 
     def carried(self, body: str, inside: Vector) -> Vector:
         """Where a place of a body lies in the initial position."""
@@ -141,10 +149,16 @@ class SphereBoard(Lettering):
     def place(self, body: str, first: str, second: str, axes: Axes) -> None:
         """Note how a body stands: its axes in one point along the arc to another; places of all its points."""
         self.axes[body], self.firsts[body] = axes, (first, second)
+        if max(len(total.terms) for axis in axes for total in axis) > LONGEST:
+            raise InputError(
+                body,
+                _("its place in symbols has too many terms to be read"),
+                _("compute the motion: centrode run"),
+            )
         for name in self.inside[body]:
             if name not in self.points:
                 self.points[name] = self.seen_from(body, name).at
-                if body != FRAME:
+                if body != FRAME and name in self.numbers.local[body]:
                     self.moving.append(name)
 
     def seen_from(self, body: str, point: str) -> Axes:

@@ -15,7 +15,7 @@ from centrode.equations.draft import Condition, Draft
 from centrode.equations.letters import Angle
 from centrode.equations.sphere_board import SphereBoard, Vector, unwritten
 from centrode.equations.sums import Sum
-from centrode.equations.turned import BACK, Axes
+from centrode.equations.turned import Axes
 from centrode.kinematics.ready import Ready
 from centrode.locale import _
 from centrode.structure.groups import (
@@ -111,14 +111,14 @@ def _dyad(board: SphereBoard, group: Meet, number: int) -> list[Draft]:
     out = carrier.axes.turned(turn)
     there = out.moved(carrier.arc)
     if carrier.link is not None:
-        _put(board, carrier.link, carrier.centre, point, out, there)
+        board.place(carrier.link, carrier.centre, point, out)
     board.points[point] = there.at
     board.moving.append(point)
     far = board.points[rod.centre]
     left = Sum.wave("cos", held)
     draft.conditions.append(Condition(f"cos {rod.centre}{point}", left, left, far.dot(there.at)))
     leaning, angle, side = _leaning(board, carrier, rod, point, held)
-    _put(board, rod.link, point, rod.centre, there.leaning(angle, side), None)
+    board.place(rod.link, point, rod.centre, there.leaning(angle, side))
     return [draft, leaning]
 
 
@@ -159,25 +159,14 @@ def _carrier(board: SphereBoard, group: Meet) -> tuple[Carrier, Rod]:
 
 def _circle(board: SphereBoard, rail: Rail) -> Carrier:
     """The circle of a guide about a point of a body that is placed."""
-    pole, radius = board.numbers.through[rail.guide], board.numbers.direction[rail.guide][0]
-    same = [name for name, at in board.points_of(rail.on).items() if at == pole]
-    if rail.on not in board.axes or not same:
+    if rail.on not in board.axes:
         raise unwritten()
-    axes, end = board.towards(rail.on, same[0], None)
+    name, radius = board.poles[rail.guide], board.numbers.direction[rail.guide][0]
+    axes, end = board.towards(rail.on, name, None)
     direction = (math.cos(float(radius)), math.sin(float(radius)))
     arc = board.constant(f"r_{rail.guide}", "arc of circle", (rail.guide,), direction)
-    at, towards = (board.carried(rail.on, board.inside[rail.on][name]) for name in (same[0], end))
-    return Carrier(same[0], axes, towards, end, at, arc, None, rail.guide)
-
-
-def _put(board: SphereBoard, link: str, pivot: str, other: str, axes: Axes, at_other: Axes | None) -> None:
-    """Place a link of which the axes in one point along the arc to another are known."""
-    names = list(board.inside[link])
-    if other == names[0]:
-        arc = board.arc(link, pivot, other)
-        board.place(link, other, pivot, (at_other or axes.moved(arc)).turned(BACK))
-        return
-    board.place(link, pivot, other, axes)
+    at, towards = (board.carried(rail.on, board.inside[rail.on][one]) for one in (name, end))
+    return Carrier(name, axes, towards, end, at, arc, None, rail.guide)
 
 
 def _angle(pivot: Vector, start: Vector, end: Vector) -> float:

@@ -16,6 +16,8 @@ Line: TypeAlias = tuple[str, ...]
 
 LONGEST = 3
 """Terms of the longest square of a speed that tells more than the components."""
+MANY = 9
+"""Terms of three components whose squares are not tried: hardly any of them would go."""
 
 
 def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
@@ -39,6 +41,8 @@ def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
     ]
     if velocity.z is not None:
         lines.append(_line(f"v_{point}z", velocity.z, velocity.closed_z, spelling))
+        if velocity.x.size + velocity.y.size + velocity.z.size > MANY:
+            return lines
     speed = spelling.letter(Letter(0, f"v_{point}"))
     square = velocity.squared
     if _is_square(square):
