@@ -172,6 +172,7 @@ from .present import contact_figure as contact_figure
 from .present import trade_off_figure as trade_off_figure
 from .present import choice_figures as choice_figures
 from .present import animate_walking as animate_walking
+from .present import animate_motion as animate_motion
 
 # Equations in symbols
 from .equations.derivation import equations as equations

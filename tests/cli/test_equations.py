@@ -63,7 +63,6 @@ def test_documents_are_written_whole(
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("spherical-four-bar",), "spherical-four-bar, space: equations in symbols are written in the plane"),
         (("crank-rocker", "--point", "Q"), "crank-rocker, Q: it is no moving point; one of: A, B"),
         (("crank-rocker", "--point", "O"), "crank-rocker, O: it is no moving point"),
         (("crank-rocker", "--out", "x.pdf"), '--out: ".pdf" is no kind of file for equations'),

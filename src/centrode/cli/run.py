@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 @samples_option
 @start_option
 @stop_option
+@click.option("--animate", is_flag=True, help=mark("Also write an animation of the motion."))
 @no_figures_option
 def run(
     mechanism: str,
@@ -42,6 +43,7 @@ def run(
     samples: int | None,
     start: str | None,
     stop: str | None,
+    animate: bool,
     no_figures: bool,
 ) -> None:
     """Compute and write; exit code 3 if the mechanism locks in the range asked for (the rest is written)."""
@@ -54,6 +56,9 @@ def run(
         with about(mechanism):
             study = ct.study(description, samples, first, last)
         write(study, draft, progress, figures=not no_figures)
+        if animate:
+            with about(mechanism):
+                _animate(study, draft, progress)
         names = sorted(path.name for path in draft.iterdir())
     click.echo(summary_text(study, mechanism))
     click.echo("\n" + output.files_in(folder, names))
@@ -92,6 +97,15 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
         for number, (name, figure) in enumerate(drawn.items(), start=1):
             progress.say(_("drawing {name}").format(name=name), number, len(drawn))
             ct.save_figures({name: figure}, folder)
+
+
+def _animate(study: StudyResults, folder: Path, progress: Progress) -> None:
+    """Write the motion's animation into a folder."""
+
+    def said(done: int, of: int) -> None:
+        progress.say(_("drawing {name}").format(name="motion.gif"), done, of)
+
+    ct.animate_motion(study.mechanism, study.motion, folder / "motion.gif", said=said)
 
 
 def summary_text(study: StudyResults, name: str) -> str:

@@ -11,11 +11,11 @@ from centrode.equations.alphabet import (
     PLACE,
     SLIDE,
     TURN,
-    Alphabet,
     Vector,
     joined,
 )
-from centrode.equations.draft import Draft, Unknown
+from centrode.equations.draft import Draft
+from centrode.equations.lettering import Lettering
 from centrode.equations.letters import Angle, Letter
 from centrode.equations.lines import Line, Rod, lines_of
 from centrode.equations.places import ORIGIN, Place, polar
@@ -24,39 +24,20 @@ from centrode.kinematics.ready import Ready
 from centrode.structure.positions import FRAME
 
 
-class Board:
+class Board(Lettering):
     """Symbols of everything that is known so far, with the numbers of the initial position behind them."""
 
     def __init__(self, ready: Ready) -> None:
-        self.ready = ready
-        self.numbers = ready.kinematics.numbers
-        self.mechanism = ready.mechanism
-        self.alphabet = Alphabet()
-        self.order = {name: i + 1 for i, name in enumerate(self.mechanism.links)}
+        super().__init__(ready)
         self.angles: dict[str, Angle] = {FRAME: Angle()}
-        self.driven: dict[Letter, str] = {}
-        """Letters that a drive gives."""
         self.points: dict[str, Place] = {}
         """With what constraints say put in: y_C = C1."""
         self.full: dict[str, Place] = {}
         """In angles, lengths and slides alone."""
-        self.moving: list[str] = []
-        """Moving points in the order in which they were placed."""
         self.placed: set[str] = {FRAME}
         self.guides = lines_of(ready)
         for name, at in self.numbers.frame.items():
             self.points[name] = self.full[name] = self._fixed(name, (float(at[0]), float(at[1])))
-
-    @property
-    def moves(self) -> Mapping[Letter, Sum]:
-        """Rate of every letter that moves."""
-        return {letter: Sum.letter(rate) for letter, rate in self.alphabet.rates.items()}
-
-    @property
-    def moves_twice(self) -> Mapping[Letter, Sum]:
-        """Rates of letters and of their rates."""
-        seconds = {rate: Sum.letter(second) for rate, second in self.alphabet.seconds.items()}
-        return {**self.moves, **seconds}
 
     # numbers of the initial position
 
@@ -75,10 +56,6 @@ class Board:
         x, y = self.ready.assembled.positions.points[point]
         return complex(float(x), float(y))
 
-    def drive_value(self, drive: str) -> float:
-        """Value of a drive in the initial position."""
-        return float(self.ready.assembled.positions.drives[drive])
-
     # letters that move
 
     def link_angle(self, link: str, draft: Draft, drive: str | None = None) -> Angle:
@@ -88,7 +65,7 @@ class Board:
         letter = self.alphabet.moving(
             number, f"phi{number}", "link angle", (link,), value, "rad", f"omega{number}"
         )
-        self._sort_in(letter, f"angle.{link}", draft, drive)
+        self.sort_in(letter, f"angle.{link}", draft, drive)
         return Angle.of(letter)
 
     def relative_angle(self, link: str, base: str, draft: Draft, drive: str) -> Angle:
@@ -98,7 +75,7 @@ class Board:
             TURN + number, f"theta{number}", "relative angle", (link, base), self.drive_value(drive), "rad",
             f"theta{number}_dot",
         )  # fmt: skip
-        self._sort_in(letter, "", draft, drive)
+        self.sort_in(letter, "", draft, drive)
         return Angle.of(letter)
 
     def slide(self, line: Line, draft: Draft) -> Letter:
@@ -111,7 +88,7 @@ class Board:
             SLIDE + len(self.alphabet.meanings), f"s_{line.name}", "slide", (line.name, line.on), value, "m",
             f"s_{line.name}_dot",
         )  # fmt: skip
-        self._sort_in(letter, f"slide.{line.name}", draft, line.drive)
+        self.sort_in(letter, f"slide.{line.name}", draft, line.drive)
         return letter
 
     def bearing(self, rod: Rod, draft: Draft) -> tuple[Sum, Angle]:
@@ -129,7 +106,7 @@ class Board:
             "rad",
             f"omega_{index}",
         )
-        self._sort_in(letter, f"{'bearing' if rod.drive is None else 'angle'}.{rod.name}", draft, None)
+        self.sort_in(letter, f"{'bearing' if rod.drive is None else 'angle'}.{rod.name}", draft, None)
         if rod.drive is None:
             return self.alphabet.size(LENGTH, f"l_{index}", "reach", (rod.name,), rod.length), Angle.of(
                 letter
@@ -139,13 +116,6 @@ class Board:
         )
         self.driven[stroke] = rod.drive
         return Sum.letter(stroke), Angle.of(letter)
-
-    def _sort_in(self, letter: Letter, name: str, draft: Draft, drive: str | None) -> None:
-        if drive is not None:
-            self.driven[letter] = drive
-            return
-        rate = self.alphabet.rates[letter]
-        draft.unknowns.append(Unknown(name, letter, rate, self.alphabet.seconds[rate]))
 
     # places
 

@@ -22,8 +22,10 @@ from centrode.equations.letters import Letter
 from centrode.equations.places import Place
 from centrode.equations.sums import Sum
 from centrode.equations.systems import LinearSystem, system_of
+from centrode.errors import InputError
 from centrode.kinematics.paths import DrivenBy
 from centrode.kinematics.ready import Ready, ready
+from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -129,6 +131,12 @@ def cauchy_form(mechanism: Mechanism) -> CauchyForm:
 
 def form_of(made: Ready) -> CauchyForm:
     """The normal form of a mechanism made ready."""
+    if made.mechanism.space != "plane":
+        raise InputError(
+            "space",
+            _("the normal form is integrated in the plane, not on the sphere"),
+            _("compute the motion: centrode run; equations in symbols: centrode equations"),
+        )
     board, drafts = laid(made)
     letters = board.alphabet
     systems = tuple(

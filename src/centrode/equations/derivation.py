@@ -1,4 +1,4 @@
-"""The equations of a planar mechanism in symbols: constraints, their derivatives, Cramer's rule, normal form."""
+"""The equations of a mechanism in symbols: constraints, their derivatives, Cramer's rule, normal form."""
 
 from __future__ import annotations
 
@@ -14,8 +14,11 @@ from centrode.equations.formulas import Formula, formula_of
 from centrode.equations.given import Given, given_of
 from centrode.equations.groups import GroupEquations, Solution
 from centrode.equations.laying import laid
+from centrode.equations.lettering import Lettering
 from centrode.equations.letters import Letter
 from centrode.equations.points import PointVelocity, velocity_of
+from centrode.equations.sphere_board import SphereBoard
+from centrode.equations.sphere_laying import laid_on_sphere
 from centrode.equations.sums import Sum
 from centrode.equations.systems import LinearSystem, system_of
 from centrode.errors import InputError
@@ -49,7 +52,7 @@ class Equations:
     groups: tuple[GroupEquations, ...]
     together: Solution | None
     sliding: tuple[str, ...]
-    board: Board
+    board: Board | SphereBoard
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -96,19 +99,20 @@ class Equations:
 
 
 def equations(mechanism: Mechanism) -> Equations:
-    """Constraint equations of a planar mechanism in symbols, differentiated and solved group by group.
+    """Constraint equations of a mechanism in symbols, differentiated and solved group by group.
 
     Raises
     ------
     InputError
-        On the sphere; or the mechanism cannot be driven or does not assemble.
+        The mechanism cannot be driven or does not assemble; or on the sphere other groups than dyads of arcs and
+        circles have to be solved.
     """
     return equations_of(ready(mechanism))
 
 
 def equations_of(made: Ready) -> Equations:
     """The equations of a mechanism made ready."""
-    board, drafts = laid(made)
+    board, drafts = laid(made) if made.mechanism.space == "plane" else laid_on_sphere(made)
     given = given_of(board)
     closed: dict[Letter, Sum] = {}
     deltas = [
@@ -132,7 +136,7 @@ def equations_of(made: Ready) -> Equations:
     )
 
 
-def _rates(board: Board, draft: Draft, given: Given) -> LinearSystem:
+def _rates(board: Lettering, draft: Draft, given: Given) -> LinearSystem:
     return system_of(
         [given.put(one.rate(board.moves)) for one in draft.conditions],
         [one.rate for one in draft.unknowns],
@@ -140,7 +144,7 @@ def _rates(board: Board, draft: Draft, given: Given) -> LinearSystem:
     )
 
 
-def _seconds(board: Board, draft: Draft, given: Given, closed: Mapping[Letter, Sum]) -> LinearSystem:
+def _seconds(board: Lettering, draft: Draft, given: Given, closed: Mapping[Letter, Sum]) -> LinearSystem:
     zeros = {letter: total for letter, total in closed.items() if not total}
     return system_of(
         [given.put(one.rate(board.moves_twice, 2)).replaced(zeros) for one in draft.conditions],
@@ -154,7 +158,7 @@ def _solution(system: LinearSystem, letter: Letter) -> Solution:
 
 
 def _group(
-    made: Ready, board: Board, draft: Draft, given: Given, closed: dict[Letter, Sum], delta: Letter
+    made: Ready, board: Lettering, draft: Draft, given: Given, closed: dict[Letter, Sum], delta: Letter
 ) -> GroupEquations:
     velocities = _solution(_rates(board, draft, given), delta)
     seconds = _solution(_seconds(board, draft, given, closed), delta)
@@ -191,7 +195,7 @@ def _closed(solution: Solution, closed: Mapping[Letter, Sum]) -> tuple[Formula |
     return tuple(found)
 
 
-def _together(board: Board, drafts: tuple[Draft, ...], given: Given) -> Solution | None:
+def _together(board: Lettering, drafts: tuple[Draft, ...], given: Given) -> Solution | None:
     count = sum(len(draft.unknowns) for draft in drafts)
     if len(drafts) < 2 or count > TOGETHER:
         return None
@@ -204,6 +208,8 @@ def _together(board: Board, drafts: tuple[Draft, ...], given: Given) -> Solution
 
 def _label(made: Ready, draft: Draft) -> str:
     """The terms of the structural formula that the group is made of."""
+    if draft.label:
+        return draft.label
     terms = [term.text for term in assur_groups(made.structure) if set(term.members) & set(draft.links)]
     kinds = [made.structure.groups[number].kind for number in draft.plan]
     return " + ".join(terms or [kind for kind in kinds if kind != "rigid point"])

@@ -80,6 +80,8 @@ class Draft:
     plan: list[int] = field(default_factory=list)
     unknowns: list[Unknown] = field(default_factory=list)
     conditions: list[Condition] = field(default_factory=list)
+    label: str = ""
+    """What the group is called where that is not its term of the structural formula."""
 
     @property
     def balance(self) -> int:

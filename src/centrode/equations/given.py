@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from centrode.equations.board import Board
+from centrode.equations.lettering import Lettering
 from centrode.equations.letters import Letter
 from centrode.equations.sums import Sum
 from centrode.laws import Uniform
@@ -43,7 +43,7 @@ class Given:
         return total.replaced(self.values).renamed(self.names)
 
 
-def given_of(board: Board) -> Given:
+def given_of(board: Lettering) -> Given:
     """What the drives of a mechanism give; with one drive at 1 rad/s from 0 its angle is time."""
     found, names, values = [], {}, {}
     path = {one.drive.id: one for one in board.ready.kinematics.path.driven}

@@ -20,16 +20,10 @@ from centrode.locale import _
 
 
 def laid(ready: Ready) -> tuple[Board, tuple[Draft, ...]]:
-    """All chains of a mechanism, and the groups that have unknowns.
+    """All chains of a planar mechanism, and the groups that have unknowns.
 
-    Raises InputError on the sphere, and where constraints and unknowns do not match.
+    Raises InputError where constraints and unknowns do not match.
     """
-    if ready.mechanism.space != "plane":
-        raise InputError(
-            "space",
-            _("equations in symbols are written in the plane, not on the sphere"),
-            _("compute the motion: centrode run"),
-        )
     board = Board(ready)
     chains, waiting = Chains(board), meshings_of(board)
     groups: list[Draft] = []

@@ -12,7 +12,9 @@ from centrode.equations.formulas import Formula, formula_of
 from centrode.equations.given import Given
 from centrode.equations.letters import Letter
 from centrode.equations.places import Place
-from centrode.equations.sums import Sum
+from centrode.equations.sphere_board import SphereBoard
+from centrode.equations.sums import ZERO, Sum
+from centrode.equations.turned import SpherePlace
 from centrode.structure.positions import FRAME
 
 
@@ -24,38 +26,47 @@ class PointVelocity:
     ----------
     point : str
     place : its coordinates in symbols
-    x, y : components along the frame's axes, in the rates
+    x, y, z : components along the frame's axes, in the rates; z on the sphere alone
     along : for a point on a guide of the frame, the component in the guide's direction
-    squared : square of the speed
-    closed_x, closed_y, closed_along : the same in time and unknowns alone, where one product comes out
+    closed_x, closed_y, closed_z, closed_along : the same in time and unknowns alone, where one product comes out
     """
 
     point: str
-    place: Place
+    place: Place | SpherePlace
     x: Formula
     y: Formula
+    z: Formula | None
     along: Formula | None
-    squared: Formula
     closed_x: Formula | None
     closed_y: Formula | None
+    closed_z: Formula | None
     closed_along: Formula | None
 
     @cached_property
-    def expressions(self) -> tuple[Any, Any]:
-        """Both components as SymPy expressions."""
-        return (self.closed_x or self.x).expression, (self.closed_y or self.y).expression
+    def squared(self) -> Formula:
+        """Square of the speed."""
+        components = [one.total for one in (self.x, self.y, self.z) if one is not None]
+        return formula_of(sum((one * one for one in components), ZERO))
+
+    @cached_property
+    def expressions(self) -> tuple[Any, ...]:
+        """All components as SymPy expressions."""
+        both = [(self.closed_x or self.x).expression, (self.closed_y or self.y).expression]
+        return (*both, (self.closed_z or self.z).expression) if self.z is not None else tuple(both)
 
 
 def velocity_of(
-    point: str, place: Place, board: Board, given: Given, closed: Mapping[Letter, Sum]
+    point: str,
+    place: Place | SpherePlace,
+    board: Board | SphereBoard,
+    given: Given,
+    closed: Mapping[Letter, Sum],
 ) -> PointVelocity:
     """Velocity of a point by the shortest chain to it, rates in `closed` put in where that is shorter."""
-    rates = Place(*(given.put(total.rate(board.moves)) for total in place))
-    x, y = (formula_of(total) for total in rates)
-    heading = next(
-        (board.heading(line) for line in board.guides if line.point == point and line.on == FRAME), None
-    )
-    along = None if heading is None else formula_of(rates.along(heading))
+    rates = [given.put(total.rate(board.moves)) for total in place]
+    x, y, *more = (formula_of(total) for total in rates)
+    z = more[0] if more else None
+    along = _along(point, Place(*rates), board) if isinstance(board, Board) else None
 
     def short(formula: Formula | None) -> Formula | None:
         if formula is None or not formula.total.letters & closed.keys():
@@ -63,5 +74,12 @@ def velocity_of(
         found = formula_of(formula.total.replaced(closed))
         return found if found.single else None
 
-    squared = formula_of(rates.x * rates.x + rates.y * rates.y)
-    return PointVelocity(point, place, x, y, along, squared, short(x), short(y), short(along))
+    return PointVelocity(point, place, x, y, z, along, short(x), short(y), short(z), short(along))
+
+
+def _along(point: str, rates: Place, board: Board) -> Formula | None:
+    """The component along a guide of the frame in which a point runs."""
+    heading = next(
+        (board.heading(line) for line in board.guides if line.point == point and line.on == FRAME), None
+    )
+    return None if heading is None else formula_of(rates.along(heading))

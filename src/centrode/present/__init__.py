@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
     from centrode.present.machine_figures import machine_figures
+    from centrode.present.motion_animation import animate_motion
     from centrode.present.outline_dxf import write_outlines_dxf
     from centrode.present.outline_files import write_cam_outlines
     from centrode.present.outline_svg import write_outlines_svg
@@ -72,6 +73,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "animate_centrodes",
+    "animate_motion",
     "balance_figures",
     "animate_walking",
     "choice_figures",
@@ -175,6 +177,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "reduction_tables": ["write_reduction_csv"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
+        "motion_animation": ["animate_motion"],
         "saving": ["save_figures"],
         "simulation_figures": ["simulation_figures"],
         "sweep_tables": ["sweep_csv"],

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, TypeAlias
 from centrode.equations.formulas import Formula, formula_of
 from centrode.equations.letters import Letter
 from centrode.equations.spelling import Spelling, spelled, spelled_sum
+from centrode.equations.sphere_board import SphereBoard
 from centrode.equations.sums import Sum
 from centrode.locale import _
+from centrode.model.mechanism import FRAME
 from centrode.present.equation_velocities import velocity_lines
 from centrode.present.equation_words import meaning_text, value_text
 
@@ -93,6 +95,10 @@ def sections(equations: Equations, spelling: Spelling, points: Sequence[str]) ->
         found.append(Section(_("Cauchy normal form"), tuple(normal)))
         seconds = [line for group in equations.groups for line in _seconds(group, spelling)]
         found.append(Section(_("Accelerations"), tuple(seconds)))
+    if points and isinstance(equations.board, SphereBoard) and not equations.board.own_axes:
+        first, second = equations.board.firsts[FRAME]
+        words = _("x runs through {first}, {second} lies in the half-plane of x and y")
+        found.append(Section(_("Axes"), (Note(words.format(first=first, second=second)),)))
     for point in points:
         lines = velocity_lines(equations.velocity(point), spelling)
         entries: list[Entry] = [Relation(line) for line in lines]
@@ -180,7 +186,7 @@ def _solved(solution: Solution, spelling: Spelling) -> list[Entry]:
 def _index(letter: Letter) -> str:
     """What stands below a rate: the determinant of its column has the same index."""
     name = letter.name
-    return name.removeprefix("omega").removesuffix("_dot").lstrip("_")
+    return name.removeprefix("omega").removeprefix("gamma").removesuffix("_dot").lstrip("_")
 
 
 def _entry(total: Sum, spelling: Spelling) -> str:

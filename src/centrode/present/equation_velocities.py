@@ -16,6 +16,8 @@ Line: TypeAlias = tuple[str, ...]
 
 LONGEST = 3
 """Terms of the longest square of a speed that tells more than the components."""
+MANY = 9
+"""Terms of three components whose squares are not tried: hardly any of them would go."""
 
 
 def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
@@ -26,8 +28,10 @@ def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
     point = velocity.point
     lines: list[Line] = [
         (spelling.letter(Letter(0, f"{axis}_{point}")), spelled_sum(total, spelling))
-        for axis, total, rate in zip("xy", velocity.place, (velocity.x, velocity.y), strict=True)
-        if rate.number
+        for axis, total, rate in zip(
+            "xyz", velocity.place, (velocity.x, velocity.y, velocity.z), strict=False
+        )
+        if rate is not None and rate.number
     ]
     if velocity.along is not None:
         return [*lines, _line(f"v_{point}", velocity.along, velocity.closed_along, spelling)]
@@ -35,6 +39,10 @@ def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
         _line(f"v_{point}x", velocity.x, velocity.closed_x, spelling),
         _line(f"v_{point}y", velocity.y, velocity.closed_y, spelling),
     ]
+    if velocity.z is not None:
+        lines.append(_line(f"v_{point}z", velocity.z, velocity.closed_z, spelling))
+        if velocity.x.size + velocity.y.size + velocity.z.size > MANY:
+            return lines
     speed = spelling.letter(Letter(0, f"v_{point}"))
     square = velocity.squared
     if _is_square(square):

@@ -37,6 +37,12 @@ def meaning_text(meaning: Meaning, equations: Equations) -> str:
         "spin": _("turns of wheel {first} over turns of its centre"),
         "radius": _("radius of wheel {first}"),
         "constant": _("constant of {first}"),
+        "arc": _("arc from {first} to {second}"),
+        "arc of circle": _("arc from the pole of guide {first} to its circle"),
+        "corner": _("angle in {second} from arc {second}-{first} to arc {second}-{third}"),
+        "angle from arc": _("angle of link {first} in {second} from arc {second}-{third}"),
+        "angle on circle": _("angle of {first} about {second} from arc {second}-{third}"),
+        "angle to path": _("angle of link {first} in {second} to the path of {second} about {third}"),
     }
     if meaning.kind == "constant":
         first = _constraint_of(meaning.symbol, equations)
