@@ -18,7 +18,7 @@ from centrode.cams.closed.arcs import working_arc
 from centrode.cams.closed.designing import designed
 from centrode.cams.described import path_of
 from centrode.cams.wheel.walking import mover
-from centrode.model.cams import Cam, varied
+from centrode.model.cams.description import Cam, varied
 
 WHEELS = ["walking-wheel-four-legs", "walking-wheel-three-legs"]
 

@@ -14,7 +14,7 @@ import pytest
 import centrode as ct
 from cam_shapes import exchanged
 from centrode.errors import InputError
-from centrode.present import outline_dxf
+from centrode.present.cams import outline_dxf
 
 ezdxf = pytest.importorskip("ezdxf")
 

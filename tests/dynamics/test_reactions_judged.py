@@ -16,8 +16,8 @@ from centrode.dynamics.kinetostatics.inverse import EPSILON, inverse_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.solution import Forces
 from centrode.dynamics.reducer import Burden
-from centrode.dynamics.solution import SETTLED
 from centrode.dynamics.states import Moving, State
+from centrode.dynamics.steady_motion.solution import SETTLED
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
 from centrode.kinematics.spans import span_at

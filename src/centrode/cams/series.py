@@ -16,7 +16,7 @@ from centrode.cams.path import inside
 from centrode.cams.recursions import Series, exponential_series, system_series
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam_parts import MOST_TERMS
+from centrode.model.cams.parts import MOST_TERMS
 
 Array = NDArray[np.float64]
 

@@ -12,15 +12,15 @@ from matplotlib.lines import Line2D
 
 from centrode.analysis.instant_centres.centres import bearing
 from centrode.locale import _, ngettext
-from centrode.present.axes_drawing import draw_axes
 from centrode.present.curves import write_title
 from centrode.present.drawing import draw_mechanism
-from centrode.present.globe import globe_of
 from centrode.present.obstacles import lines
 from centrode.present.pictures import caption, label_lengths
 from centrode.present.reading import scene_of
 from centrode.present.scene import Array, Scene
 from centrode.present.shown import plain
+from centrode.present.sphere.axes_drawing import draw_axes
+from centrode.present.sphere.globe import globe_of
 from centrode.present.style import INK, MUTED, house_style, pens
 from centrode.present.symbols import subscripted
 from centrode.present.tags import Tag, write_tags

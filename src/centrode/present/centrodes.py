@@ -14,16 +14,16 @@ from matplotlib.lines import Line2D
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.present.animation import write_animation
-from centrode.present.axes_drawing import whole
 from centrode.present.curves import write_legend, write_title
 from centrode.present.drawing import draw_mechanism
-from centrode.present.globe import Globe, globe_of
 from centrode.present.obstacles import lines
 from centrode.present.pictures import caption, initial_sample, label_lengths
-from centrode.present.polodes_drawing import draw_polodes
 from centrode.present.reading import scene_of
 from centrode.present.scene import Array, Scene
 from centrode.present.shown import plain
+from centrode.present.sphere.axes_drawing import whole
+from centrode.present.sphere.globe import Globe, globe_of
+from centrode.present.sphere.polodes_drawing import draw_polodes
 from centrode.present.style import house_style
 from centrode.present.tags import Tag, write_tags
 from centrode.present.window import carried_by, segments_of, widened, within

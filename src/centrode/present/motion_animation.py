@@ -15,11 +15,11 @@ from centrode.locale import _
 from centrode.present.animation import no_progress, write_animation
 from centrode.present.curves import write_title
 from centrode.present.drawing import MARGIN, draw_mechanism
-from centrode.present.globe import Globe, globe_of
-from centrode.present.globe_drawing import draw_globe, draw_line
 from centrode.present.pictures import complete
 from centrode.present.reading import scene_of
 from centrode.present.scene import Scene
+from centrode.present.sphere.globe import Globe, globe_of
+from centrode.present.sphere.globe_drawing import draw_globe, draw_line
 from centrode.present.style import MUTED
 
 if TYPE_CHECKING:
@@ -73,7 +73,9 @@ def _samples(scene: Scene | Globe, frames: int) -> list[int]:
     known = np.flatnonzero(complete(scene))
     if not known.size:
         raise InputError("", _("no sample has every point in place"), _("ask for another range"))
-    chosen: list[int] = known[np.unique(np.linspace(0, known.size - 1, frames + 1).round().astype(int))].tolist()
+    chosen: list[int] = known[
+        np.unique(np.linspace(0, known.size - 1, frames + 1).round().astype(int))
+    ].tolist()
     moving = [scene.tracks[name] for name in scene.mechanism.moving_points]
     apart = max(float(np.abs(track[chosen[0]] - track[chosen[-1]]).max()) for track in moving)
     if len(chosen) > 1 and apart <= 1e-6 * scene.extent:

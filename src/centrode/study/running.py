@@ -21,9 +21,9 @@ from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.structure.dimensions import SPACES
-from centrode.study.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
 from centrode.study.checking import Check, check_of
-from centrode.study.machines import MachineResults, flywheel_scalars, machine_results
+from centrode.study.forces.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
+from centrode.study.forces.machines import MachineResults, flywheel_scalars, machine_results
 from centrode.study.scalars import Scalar
 from centrode.study.wording import Words, extremes, unit_of_drive
 

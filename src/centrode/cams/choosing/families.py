@@ -16,8 +16,8 @@ from centrode.cams.curvature_laws import derivatives
 from centrode.cams.described import law_of
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam_values import CONSTANT, POINT
-from centrode.model.cams import Cam, varied
+from centrode.model.cams.description import Cam, varied
+from centrode.model.cams.values import CONSTANT, POINT
 from centrode.model.frozen import FrozenMap
 
 Array = NDArray[np.float64]

@@ -20,7 +20,7 @@ from centrode.cams.sampled import angles_of
 from centrode.errors import InputError
 from centrode.kinematics.dataset import named
 from centrode.locale import _
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
 
 Array = NDArray[np.float64]
 

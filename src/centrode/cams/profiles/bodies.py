@@ -28,8 +28,8 @@ from centrode.cams.profiles.equidistants import (
 from centrode.cams.searching import roots
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.model.cam_parts import Return
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
+from centrode.model.cams.parts import Return
 
 LEAST_BEND = 0.1
 """Least radius of curvature of a designed profile over the roller's radius, where the description gives none."""

@@ -10,11 +10,11 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from centrode.dynamics.balancing.inertial import Array, Pace
-from centrode.dynamics.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME
 from centrode.dynamics.masses import Mass
-from centrode.dynamics.quadrature import Panels
-from centrode.dynamics.solution import Solution, solution_of
 from centrode.dynamics.states import Moving, State
+from centrode.dynamics.steady_motion.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME
+from centrode.dynamics.steady_motion.quadrature import Panels
+from centrode.dynamics.steady_motion.solution import Solution, solution_of
 from centrode.errors import InputError, MotionError, NotComputedYet
 from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready

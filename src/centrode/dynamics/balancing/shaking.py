@@ -13,9 +13,9 @@ from centrode.dynamics.balancing.harmonics import Harmonics, harmonics_of
 from centrode.dynamics.balancing.inertial import Array, Effects, Pace, effects_of, tracks_of
 from centrode.dynamics.balancing.instants import Speed, check_speed, on_sphere
 from centrode.dynamics.balancing.turning import Turning, heavy, top
-from centrode.dynamics.solution import solution_of
 from centrode.dynamics.states import Moving, State
-from centrode.dynamics.steady import turned_at
+from centrode.dynamics.steady_motion.solution import solution_of
+from centrode.dynamics.steady_motion.steady import turned_at
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.dataset import (
     Variable,

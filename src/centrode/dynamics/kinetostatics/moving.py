@@ -11,9 +11,9 @@ import numpy.typing as npt
 from centrode.algebra.jets import Jet
 from centrode.dynamics.reducer import Burden, Reducer
 from centrode.dynamics.several import refuse_drive_in_formulas
-from centrode.dynamics.solution import solution_of
 from centrode.dynamics.states import Moving
-from centrode.dynamics.steady import turned_at
+from centrode.dynamics.steady_motion.solution import solution_of
+from centrode.dynamics.steady_motion.steady import turned_at
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.solve import Solved
