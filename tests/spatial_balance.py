@@ -171,10 +171,8 @@ def down() -> Array:
 
 def rounding(growing: Growing, motion: xr.Dataset) -> float:
     """What the axes of a link lose that here come from two of its points, and accelerations from few numbers."""
-    nearest = min(
-        np.linalg.norm(np.cross(*(growing.places[p] for p in list(body["points"])[:2])))
-        for body in growing.links.values()
-    )
+    pairs = [[growing.places[p] for p in list(body["points"])[:2]] for body in growing.links.values()]
+    nearest = min(np.linalg.norm(np.cross(one, other)) for one, other in pairs)
     fast = 1.0 + float(np.nanmax(abs(motion.angular_velocity))) ** 2
     fast += float(np.nanmax(abs(motion.angular_acceleration)))
     return 256 * EPS * fast / min(float(nearest), 1.0)

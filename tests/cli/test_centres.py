@@ -223,3 +223,41 @@ def test_a_big_mechanism_asks_for_pairs(centrode: Centrode, folder: Path) -> Non
     assert done.code == 0, done.err
     assert "two velocity directions" in printed(done.out, "P16,0")
     assert sorted(path.name for path in (folder / "r").iterdir()) == ["centres.csv", "centres.nc"]
+
+
+def test_axes_on_the_sphere(centrode: Centrode, folder: Path) -> None:
+    """Rows with the relative speed, a table with unit vectors, the picture."""
+    done = centrode("centres", "spherical-crank-guide", "--at", "1 rad", "--out", "r")
+    assert done.code == 0, done.err
+    assert "pole of guide C" in done.out and "57.2957795 deg/s" in done.out
+    assert "P20" in done.out and "P21 P10 × P32 P30" in done.out
+    head, *rows = (folder / "r" / "centres.csv").read_text().splitlines()
+    assert head.split(",")[4:8] == ["centre_x", "centre_y", "centre_z", "relative_speed [deg/s]"]
+    assert len(rows) == 6
+    for row in rows:
+        assert abs(sum(float(x) ** 2 for x in row.split(",")[4:7]) - 1.0) <= 8 * np.finfo(float).eps
+    assert sorted(p.name for p in (folder / "r").iterdir()) == [
+        "centres.csv", "centres.nc", "centres.png", "centres.svg"
+    ]  # fmt: skip
+
+
+def test_polodes_on_the_sphere(centrode: Centrode, folder: Path) -> None:
+    done = centrode(
+        "centrodes",
+        "bevel-pair",
+        "--link",
+        "BF",
+        "--against",
+        "AE",
+        "--samples",
+        "25",
+        "--animate",
+        "--out",
+        "r",
+    )
+    assert done.code == 0, done.err
+    assert done.rows["pieces"] == "1"
+    assert done.rows["arc of the fixed centrode"].startswith("160.99")  # 360 deg / sqrt(5)
+    head = (folder / "r" / "centrodes.csv").read_text().splitlines()[0]
+    assert "fixed_centrode_z" in head and "moving_arc [deg]" in head
+    assert (folder / "r" / "centrodes.gif").stat().st_size > 10_000

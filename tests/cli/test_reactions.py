@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -41,6 +42,33 @@ guide = "B"
 value = "-2 kN"
 [assembly]
 sides = { B = "ahead" }
+"""
+
+LOCKING = """\
+title = "Locks"
+space = "sphere"
+[frame.points]
+A = [0, 0]
+D = [1, 0]
+Z = [0, 1.5]
+[links.AB]
+length = 0.5
+reference = ["A", "D"]
+[links.BC]
+length = 1.2
+[links.DC]
+length = 0.5
+reference = ["D", "Z"]
+[[drives]]
+link = "AB"
+start = 1
+speed = 1
+[[loads]]
+kind = "force"
+point = "C"
+vector = [0, 0, -100]
+[assembly]
+sides = { C = "left" }
 """
 
 
@@ -227,10 +255,43 @@ def test_a_mechanism_without_masses_and_loads_is_refused(centrode: Centrode) -> 
     assert "give links a mass" in done.err
 
 
-def test_the_sphere_is_refused(centrode: Centrode) -> None:
-    done = centrode("reactions", "spherical-four-bar")
+def test_the_sphere(centrode: Centrode, folder: Path) -> None:
+    """Three components, the forces of the centre, and no column of directions."""
+    done = centrode("reactions", "spherical-crank-rocker-rigid", "--samples", 13, "--out", "r")
+    assert (done.code, done.err) == (0, "")
+    assert done.rows["samples"] == "13: ok 13"
+    assert "centre on BC" in done.out
+    rows = rows_of(folder / "r" / "reactions.csv")
+    assert {"joint_force_B/BC_z [N]", "joint_moment_B/BC_z [N m]", "centre_force_BC_x [N]"} <= set(rows[0])
+    figures = {path.name for path in (folder / "r").iterdir() if path.suffix == ".svg"}
+    assert {"joint-forces.svg", "joint-components.svg", "centre-forces.svg", "frame-force.svg"} <= figures
+    data = ct.reactions(ct.example("spherical-crank-rocker-rigid"), at=[1.0])
+    done = centrode("reactions", "spherical-crank-rocker-rigid", "--at", "1 rad")
+    header = next(line for line in done.out.splitlines() if line.startswith("reaction "))
+    assert header.split() == ["reaction", "unit", "x", "y", "z", "magnitude"]
+    line = next(line for line in done.out.splitlines() if line.startswith("B: BC on AB"))
+    force = data.joint_force.sel(side="B/AB").to_numpy()[0]
+    wanted = [f"{x:.6g}" for x in (*force, np.linalg.norm(force))]
+    assert line.split()[-4:] == wanted
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("spherical-four-bar", "neither masses nor loads"), ("spherical-crank-rocker", "no moment in a hinge")],
+)
+def test_what_makes_no_reactions_on_the_sphere(centrode: Centrode, name: str, reason: str) -> None:
+    done = centrode("reactions", name)
     assert done.code == 2
-    assert "on the sphere are not computed yet" in done.err
+    assert reason in done.err
+    assert "Traceback" not in done.err
+
+
+def test_a_spherical_linkage_that_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
+    (folder / "m.toml").write_text(LOCKING)
+    done = centrode("reactions", "m.toml", "--samples", 21, "--from", "1 rad", "--to", "0 rad")
+    assert done.code == 3
+    assert "locks" in done.err
+    assert "open" in done.out
 
 
 def test_a_run_writes_reactions(centrode: Centrode, folder: Path) -> None:
@@ -254,11 +315,11 @@ def test_a_run_says_why_reactions_are_left_out(centrode: Centrode, folder: Path)
     assert not (folder / "s" / "reactions.csv").exists()
 
 
-def test_friction_by_a_coefficient_and_plain_sums_are_refused(centrode: Centrode, folder: Path) -> None:
+def test_friction_that_no_joint_bears_is_refused(centrode: Centrode, folder: Path) -> None:
     example = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
     link = list(ct.example("crank-rocker").links)[-1]
     for keys, message in (
-        ("coefficient = 0.1", "friction by a coefficient needs the reactions"),
+        ("coefficient = 0.1", "friction by a coefficient in a hinge needs the point"),
         ('quadratic = 0.1\nform = "plain sum"', "a plain sum is no moment in a hinge"),
     ):
         (folder / "r.toml").write_text(example.replace('"DB"', f'"{link}"') + keys + "\n")

@@ -180,6 +180,42 @@ def test_the_arm_of_friction_in_a_high_slider() -> None:
         close(found.guide_force[:, 0, 0], -mu * 40 * speed, 40.0)
 
 
+@pytest.mark.parametrize("eccentric", [1.2, -1.2, 0.05])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_high_drawer_by_its_two_contacts(eccentric: float, sense: float) -> None:
+    """Forces of both ends on lower or upper face, put on the drawer one by one, with 40 N on it."""
+    mu, length, height, pull, weight = 0.2, 0.8, 0.5, 10.0, 40.0
+    one = drawer(length, eccentric, mu, height)
+    loads = [
+        {"kind": "force", "guide": "S", "value": -pull * sense},
+        {"kind": "force", "point": "S", "vector": [0, -weight]},
+        {"kind": "friction", "guide": "S", "coefficient": mu, "length": length, "height": height},
+    ]
+    parts = {name: getattr(one, name) for name in ("frame", "links", "guides", "assembly")}
+    machine = ct.Mechanism(**parts, drives=[{"guide": "D", "speed": 0.5 * sense}], loads=loads)
+    found = ct.reactions(machine, 3, 0.1, 0.2)
+    force = sense * pull
+    for _round in range(200):  # each round leaves less than two thirds of the error
+
+        def moment(first: float, second: float, force: float = force) -> float:
+            """About S: the pin's force, then both contacts at x = -l/2 and l/2 with friction on their faces."""
+            total = -eccentric * force
+            for place, normal in ((-length / 2, first), (length / 2, second)):
+                face = -math.copysign(height / 2, normal)
+                total += place * normal - face * (-sense * mu * abs(normal))
+            return total
+
+        # straight in N_2 - N_1 at N_1 + N_2 = W, whatever the faces
+        zero, unit = moment(weight / 2, weight / 2), moment(weight / 2 - 1, weight / 2 + 1)
+        apart = -zero / (unit - zero)
+        first, second = weight / 2 - apart, weight / 2 + apart
+        assert abs(moment(first, second)) < 1e-12 * weight
+        force = sense * (pull + mu * (abs(first) + abs(second)))
+    assert (first * second < 0) is (abs(eccentric) > 1.0)
+    close(found.balancing[:, 0], force, 64 * abs(force))
+    close(found.guide_normal.sel(guide="S"), weight, 64 * abs(force))
+
+
 L, R = 0.35, 0.1
 CRANK = {
     "frame": {"points": {"O": [0, 0]}},

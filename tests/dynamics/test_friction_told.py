@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from mechanisms import EPS
+from mechanisms import EPS, parts_of
 
 PUSH = {"kind": "force", "point": "B", "vector": [-5, 3]}
 FOUR: dict[str, Any] = {
@@ -142,6 +142,16 @@ def test_without_friction_nothing_is_said_of_it() -> None:
     assert (zero.friction_power == 0).all()
 
 
+def test_works_do_not_depend_on_the_order_of_the_samples() -> None:
+    machine = rubbing(SLIDER, guide(), hinge())
+    one, other = ct.reactions(machine, 49, 0.0, 5.0), ct.reactions(machine, 49, 5.0, 0.0)
+    assert (one.friction_work > 0).all()
+    assert np.allclose(one.friction_work, other.friction_work, rtol=1e4 * EPS)
+    assert math.isclose(one.attrs["efficiency"], other.attrs["efficiency"], rel_tol=1e4 * EPS)
+    back = rubbing({**SLIDER, "drives": [{"link": "OA", "speed": -2.0}]}, guide(), hinge())
+    assert (ct.reactions(back, 49, -5.0, 0.0).friction_work > 0).all()
+
+
 def test_works_need_a_range() -> None:
     machine = rubbing(SLIDER, guide())
     at = ct.reactions(machine, at=[2.0, 1.0])
@@ -231,6 +241,15 @@ def test_what_knows_no_reactions_refuses() -> None:
             compute(machine)
     with pytest.raises(ct.NotComputedYet, match="the real speed of a machine with friction"):
         ct.reactions(machine, speed="steady")
+
+
+def test_there_is_none_on_the_sphere_yet() -> None:
+    parts = parts_of(ct.example("spherical-crank-rocker"))
+    load = {"kind": "friction", "point": "A", "coefficient": 0.1, "radius": 0.01}
+    rocker = ct.Mechanism(**{**parts, "loads": [load]})
+    with pytest.raises(ct.NotComputedYet, match="friction by a coefficient on the sphere"):
+        ct.reactions(rocker, 5)
+    assert "friction_power" not in ct.reactions(rocker, 5, friction=False)
 
 
 def test_the_description_comes_back() -> None:

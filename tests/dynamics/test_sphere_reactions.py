@@ -17,6 +17,14 @@ from spherical_bodies import dot, place
 
 Array = npt.NDArray[np.float64]
 ROUNDING = 256 * EPS
+RING = {
+    "points": ["C", "B"],
+    "length": pi / 4,
+    "centre": "C",
+    "mass": 1.5,
+    "inertia": 0.8,
+    "model": "ring and point mass",
+}
 
 
 def force(found: xr.Dataset, side: str) -> Array:
@@ -242,12 +250,14 @@ def test_a_small_linkage_is_a_plane_one() -> None:
     assert np.max(abs(plane.balancing - sphere.balancing)) <= allowed
     # equations are about places of the linkage, so that they are as good as those of the plane
     assert float(np.max(sphere.reaction_loss)) <= 16 * float(np.max(plane.reaction_loss))
+    for name in ("equilibrium_residual", "frame_residual", "power_residual"):
+        assert sphere.attrs[name] <= ROUNDING * float(np.sqrt(np.max(sphere.reaction_loss) / EPS))
 
 
 def test_no_numbers_at_dead_points() -> None:
     """A rhomboid whose links lie in one great circle, and a crank that does not turn fully."""
     frame = {"points": {"A": [1, 0, 0], "D": [cos(1.0), sin(1.0), 0], "Z": [0, 0, 1]}}
-    links = {
+    links: dict[str, Any] = {
         "AB": {"length": 0.5, "reference": ["A", "D"]},
         "BC": {"length": 1.0},
         "DC": {"length": 0.5, "reference": ["D", "Z"]},
@@ -282,11 +292,43 @@ def test_what_makes_no_reactions() -> None:
         ct.reactions(ct.Mechanism(**parts))
 
 
-def test_steady_motion() -> None:
+def test_rings_and_inertia_without_mass() -> None:
+    """The moment of momentum of a ring of a moving coupler is I (w . e) e, of a ball without mass I w."""
+    parts = crank(by="rocker", loads=[], gravity=[1.0, -9.0, 3.0])
+    parts["links"]["AB"] |= {"inertia": [0.3, 0.5, 0.7]}
+    parts["links"]["BC"] = RING
+    parts["links"]["DC"] |= {"inertia": 0.6}
+    mechanism = ct.Mechanism(**parts)
+    values = np.linspace(0.1, 6.0, 15)
+    found, data, reduced = (
+        ct.reactions(mechanism, at=values),
+        ct.motion(mechanism, at=values),
+        ct.reduce(mechanism, at=values),
+    )
+    wanted = reduced.reduced_inertia_slope * 9.0 / 2 - reduced.reduced_moment
+    condition = float(np.sqrt(np.max(found.reaction_loss) / EPS))
+    size = ROUNDING * condition * float(np.max(abs(found.joint_force)) + np.max(abs(wanted)))
+    assert np.max(abs(found.balancing[:, 0] - wanted)) <= size
+    w, e = (data[f"angular_{name}"].sel(link="BC").to_numpy() for name in ("velocity", "acceleration"))
+    axis = place(data, "C")
+    rate = dot(e, axis)[:, None] * axis + dot(w, axis)[:, None] * np.cross(w, axis)
+    assert np.max(abs(found.inertia_moment.sel(link="BC") + 0.8 * rate)) <= size
+    rocker = data.angular_acceleration.sel(link="DC").to_numpy()
+    assert np.max(abs(found.inertia_moment.sel(link="DC") + 0.6 * rocker)) <= size
+    # the driven link turns evenly about its first axis, a principal one
+    assert np.max(abs(found.inertia_moment.sel(link="AB"))) <= size
+    assert np.array_equal(found.inertia_force.sel(link=["AB", "DC"]), np.zeros((15, 2, 3)))
+
+
+@pytest.mark.parametrize("ring", [False, True])
+def test_steady_motion(ring: bool) -> None:
     """At the real speed of a machine the drive gives J q'' + J' q'^2/2 - M, and bearings what that motion asks for."""
     torque = {"kind": "torque", "link": "DC", "value": "-2*v - 0.5*v*abs(v)"}
     machine = {"mean_speed": 5.0, "fluctuation": 0.05}
-    mechanism = ct.Mechanism(**crank(by="rocker", machine=machine, loads=[torque]))
+    parts = crank(by="rocker", machine=machine, loads=[torque])
+    if ring:
+        parts["links"]["BC"] = RING
+    mechanism = ct.Mechanism(**parts)
     found, steady = ct.reactions(mechanism, 25, speed="steady"), ct.steady_motion(mechanism, 25)
     rate, bend = steady.drive_speed.to_numpy(), steady.drive_acceleration.to_numpy()
     reduced = Reducer.of(mechanism).at(found.drive_value.to_numpy()[:, 0], rate)

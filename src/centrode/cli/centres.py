@@ -26,7 +26,7 @@ MOST_ROWS = 300
 """Centres of one place that are printed without being asked for by name."""
 
 
-@click.command(help=mark("Find the instant centres (on the sphere, axes) of every pair of links."))
+@click.command(help=mark("Find the instant centres of velocity of every pair of links."))
 @mechanism_argument
 @click.option(
     "--at",

@@ -79,9 +79,7 @@ class Burden:
 
     @classmethod
     def for_reactions(cls, mechanism: Mechanism) -> Burden:
-        """The same as forces on points and links; friction by coefficients in the plane comes with the reactions."""
-        if mechanism.space == "sphere":
-            return cls.of(mechanism)._as_forces()
+        """The same without friction by coefficients, as forces on points and links; InputError for what is no force."""
         loads = [load for load in mechanism.loads if load.coefficient is None]
         return cls._of(mechanism, None, ARRAYS, loads)._as_forces()
 

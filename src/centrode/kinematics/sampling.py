@@ -76,8 +76,7 @@ def evaluate_columns(
         fill_columns(kinematics, layout, at, samples.columns)
     judging.opened |= kinematics.path.impossible(parameter)
     for k, link in enumerate(layout.angles):
-        counted = layout.runs_on or link in kinematics.numbers.gearing.measured
-        if counted and link in at.angles:
+        if layout.runs_on and link in at.angles:
             fill_number(samples.angles[:, k], at.angles[link])
             samples.followed.add(link)
     return judging

@@ -42,14 +42,16 @@ def reaction_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str,
     Returns
     -------
     dict of name -> Figure
-        "joint-forces" (magnitudes), on the sphere "centre-forces", "other-reactions" (guides, teeth, wheels),
-        "balancing", "friction" (by coefficients: its power, the efficiency) and "frame-force" (all of it, and the part
-        of inertia). What there is none of, or is not determined, is left out.
+        "joint-forces" (magnitudes), on the sphere "joint-components" (x, y and z at the first link of each hinge) and
+        "centre-forces" (magnitudes), "other-reactions" (guides, teeth, wheels), "balancing", "friction" (by
+        coefficients: its power, the efficiency) and "frame-force" (all of it, and the part of inertia). What there is
+        none of, or is not determined, is left out.
     """
     with house_style():
         abscissa = main_abscissa(mechanism, dataset)
         found = {
             "joint-forces": (_("Forces in the hinges"), _hinges(dataset)),
+            "joint-components": (_("Forces in the hinges by components"), _components(dataset)),
             "centre-forces": (_("Forces of the centre of the sphere"), _centre(dataset)),
             "other-reactions": (_("Reactions of guides, gears and wheels"), _others(dataset)),
             "balancing": (_("What the drives must give"), _drives(dataset)),
@@ -77,6 +79,20 @@ def _hinges(dataset: xarray.Dataset) -> list[Panel]:
         else:
             curves |= {str(labels[k]): sizes[:, k] for k in sides}
     return _panels("joint_force", curves, split=True)
+
+
+def _components(dataset: xarray.Dataset) -> list[Panel]:
+    """On the sphere: components of the force on the first link of each hinge, a panel for each axis."""
+    if "centre_force" not in dataset:
+        return []
+    points, labels = dataset["side_point"].to_numpy().tolist(), dataset["side"].to_numpy().tolist()
+    first = [labels[points.index(point)] for point in dict.fromkeys(points)]
+    panels = []
+    for axis in dataset["axis"].to_numpy().tolist():
+        values = dataset["joint_force"].sel(axis=axis)
+        curves = {side: values.sel(side=side).to_numpy() for side in first}
+        panels += _panels("joint_force", curves, split=True, along=axis)
+    return panels
 
 
 def _centre(dataset: xarray.Dataset) -> list[Panel]:
@@ -162,14 +178,14 @@ def _frame(dataset: xarray.Dataset) -> list[Panel]:
 
 
 def _panels(
-    variable: str, curves: Mapping[str, Array], unit: str = "", *, split: bool = False
+    variable: str, curves: Mapping[str, Array], unit: str = "", *, split: bool = False, along: str = ""
 ) -> list[Panel]:
-    """One panel of the curves that have numbers, or as many as keep them apart."""
+    """One panel of the curves that have numbers, or as many as keep them apart; `along` names an axis."""
     known = {name: curve for name, curve in curves.items() if np.isfinite(curve).any()}
     quantity, drawn = QUANTITIES[variable], pens(known)
     # a drive along a guide or of a cylinder gives a force
     symbol = "F_b" if (variable, unit) == ("balancing", "N") else quantity.symbol
-    text = labelled(formula(symbol), unit or quantity.unit)
+    text = labelled(formula(symbol, along), unit or quantity.unit)
     groups: Sequence[Sequence[str]] = in_panels(known) if split else [list(known)]
     return [
         Panel(

@@ -8,7 +8,7 @@ from math import pi
 from typing import Any, TypeAlias
 
 from centrode.dynamics.coordinates import Slide, Turn
-from centrode.errors import InputError
+from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.model.loads import Load
 from centrode.model.mechanism import FRAME, Mechanism
@@ -91,13 +91,16 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
     """Contacts with friction by a coefficient, in the order of the loads.
 
     Raises InputError for a hinge that is none, a pin in a body that is not there, a slider that is no link, and for a
-    contact that is given twice.
+    contact that is given twice; NotComputedYet on the sphere.
     """
     found: dict[str, Contact] = {}
     for load in mechanism.loads:
         if load.coefficient is None:
             continue
         where = f"[[loads]] {load.label}"
+        if mechanism.space == "sphere":
+            what = _("friction by a coefficient on the sphere is not computed yet")
+            raise NotComputedYet(where, what, _("give the size of the friction, or leave it out"))
         contacts = [_sliding(mechanism, load, where)] if load.guide else _bearings(mechanism, load, where)
         for contact in contacts:
             if contact.label in found:

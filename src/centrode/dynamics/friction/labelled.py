@@ -8,7 +8,7 @@ import numpy as np
 
 from centrode.dynamics.friction.contacts import Bearing, Contact
 from centrode.dynamics.friction.following import Outcome
-from centrode.dynamics.friction.losses import JAMMED, LOCKING, Powers
+from centrode.dynamics.friction.losses import JAMMED, LOCKING, Powers, works_over
 from centrode.dynamics.friction.reversals import reversals
 from centrode.dynamics.friction.rubbing import Rubbed
 from centrode.kinematics.dataset import Variable, labels_of, named, units_of_drives
@@ -25,7 +25,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
         "flag_values": np.array(list(LOCKING), dtype=np.int8),
         "flag_meanings": " ".join(LOCKING.values()),
     }
-    works = np.trapezoid(-rubbed.amounts * rubbed.slopes, parameter, axis=0)
+    works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
     works = np.where(whole and _found(rubbed), works, np.nan)
     found = {
         "friction_work": named("friction_work", ("friction",), works),

@@ -64,9 +64,8 @@ class Powers:
     def mean_efficiency(self, parameter: Array) -> float:
         """The same of works over all samples; each drive, each load and inertia counts with what it gives in all."""
         parts = np.column_stack([self.drives, self.loads, self.inertia])
-        works = np.asarray(np.trapezoid(parts, parameter, axis=0))
-        lost = np.asarray(np.trapezoid(self.lost, parameter))
-        return float(_efficiency(works[None], lost[None])[0])
+        works, lost = (works_over(parameter, self.rate, values) for values in (parts, self.lost[:, None]))
+        return float(_efficiency(works[None], lost)[0])
 
     @property
     def locking(self) -> Codes:
@@ -77,6 +76,16 @@ class Powers:
         with np.errstate(invalid="ignore"):
             held = (outer > noise) & (driving >= 0.0)
         return np.where(held, HELD, FREE).astype(np.int8)
+
+
+def works_over(parameter: Array, rate: Array, moments: Array) -> Array:
+    """Works (m) of moments (n, m) along a parameter, by the trapezoidal rule, in the sense in which `rate` goes.
+
+    The samples may be told backwards.
+    """
+    way = np.abs(np.diff(parameter))[:, None]
+    values = moments * np.sign(rate)[:, None]
+    return np.asarray((0.5 * way * (values[1:] + values[:-1])).sum(axis=0))
 
 
 def _rubs(load: Acting) -> bool:

@@ -34,7 +34,7 @@ GREATEST_MATRICES = 30_000_000
 
 
 @dataclass(frozen=True)
-class Rubbing:
+class WithFriction:
     """Friction with what it takes."""
 
     rubbed: Rubbed
@@ -53,7 +53,7 @@ class Found:
     parts : name -> reactions (samples, ...); of an undetermined one, one of the many that are possible
     undetermined : name -> mask (...) of reactions that nothing determines
     status : (samples)
-    rubbing : friction by coefficients, where there is any
+    friction : friction by coefficients, where there is any
     """
 
     pace: Pace
@@ -63,7 +63,7 @@ class Found:
     parts: dict[str, Array]
     undetermined: dict[str, Mask]
     status: npt.NDArray[np.int8]
-    rubbing: Rubbing | None = None
+    friction: WithFriction | None = None
 
 
 def find(solved: Solved, burden: Burden, pace: Pace, contacts: Sequence[Contact] = ()) -> Found:
@@ -92,23 +92,23 @@ def _with_friction(
     """The same with friction, which is as great as the reactions that it changes make it."""
     refuse_undetermined(contacts, found.undetermined, found.sides, solved.ready.mechanism)
     useful = (found.status == Status.OK) | (found.status == Status.CUT_OFF)
-    rubbing = rubbed(state, found.forces, contacts, found.pace.acceleration, useful)
+    sizes = rubbed(state, found.forces, contacts, found.pace.acceleration, useful)
     without = found.outer
     outer = Outer(
-        (*without.loads, *rubbing.pulls), without.inertia, without.moment + rubbing.moment, without.shares
+        (*without.loads, *sizes.pulls), without.inertia, without.moment + sizes.moment, without.shares
     )
     forces = found.forces.system.forces(outer.pulls)
     parts = reactions_of(forces, found.sides)
-    with_friction(parts, rubbing, state)
+    with_friction(parts, sizes, state)
     status = found.status.copy()
-    status[rubbing.solution.outcome == Outcome.LOCKED] = Status.SELF_LOCKING
-    status[rubbing.solution.outcome == Outcome.LOST] = Status.UNCONVERGED
+    status[sizes.solution.outcome == Outcome.LOCKED] = Status.SELF_LOCKING
+    status[sizes.solution.outcome == Outcome.LOST] = Status.UNCONVERGED
     by_time = solved.ready.kinematics.path.by_time
     drives = parts["balancing"] * rates_of(solved, found.pace) if by_time else parts["balancing"]
-    powers = Powers.of(drives, burden.loads, without.shares, without.moment, rubbing, found.pace.moving.rate)
-    parts |= friction_parts(rubbing, powers, state.mechanism)
+    powers = Powers.of(drives, burden.loads, without.shares, without.moment, sizes, found.pace.moving.rate)
+    parts |= friction_parts(sizes, powers, state.mechanism)
     return replace(
-        found, outer=outer, forces=forces, parts=parts, status=status, rubbing=Rubbing(rubbing, powers)
+        found, outer=outer, forces=forces, parts=parts, status=status, friction=WithFriction(sizes, powers)
     )
 
 

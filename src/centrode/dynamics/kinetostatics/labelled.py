@@ -88,8 +88,8 @@ def labelled(solved: Solved, burden: Burden, found: Found, whole: bool) -> xr.Da
     attributes = attributes_of(solved) | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
     coordinates = _coordinates(solved, burden, found)
-    if found.rubbing is not None:
-        rubbed, powers = found.rubbing.rubbed, found.rubbing.powers
+    if found.friction is not None:
+        rubbed, powers = found.friction.rubbed, found.friction.powers
         variables |= friction_variables(solved, rubbed, powers, whole)
         coordinates |= friction_coordinates(rubbed.contacts)
         attributes |= friction_attributes(solved, rubbed, powers, whole)
