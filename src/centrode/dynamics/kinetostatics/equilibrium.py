@@ -17,6 +17,8 @@ from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import FRAME, Positions, Row
 
 Number: TypeAlias = Any
+Foot: TypeAlias = tuple[Any, ...]
+"""The place of a link's first point, on the sphere with two directions square to it."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,11 @@ class Equilibrium(Protocol):
     def of_row(self, constraint: Constraint, row: Row, at: Positions, link: str | None) -> tuple[Pull, ...]:
         """Forces and moments of a constraint's row at a multiplier of one; `link` bears what acts on its point."""
 
-    def on_link(self, pull: Pull, first: Vector, scale: float) -> tuple[Number, Number, Number]:
-        """What a pull does to the three equations of its link [N], whose first point has this place."""
+    def foot(self, first: Vector) -> Foot:
+        """What the equations of a link whose first point has this place are taken about, and along."""
+
+    def on_link(self, pull: Pull, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+        """What a pull does to the three equations of its link [N]."""
 
     def pin_axes(self, place: Vector) -> Sequence[Vector]:
         """Two directions in which a pin at a place must be in equilibrium."""
@@ -105,8 +110,11 @@ class InPlane:
             )
         return tuple(found)
 
-    def on_link(self, pull: Pull, first: Vector, scale: float) -> tuple[Number, Number, Number]:
-        return pull.force[0], pull.force[1], pull.moment_about(first) / scale
+    def foot(self, first: Vector) -> Foot:
+        return (first,)
+
+    def on_link(self, pull: Pull, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+        return pull.force[0], pull.force[1], pull.moment_about(foot[0]) / scale
 
     def pin_axes(self, place: Vector) -> Sequence[Vector]:
         return (1.0, 0.0), (0.0, 1.0)
@@ -160,15 +168,16 @@ class OnSphere:
         others = [on_link(entity.name, times(-1.0, force), there) for entity in row if entity is not point]
         return on_point(point.name, force, there), *others
 
-    def on_link(self, pull: Pull, first: Vector, scale: float) -> tuple[Number, Number, Number]:
-        x, y, z = first
-        up, force = (x, y, z), pull.force
+    def foot(self, first: Vector) -> Foot:
+        return first, *basis(ARRAYS, first)
+
+    def on_link(self, pull: Pull, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+        (up, one, other), force = foot, pull.force
         place = times(1.0 / self.radius, pull.at)
         turning, twist = cross(place, force), cross(subtract(place, up), force)
         if isinstance(pull.moment, tuple):
             moment = times(1.0 / self.radius, pull.moment)
             turning, twist = add(turning, moment), add(twist, moment)
-        one, other = basis(ARRAYS, up)
         return dot(one, turning), dot(other, turning), dot(up, twist) * (self.radius / scale)
 
     def pin_axes(self, place: Vector) -> Sequence[Vector]:

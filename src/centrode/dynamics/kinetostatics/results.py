@@ -85,10 +85,12 @@ def _of_gears(forces: Forces, gears: Sequence[Constraint]) -> dict[str, Array]:
         weights = gear.weights(forces.system.numbers)
         moments.append([value * weights[link] for link in gear.links])
         force = forces.system.pulls[gear, 0][0].force
-        known = gear.gear in forces.system.teeth.axes
+        # of bevel wheels that turn alike the moment alone is known
+        told = any(not isinstance(x, float) or x for x in force)
+        known = told and gear.gear in forces.system.teeth.axes
         teeth.append([value * x if known else np.nan for x in force])
-    samples = forces.system.shape[-1]
-    return {"gear_moment": tables(moments, 3, samples), "tooth_force": tables(teeth, 2, samples)}
+    samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
+    return {"gear_moment": tables(moments, 3, samples), "tooth_force": tables(teeth, axes, samples)}
 
 
 def _of_wheels(

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.kinetostatics.constraint_pulls import pulls_of
-from centrode.dynamics.kinetostatics.equilibrium import Equilibrium, Pressing, equilibrium_of
+from centrode.dynamics.kinetostatics.equilibrium import Equilibrium, Foot, Pressing, equilibrium_of
 from centrode.dynamics.kinetostatics.inverse import Inverse, inverse_of
 from centrode.dynamics.kinetostatics.scheme import Axis, Scheme, Unknown
 from centrode.dynamics.kinetostatics.teeth import Teeth
@@ -192,8 +192,13 @@ class Kinetostatics:
 
     def on_link(self, link: str, pull: Pull) -> tuple[Number, Number, Number]:
         """What a pull does to the three equations of its link [N]: about its first point, by the greatest length."""
-        first = next(iter(self.scheme.structure.mechanism.links[link].coordinates))
-        return self.equilibrium.on_link(pull, self.at.points[first], self.scale)
+        return self.equilibrium.on_link(pull, self._feet[link], self.scale)
+
+    @cached_property
+    def _feet(self) -> dict[str, Foot]:
+        links = self.scheme.structure.mechanism.links
+        firsts = {name: next(iter(link.coordinates)) for name, link in links.items()}
+        return {name: self.equilibrium.foot(self.at.points[first]) for name, first in firsts.items()}
 
 
 def _along(force: Vector, axis: Vector) -> Number:
