@@ -411,7 +411,6 @@ def test_a_drive_along_a_circle_runs_on_over_rounds() -> None:
 
 
 REFUSED = [
-    ({"gears": [{"links": ["AB", "DC"], "ratio": 2}]}, "gears"),
     (
         {"rolling": [{"link": "AB", "centre": "B", "radius": 0.1, "along": {"centre": "D", "radius": 0.2}}]},
         "rolling",
