@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 
 import centrode as ct
 from centrode.quantities import display_unit
@@ -282,3 +283,13 @@ def test_instants_are_computed_exactly(centrode: Centrode, folder: Path, four_ba
     assert [float(row["position_A_x [m]"]) for row in rows] == pytest.approx(
         [math.cos(math.radians(99.1)), math.cos(0.3)], abs=1e-15
     )
+
+
+@pytest.mark.parametrize("name", ["crank-rocker", "spherical-four-bar"])
+def test_an_animation_of_the_motion(centrode: Centrode, folder: Path, name: str) -> None:
+    done = centrode("run", name, "--animate", "--no-figures", "--samples", "9", "--out", "moved")
+    assert done.code == 0
+    assert "motion.gif" in done.out
+    with Image.open(folder / "moved" / "motion.gif") as moved:
+        # the last of nine samples of a whole turn is the first picture again
+        assert getattr(moved, "n_frames", 1) == 8
