@@ -13,9 +13,10 @@ from benchmarks import force_peers
 from benchmarks.force_peers import ForcePeer
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Task, best_times, paired_times, ratio
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.kinetostatics.finding import find
 from centrode.dynamics.kinetostatics.moving import pace_of
-from centrode.dynamics.reducer import Burden, Reducer
+from centrode.dynamics.reducer import Reducer
 from centrode.dynamics.reduction import reduction_of
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from burdened import burdened
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.kinetostatics.scheme import Scheme
-from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import Moving, State
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve

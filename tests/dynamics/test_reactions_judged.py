@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.kinetostatics.checking import checks_of
 from centrode.dynamics.kinetostatics.equilibrium import InPlane
 from centrode.dynamics.kinetostatics.finding import find
 from centrode.dynamics.kinetostatics.inverse import EPSILON, inverse_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.solution import Forces
-from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import Moving, State
 from centrode.dynamics.steady_motion.solution import SETTLED
 from centrode.kinematics.ready import ready

@@ -12,8 +12,9 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.dynamics.amounts import Diagram
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.inertia import share
-from centrode.dynamics.reducer import Burden, Reducer
+from centrode.dynamics.reducer import Reducer
 from centrode.dynamics.states import Moving, State, getters_of
 from centrode.errors import InputError
 from centrode.kinematics.compiled.deciding import Untraceable

@@ -6,7 +6,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.reducer import Burden, Reduced, Reducer, reduced
+from centrode.dynamics.burden import Burden
+from centrode.dynamics.reducer import Reduced, Reducer, reduced
 from centrode.dynamics.several import reduced_to_several
 from centrode.dynamics.states import Moving, State
 from centrode.kinematics.dataset import (

@@ -12,8 +12,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.bodies import About
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.inertia import coordinates_of as speeds_of
-from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import Moving, State
 from centrode.errors import InputError
 from centrode.kinematics.dataset import (

@@ -75,7 +75,7 @@ def powers_of(unit: str) -> dict[str, int]:
 
 
 def unit_text(powers: Mapping[str, int]) -> str:
-    """ "m/s^2" of {"m": 1, "s": -2}."""
+    """The unit of powers: "m/s^2" of {"m": 1, "s": -2}."""
 
     def written(base: str, power: int) -> str:
         return base if power == 1 else f"{base}^{power}"

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.friction.contacts import contacts_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
-from centrode.dynamics.reducer import Burden
 from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready

@@ -12,10 +12,10 @@ import numpy as np
 from centrode.analysis.graphic.board import cross
 from centrode.analysis.graphic.stage import Drawing
 from centrode.dynamics.bodies import Centre, Mass, Radial
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.coordinates import Component, Distance, HalfSquare, Slide, Turn
 from centrode.dynamics.force_polygons.bodies import Bodies
 from centrode.dynamics.loads import Acting, Effort
-from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import State
 from centrode.model.mechanism import FRAME
 

@@ -9,39 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from centrode.analysis.graphic.board import cross, dot
-from centrode.dynamics.force_polygons.actions import Action, total
+from centrode.dynamics.force_polygons.actions import Action
 from centrode.dynamics.force_polygons.joints import Joint
 from centrode.dynamics.force_polygons.ledger import SINGULAR, Ledger, across, dead_point
 from centrode.dynamics.force_polygons.partition import Cell
+from centrode.dynamics.force_polygons.sides import Dyad, Side
 from centrode.dynamics.force_polygons.words import Words
 
 KINDS = ("RRR", "RRP", "RPR", "PRP", "RPP")
-
-
-@dataclass(frozen=True)
-class Side:
-    """A body of a dyad with its outer joint."""
-
-    body: str
-    joint: Joint
-
-    def known(self, ledger: Ledger) -> complex:
-        """Sum of the known forces on the body."""
-        return total(ledger.actions[self.body])
-
-
-@dataclass(frozen=True)
-class Dyad:
-    """Both sides and the inner joint; of RRP, RPP the side with the outer hinge stands first."""
-
-    first: Side
-    second: Side
-    inner: Joint
-
-    @property
-    def kind(self) -> str:
-        """Outer, inner, outer."""
-        return self.first.joint.letter + self.inner.letter + self.second.joint.letter
 
 
 @dataclass(frozen=True)

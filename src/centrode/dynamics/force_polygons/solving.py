@@ -10,6 +10,7 @@ import xarray as xr
 from centrode.analysis.graphic.board import Board
 from centrode.analysis.graphic.instant import drawing_of
 from centrode.analysis.graphic.stage import Drawing
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.force_polygons.actions import Action, Rates, outer_actions
 from centrode.dynamics.force_polygons.bodies import Bodies
 from centrode.dynamics.force_polygons.dyads import Found, dyad_of, solve_dyad
@@ -27,7 +28,7 @@ from centrode.dynamics.force_polygons.polygon import (
 from centrode.dynamics.force_polygons.result import ForcePolygons, GroupForces
 from centrode.dynamics.force_polygons.triads import solve_triad, triad_of
 from centrode.dynamics.force_polygons.words import Words
-from centrode.dynamics.reducer import Burden, Reducer, reduced
+from centrode.dynamics.reducer import Reducer, reduced
 from centrode.dynamics.states import Moving, State
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.dataset import dataset_of

@@ -12,10 +12,11 @@ from itertools import combinations
 
 from centrode.analysis.graphic.board import cross
 from centrode.dynamics.force_polygons.actions import Action, total
-from centrode.dynamics.force_polygons.dyads import Found, Side, forces_on, parts_of, split
+from centrode.dynamics.force_polygons.dyads import Found, forces_on, parts_of, split
 from centrode.dynamics.force_polygons.joints import Joint
 from centrode.dynamics.force_polygons.ledger import SINGULAR, Ledger
 from centrode.dynamics.force_polygons.partition import Cell
+from centrode.dynamics.force_polygons.sides import Side
 from centrode.dynamics.force_polygons.words import Words, joint_words
 from centrode.locale import _
 

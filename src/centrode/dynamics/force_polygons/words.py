@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from centrode.dynamics.force_polygons.actions import Action
+from centrode.dynamics.force_polygons.joints import Joint
+from centrode.dynamics.force_polygons.ledger import Ledger
+from centrode.dynamics.force_polygons.sides import Dyad, Side
 from centrode.locale import _
-
-if TYPE_CHECKING:
-    from centrode.dynamics.force_polygons.dyads import Dyad, Side
-    from centrode.dynamics.force_polygons.joints import Joint
-    from centrode.dynamics.force_polygons.ledger import Ledger
 
 NONE = 1e-14
 """Arms and moments smaller than this part of what they are made of are rounding of none."""

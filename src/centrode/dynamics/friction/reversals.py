@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.amounts import Constant, Friction
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.efforts import Acting, Effort
 from centrode.dynamics.friction.contacts import Contact
-from centrode.dynamics.reducer import Burden, Reducer
+from centrode.dynamics.reducer import Reducer
 from centrode.kinematics.ready import Ready
 
 Array: TypeAlias = npt.NDArray[np.float64]

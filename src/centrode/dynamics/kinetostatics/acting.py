@@ -11,12 +11,12 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.dynamics.bodies import About, Spread, Vector3
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.coordinates import place_of
 from centrode.dynamics.inertia import shares
 from centrode.dynamics.loads import Acting
 from centrode.dynamics.masses import Mass
 from centrode.dynamics.pulls import Moment, Pull, Vector, couple, on_link
-from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import State
 from centrode.geometry.sphere import add, cross, dot, times
 

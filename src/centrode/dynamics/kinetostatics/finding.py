@@ -9,6 +9,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.friction.contacts import Contact, refuse_undetermined
 from centrode.dynamics.friction.following import Outcome
 from centrode.dynamics.friction.losses import Powers
@@ -22,7 +23,6 @@ from centrode.dynamics.kinetostatics.scheme import Scheme
 from centrode.dynamics.kinetostatics.sides import Side, sides_of
 from centrode.dynamics.kinetostatics.solution import Forces, Kinetostatics
 from centrode.dynamics.kinetostatics.teeth import Teeth
-from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import State
 from centrode.errors import InputError, Status
 from centrode.kinematics.solve import Solved

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.friction.labelled import (
     friction_attributes,
     friction_coordinates,
@@ -18,7 +19,6 @@ from centrode.dynamics.kinetostatics.finding import Found
 from centrode.dynamics.kinetostatics.moving import rates_of
 from centrode.dynamics.kinetostatics.results import centre_forces
 from centrode.dynamics.kinetostatics.totals import joint_moments, totals_of
-from centrode.dynamics.reducer import Burden
 from centrode.errors import Status
 from centrode.kinematics.dataset import (
     Variable,

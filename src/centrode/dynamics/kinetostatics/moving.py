@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.dynamics.reducer import Burden, Reducer
+from centrode.dynamics.burden import Burden
+from centrode.dynamics.reducer import Reducer
 from centrode.dynamics.several import refuse_drive_in_formulas
 from centrode.dynamics.states import Moving
 from centrode.dynamics.steady_motion.solution import solution_of

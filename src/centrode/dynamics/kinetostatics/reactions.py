@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.friction.contacts import Contact, contacts_of, without_friction
 from centrode.dynamics.kinetostatics.finding import find
 from centrode.dynamics.kinetostatics.labelled import labelled
 from centrode.dynamics.kinetostatics.moving import Pace, pace_of, steady_span
-from centrode.dynamics.reducer import Burden
 from centrode.errors import InputError, NotComputedYet
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Solved, asked_span, solve

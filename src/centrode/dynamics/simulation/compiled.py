@@ -20,8 +20,8 @@ from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.graphs import Graph
 from centrode.algebra.scans import Scan
 from centrode.dynamics.batches import state_of_nodes
+from centrode.dynamics.burden import Burden
 from centrode.dynamics.inertia import share
-from centrode.dynamics.reducer import Burden
 from centrode.dynamics.simulation.course import STATES, Course, Ending
 from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.fixed import course_of

@@ -15,7 +15,8 @@ import numpy as np
 from centrode.dynamics.simulation.course import OF_DRIVE, RATE, VALUE, Course
 from centrode.dynamics.simulation.field import Field
 from centrode.dynamics.simulation.setting import Setting, setting_of
-from centrode.dynamics.simulation.stepping import Stepper, Until
+from centrode.dynamics.simulation.stepping import Stepper
+from centrode.dynamics.simulation.watching import Until
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

@@ -8,13 +8,14 @@ from math import inf, tau
 
 import numpy as np
 
-from centrode.dynamics.reducer import Burden, Reducer
+from centrode.dynamics.burden import Burden
+from centrode.dynamics.reducer import Reducer
 from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.field import Field
 from centrode.dynamics.simulation.rows import Rows
 from centrode.dynamics.simulation.sorts import of_time
-from centrode.dynamics.simulation.stepping import Until
 from centrode.dynamics.simulation.tracks import NEAR_LIMIT, Tracks
+from centrode.dynamics.simulation.watching import Until
 from centrode.errors import InputError
 from centrode.kinematics.ready import Ready, ready
 from centrode.locale import _

@@ -9,7 +9,6 @@ held back by stability (the product of step and damping rate stays at the edge o
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -17,35 +16,23 @@ import numpy.typing as npt
 import scipy.integrate
 
 from centrode.dynamics.simulation.course import STATES, VALUE, Course, Ending, Occasion, Piece
-from centrode.dynamics.simulation.field import CREEP, Field, Forces, Leg
+from centrode.dynamics.simulation.field import CREEP, Field, Leg
 from centrode.dynamics.simulation.meeting import arrived, first_event, loosening
 from centrode.dynamics.simulation.rows import INERTIA
+from centrode.dynamics.simulation.watching import MOST_STEPS, Until, Watch, without_value
 from centrode.errors import MotionError
 from centrode.locale import _
 
 Array: TypeAlias = npt.NDArray[np.float64]
 State: TypeAlias = Array
 
-MOST_STEPS = 300_000
 MOST_IDLE = 100
 """Legs in succession in which no time passes."""
-EDGE = 3.0
-"""Step times damping rate from which a step counts as held back by stability."""
-HELD_BACK = 15
-"""Steps so held back after which the stiff scheme takes over."""
 AT_END = 1e-9
 """Distance from a limit, in units of the drive, that counts as there."""
 
 _RELATIVE = np.array([1.0, 0.0, 1.0, 1.0, 1.0])
 """States that count from the beginning of a leg."""
-
-
-@dataclass(frozen=True)
-class Until:
-    """When to end: at a time [s], or at a distance of the drive's value from the start."""
-
-    time: float
-    way: float | None
 
 
 class Stepper:
@@ -63,18 +50,15 @@ class Stepper:
         self.field = field
         self.until = until
         self.tolerance = tolerance
-        self.stiff = stiff
-        self.tell = tell
         self.course = Course(scheme="stiff" if stiff else "adaptive")
-        self.most = most
+        self.watch = Watch(field, until, self.course, stiff, tell, most)
         self.fastest = self.sense = self.last = 0.0
         self.idle = 0
-        self.steps = self.held_back = 0
 
     def run(self, value: float, rate: float) -> Course:
         """The course from a value and a rate at time zero; what is done is kept when it is interrupted."""
         state = np.array([value, rate, *[0.0] * (STATES - 2)])
-        self.start = value
+        self.start = self.watch.start = value
         try:
             with np.errstate(all="ignore"):  # steps that lead astray are rejected
                 self.course.ended = self._run(0.0, state)
@@ -173,7 +157,7 @@ class Stepper:
                 return self.until.time, y + begun * _RELATIVE
             before, y_before = solver.t, solver.y.copy()
             message = solver.step()
-            self._count(leg, begun, solver, message)
+            self.watch.count(leg, begun, solver, message)
             dense = solver.dense_output()
             event = first_event(dense, before, solver, low, high, leg.sense if turning else 0.0)
             if event is None:
@@ -181,7 +165,7 @@ class Stepper:
                 t, y = solver.t, solver.y
                 if solver.status == "finished":
                     return t, y + begun * _RELATIVE
-                if self.stiff and not isinstance(solver, scipy.integrate.Radau):
+                if self.watch.stiff and not isinstance(solver, scipy.integrate.Radau):
                     solver = self._solver(rates, t, y, begun, leg)
                 continue
             when, component, target = event
@@ -209,7 +193,7 @@ class Stepper:
         while solver.status == "running":
             before = solver.t
             message = solver.step()
-            self._count(leg, begun, solver, message)
+            self.watch.count(leg, begun, solver, message)
             self._add(before, solver.t, solver.dense_output(), begun, leg.sense)
         return solver.t, solver.y
 
@@ -244,59 +228,15 @@ class Stepper:
     ) -> Any:
         forces = rates(t, y)
         if not np.isfinite(forces).all():
-            raise self._without_value(t, float(begun[VALUE] + y[0]))
+            raise without_value(t, float(begun[VALUE] + y[0]))
         unit = self.field.tracks.unit
         self.fastest = max(self.fastest, abs(float(y[1])), float(np.sqrt(0.02 * abs(forces[1]) * unit)))
         inertia = float(leg.rows(float(begun[VALUE] + y[0]))[INERTIA])
         energy = max(1e-300, inertia * self.fastest**2)
         scale = np.array([unit, 1e-2 * self.fastest or 1.0, energy, energy, energy])
-        kind = scipy.integrate.Radau if self.stiff else scipy.integrate.DOP853
+        kind = scipy.integrate.Radau if self.watch.stiff else scipy.integrate.DOP853
         limit = self.until.time if end is None else end
         return kind(rates, t, y, limit, rtol=max(self.tolerance, 3e-14), atol=self.tolerance * scale)
-
-    def _count(self, leg: Leg, begun: State, solver: Any, message: str | None) -> None:
-        self.steps += 1
-        value = float(begun[VALUE] + solver.y[0])
-        if solver.status == "failed" or not np.isfinite(solver.y).all():
-            raise (
-                self._without_value(solver.t, value)
-                if message is None
-                else MotionError(
-                    "[simulation]",
-                    _("no step is small enough at t = {time:.6g} s, drive at {value:.6g}").format(
-                        time=solver.t, value=value
-                    ),
-                    _('choose scheme = "stiff", or a greater tolerance'),
-                )
-            )
-        if self.steps > self.most:
-            raise MotionError(
-                "[simulation]",
-                _("{count} steps were taken up to t = {time:.6g} s").format(count=self.most, time=solver.t),
-                _('ask for a shorter time, or choose scheme = "stiff" or a greater tolerance'),
-            )
-        if self.tell is not None and self.steps % 20 == 0:
-            way = self.until.way
-            share = solver.t / self.until.time if np.isfinite(self.until.time) else 0.0
-            self.tell(share if way is None else max(share, abs(value - self.start) / way))
-        if not self.stiff:
-            self._watch(leg, solver, value)
-
-    def _watch(self, leg: Leg, solver: Any, value: float) -> None:
-        """Change to the stiff scheme where damping holds the steps back."""
-        rate = float(solver.y[1])
-        more = rate + 1e-6 * (abs(rate) or 1.0)
-
-        def slowed(speed: float) -> float:
-            forces: Forces = self.field.forces(leg, solver.t, value, speed)
-            return forces.acceleration(speed)
-
-        damping = abs(slowed(more) - slowed(rate)) / (more - rate)
-        held = damping * (solver.step_size or 0.0) > EDGE
-        self.held_back = self.held_back + 1 if held else 0
-        if self.held_back >= HELD_BACK:
-            self.stiff = True
-            self.course.scheme = "adaptive, then stiff"
 
     def _add(self, first: float, last: float, dense: Any, begun: State, sense: float) -> None:
         def at(times: Array) -> Array:
@@ -309,13 +249,4 @@ class Stepper:
         """Bring the last piece to the very end of the leg."""
         self.course.pieces.append(
             Piece(t, t, lambda times: np.repeat(ended[:, None], len(times), axis=1), sense)
-        )
-
-    def _without_value(self, t: float, value: float) -> MotionError:
-        return MotionError(
-            "[simulation]",
-            _("drive or loads have no finite value at t = {time:.6g} s, drive at {value:.6g}").format(
-                time=t, value=value
-            ),
-            _("correct their formulas"),
         )
