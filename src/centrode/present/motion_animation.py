@@ -73,7 +73,9 @@ def _samples(scene: Scene | Globe, frames: int) -> list[int]:
     known = np.flatnonzero(complete(scene))
     if not known.size:
         raise InputError("", _("no sample has every point in place"), _("ask for another range"))
-    chosen = known[np.unique(np.linspace(0, known.size - 1, frames + 1).round().astype(int))].tolist()
+    chosen: list[int] = known[
+        np.unique(np.linspace(0, known.size - 1, frames + 1).round().astype(int))
+    ].tolist()
     moving = [scene.tracks[name] for name in scene.mechanism.moving_points]
     apart = max(float(np.abs(track[chosen[0]] - track[chosen[-1]]).max()) for track in moving)
     if len(chosen) > 1 and apart <= 1e-6 * scene.extent:
