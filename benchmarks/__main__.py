@@ -25,6 +25,10 @@ SECTIONS: Mapping[str, Section] = {
         f"Batches, {motions.SAMPLES} samples, with derivatives: centrode's time over pylinkage's", motions.batches,
     ),
     "forces": (f"Reduction to the drive, {forces.SAMPLES} samples", forces.reductions),
+    "reactions": (f"Reactions in all joints, {forces.SAMPLES} samples", forces.reactions),
+    "force peers": (
+        "Joint forces, a peer's time over centrode's, and how far the forces are apart", forces.against_peers,
+    ),
     "simulation": (f"Simulation, {simulation.STEPS} fixed steps", simulation.simulations),
     "cold": (f"Whole processes, multiples of {cold.BASE}", cold.cold_starts),
     "machine": ("Bounds of the machine", machine.bounds),

@@ -1,14 +1,21 @@
-"""Reduction to the drive against the motion it rests on."""
+"""Reduction to the drive against the motion it rests on; reactions, and what peers take for the same."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import xarray as xr
 
 import centrode as ct
+from benchmarks import force_peers
+from benchmarks.force_peers import ForcePeer
 from benchmarks.table import Promise, Row
-from benchmarks.timing import paired_times, ratio
-from centrode.dynamics.reducer import Reducer
+from benchmarks.timing import ROUNDS, Task, best_times, paired_times, ratio
+from centrode.dynamics.kinetostatics.finding import find
+from centrode.dynamics.kinetostatics.moving import pace_of
+from centrode.dynamics.reducer import Burden, Reducer
 from centrode.dynamics.reduction import reduction_of
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
@@ -17,6 +24,9 @@ SAMPLES = 361
 NAME = "six-bar-press"
 MOST = 5.0
 """Times its kinematics that a reduction may take."""
+MOST_REACTIONS = 20.0
+"""Milliseconds that all reactions of the six-bar press may take, from the description to the labelled result."""
+FOUR_BAR = "in-line-four-bar"
 
 
 def reductions() -> Iterator[Row]:
@@ -46,3 +56,93 @@ def reductions() -> Iterator[Row]:
         note="its own part finds the jumps and labels the result",
         promises=[Promise(f"reduction of {SAMPLES} samples, times the motion", whole, at_most=MOST)],
     )
+
+
+def reactions() -> Iterator[Row]:
+    """The six-bar press and a four-bar linkage: from the description, and where the motion is there already."""
+    for name in (NAME, FOUR_BAR):
+        mechanism = ct.example(name)
+        prepared = ready(mechanism)
+        solved = solve(prepared, asked_span(prepared, SAMPLES, None, None))
+        burden = Burden.in_plane(mechanism)
+        pace = pace_of(solved, burden)
+        whole: Task = functools.partial(ct.reactions, mechanism, SAMPLES)
+        own: Task = functools.partial(find, solved, burden, pace)
+        times = best_times(
+            {"whole": whole, "own": own, "motion": functools.partial(ct.motion, mechanism, SAMPLES)}
+        )
+        milliseconds = {key: 1e3 * time for key, time in times.items()}
+        promise = Promise(
+            f"{name}, {SAMPLES} samples of all reactions [ms]", milliseconds["whole"], MOST_REACTIONS
+        )
+        yield Row(
+            name,
+            {
+                "ct.reactions [ms]": milliseconds["whole"],
+                "arrays alone [ms]": milliseconds["own"],
+                "ct.motion [ms]": milliseconds["motion"],
+            },
+            promises=[promise],
+        )
+
+
+def against_peers() -> Iterator[Row]:
+    """Times of peers over ours for the same joint forces, and how far apart these are."""
+    press, four_bar = ct.example(NAME), ct.example(FOUR_BAR)
+    if force_peers.HAS_KINEPY:
+        yield _against("six-bar press, KinePy", press, force_peers.kinepy_press, SAMPLES, inner=True)
+        yield _against("six-bar press, KinePy", press, force_peers.kinepy_press, 10 * SAMPLES - 9, inner=True)
+    else:
+        yield Row("KinePy", note="left out: it is not installed")
+    if force_peers.HAS_FOURBARHINGE:
+        yield _against("four-bar, fourbarhinge", four_bar, force_peers.hinge, SAMPLES)
+    else:
+        yield Row("fourbarhinge", note="left out: it is not installed")
+
+
+def _against(
+    name: str,
+    mechanism: ct.Mechanism,
+    build: Callable[[ct.Mechanism, xr.Dataset, float], ForcePeer],
+    samples: int,
+    *,
+    inner: bool = False,
+) -> Row:
+    """One peer at so many samples; `inner`: it has no derivatives at the first and the last."""
+    prepared = ready(mechanism)
+    span = asked_span(prepared, samples, None, None)
+    burden = Burden.in_plane(mechanism)
+    ours = ct.reactions(mechanism, samples)
+    peer = build(mechanism, ct.motion(mechanism, samples), float(ours["drive_rate"][0]))
+    peer.solve()
+
+    def arrays() -> None:
+        fresh = solve(prepared, span)
+        find(fresh, burden, pace_of(fresh, burden))
+
+    times = paired_times(
+        {
+            "peer": peer.solve,
+            "whole": functools.partial(ct.reactions, mechanism, samples),
+            "arrays": arrays,
+        },
+        ROUNDS,
+    )
+    return Row(
+        f"{name}, {samples} samples",
+        {
+            "apart": _apart(peer, ours, slice(1, -1) if inner else slice(None)),
+            "peer / arrays": ratio(times, "peer", "arrays"),
+            "peer / ct.reactions": ratio(times, "peer", "whole"),
+        },
+    )
+
+
+def _apart(peer: ForcePeer, ours: xr.Dataset, where: slice) -> float:
+    """Greatest difference of joint forces and of what the drive gives, over the greatest of each."""
+    drive = ours["balancing"].to_numpy()[where, 0]
+    found = [float(np.max(np.abs(peer.drive()[where] - drive)) / np.max(np.abs(drive)))]
+    for side, theirs in peer.forces().items():
+        own = ours["joint_force"].sel(side=side).to_numpy()[where]
+        found.append(float(np.max(np.abs(theirs[where] - own)) / np.max(np.abs(own))))
+    return max(found)

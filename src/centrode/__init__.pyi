@@ -18,12 +18,12 @@ from .model.placing import replace_placed as replace_placed
 from .model.schema import mechanism_schema as mechanism_schema
 
 # The description of a cam
-from .model.cams import Cam as Cam
-from .model.cams import varied as varied
-from .model.cam_files import read_cam as read_cam
-from .model.cam_files import parse_cam as parse_cam
-from .model.cam_files import cam_text as cam_text
-from .model.cam_schema import cam_schema as cam_schema
+from .model.cams.description import Cam as Cam
+from .model.cams.description import varied as varied
+from .model.cams.files import read_cam as read_cam
+from .model.cams.files import parse_cam as parse_cam
+from .model.cams.files import cam_text as cam_text
+from .model.cams.schema import cam_schema as cam_schema
 
 # Built-in mechanisms and classics
 from .model.examples.loading import load as load
@@ -75,31 +75,38 @@ from .study.summary import motion_rows as motion_rows
 # Forces
 from .dynamics.reduction import reduce as reduce
 from .dynamics.kinetostatics.reactions import reactions as reactions
-from .study.reducing import reduction_rows as reduction_rows
-from .study.reducing import reduction_parts as reduction_parts
-from .study.joints import joint_table as joint_table
-from .study.reacting import reaction_rows as reaction_rows
-from .study.reacting import reaction_extremes as reaction_extremes
-from .study.reacting import reactions_at_instant as reactions_at_instant
-from .study.reacting import greatest_reaction as greatest_reaction
+from .study.forces.reducing import reduction_rows as reduction_rows
+from .study.forces.reducing import reduction_parts as reduction_parts
+from .study.forces.joints import joint_table as joint_table
+from .study.forces.reacting import reaction_rows as reaction_rows
+from .study.forces.reacting import reaction_extremes as reaction_extremes
+from .study.forces.reacting import reactions_at_instant as reactions_at_instant
+from .study.forces.reacting import greatest_reaction as greatest_reaction
+from .study.forces.rubbing import friction_losses as friction_losses
+from .study.forces.bearings import bearings as bearings
+from .study.forces.bearings import motion_beside as motion_beside
+from .study.forces.bearing_loads import bearing_loads as bearing_loads
+from .study.forces.bearing_loads import BearingLoad as BearingLoad
+from .study.forces.bearing_loads import bearing_load_rows as bearing_load_rows
+from .study.forces.bearing_loads import bearing_load_scalars as bearing_load_scalars
 
 # Forces by hand
 from .dynamics.force_polygons.solving import force_polygons as force_polygons
 from .dynamics.force_polygons.result import ForcePolygons as ForcePolygons
-from .study.force_polygons import polygon_about as polygon_about
-from .study.force_polygons import polygon_steps as polygon_steps
-from .study.force_polygons import polygon_rows as polygon_rows
-from .study.force_polygons import polygon_balance_rows as polygon_balance_rows
-from .study.force_polygons import polygon_csv as polygon_csv
+from .study.forces.force_polygons import polygon_about as polygon_about
+from .study.forces.force_polygons import polygon_steps as polygon_steps
+from .study.forces.force_polygons import polygon_rows as polygon_rows
+from .study.forces.force_polygons import polygon_balance_rows as polygon_balance_rows
+from .study.forces.force_polygons import polygon_csv as polygon_csv
 from .present import polygon_figures as polygon_figures
 
 # Steady motion of a machine
-from .dynamics.steady import steady_motion as steady_motion
-from .dynamics.flywheel import flywheel as flywheel
-from .dynamics.flywheel import Flywheel as Flywheel
-from .study.machines import machine_results as machine_results
-from .study.machines import flywheel_rows as flywheel_rows
-from .study.machines import flywheel_scalars as flywheel_scalars
+from .dynamics.steady_motion.steady import steady_motion as steady_motion
+from .dynamics.steady_motion.flywheel import flywheel as flywheel
+from .dynamics.steady_motion.flywheel import Flywheel as Flywheel
+from .study.forces.machines import machine_results as machine_results
+from .study.forces.machines import flywheel_rows as flywheel_rows
+from .study.forces.machines import flywheel_scalars as flywheel_scalars
 from .present import machine_figures as machine_figures
 
 # Motion under loads and a drive
@@ -108,8 +115,8 @@ from .model.simulations import Motor as Motor
 from .dynamics.simulation.simulate import simulate as simulate
 from .dynamics.simulation.regime import steady_regime as steady_regime
 from .dynamics.simulation.regime import Regime as Regime
-from .study.simulating import simulation_rows as simulation_rows
-from .study.simulating import regime_rows as regime_rows
+from .study.forces.simulating import simulation_rows as simulation_rows
+from .study.forces.simulating import regime_rows as regime_rows
 from .present import simulation_figures as simulation_figures
 
 # Shaking forces and counterweights
@@ -117,9 +124,9 @@ from .dynamics.balancing.shaking import shaking as shaking
 from .dynamics.balancing.balance import balance as balance
 from .dynamics.balancing.balance import Balance as Balance
 from .dynamics.balancing.counterweights import Counterweight as Counterweight
-from .study.balancing import balance_rows as balance_rows
-from .study.balancing import balance_effects as balance_effects
-from .study.balancing import balance_steps as balance_steps
+from .study.forces.balancing import balance_rows as balance_rows
+from .study.forces.balancing import balance_effects as balance_effects
+from .study.forces.balancing import balance_steps as balance_steps
 from .present import balance_figures as balance_figures
 from .present import write_balance_csv as write_balance_csv
 from .present import write_harmonics_csv as write_harmonics_csv
@@ -128,7 +135,7 @@ from .present import write_harmonics_csv as write_harmonics_csv
 from .cams.labelled import cam as cam
 from .cams.comparison import cam_routes as cam_routes
 from .cams.described import path_of as path_of
-from .study.cam_results import cam_results as cam_results
+from .study.cams.results import cam_results as cam_results
 from .present import write_cam_csv as write_cam_csv
 from .present import write_cam_routes_csv as write_cam_routes_csv
 from .present import write_cam_tables as write_cam_tables
@@ -155,10 +162,10 @@ from .present import cam_body_figures as cam_body_figures
 
 # Contact of roller and cam, choice of parameters, animation
 from .cams.contacts.labelled import cam_contact as cam_contact
-from .study.cam_contact import contact_rows as contact_rows
+from .study.cams.contact import contact_rows as contact_rows
 from .cams.choosing.chosen import choose_cam as choose_cam
 from .cams.choosing.chosen import CamChoice as CamChoice
-from .study.cam_choice import choice_rows as choice_rows
+from .study.cams.choice import choice_rows as choice_rows
 from .present import write_cam_contact_csv as write_cam_contact_csv
 from .present import write_choice as write_choice
 from .present import contact_figure as contact_figure
@@ -229,6 +236,8 @@ from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
 from .present import reduction_figures as reduction_figures
 from .present import reaction_figures as reaction_figures
+from .present import bearing_figures as bearing_figures
+from .present import write_bearing_loads_csv as write_bearing_loads_csv
 from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures

@@ -53,8 +53,13 @@ class Status(IntEnum):
     CUT_OFF = 2
     SINGULAR = 3
     UNCONVERGED = 4
+    SELF_LOCKING = 5
 
     @property
     def word(self) -> str:
         """The word that tables and messages use, in English; catalogues translate it for display."""
-        return self.name.lower().replace("_", " ")
+        return self.name.lower().replace("_", "-" if self is Status.SELF_LOCKING else " ")
+
+
+STATUSES_OF_MOTION = tuple(status for status in Status if status is not Status.SELF_LOCKING)
+"""Those that a motion itself can have; friction adds one to reactions."""

@@ -379,8 +379,6 @@ def test_wrong_questions() -> None:
     batch = ct.motion(ct.example("crank-rocker"), samples=3, vary={"links.AB.length": [3.5, 3.6]})
     with pytest.raises(ct.InputError, match="asked of one mechanism; select one"):
         ct.construct_centres(batch)
-    with pytest.raises(ct.NotComputedYet, match="not computed on the sphere"):
-        ct.instant_centres(ct.motion(ct.example("spherical-four-bar"), samples=3))
 
 
 @settings(max_examples=20)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from cam_shapes import WHEEL
 from centrode.cams.choosing.chosen import choose_cam
 from centrode.cams.choosing.families import bounds_of, family_of, start_of
 from centrode.cams.choosing.measures import MEASURES
@@ -17,7 +18,7 @@ from centrode.cams.closed.arcs import working_arc
 from centrode.cams.closed.designing import designed
 from centrode.cams.described import path_of
 from centrode.cams.wheel.walking import mover
-from centrode.model.cams import Cam, varied
+from centrode.model.cams.description import Cam, varied
 
 WHEELS = ["walking-wheel-four-legs", "walking-wheel-three-legs"]
 
@@ -258,3 +259,17 @@ def test_wrong_letters(curvature: str, what: str) -> None:
 def test_nothing_to_choose() -> None:
     with pytest.raises(ct.InputError, match="nothing is to be chosen"):
         choose_cam(ct.example("cam-from-curvature"))
+
+
+def test_a_leg_stands_over_half_a_pitch_however_far_the_law_holds() -> None:
+    """Contact, gap and the wheel itself look at the same arc."""
+    text = WHEEL.replace("legs = 4", 'legs = 4\nworking_arc = ["-80 deg", "80 deg"]')
+    text += "[contact]\nforce = 3000\nwidth = 0.03\ncam = { elasticity = 2e11 }\n"
+    cam = ct.parse_cam(text + '[choose]\ngap = "5 mm"\nparameters = { "curvature.k0" = [9, 11] }\n')
+    contact = ct.cam_contact(cam, samples=3)
+    np.testing.assert_array_equal(contact.carrier_angle, [-math.pi / 4, 0.0, math.pi / 4])
+    start = ct.choose_cam(cam, front=False).choice.start
+    wheel = ct.walking_wheel(cam)
+    assert wheel.closed.arcs[0].stop == pytest.approx(math.radians(80), rel=4 * 2.0**-52)
+    # the search solves its paths to 1e-14 a panel
+    assert start.measures["gap"].value == pytest.approx(wheel.print_gap, rel=1e-11)

@@ -13,6 +13,7 @@ from centrode.cams.comparison import foretold_error, routes_of
 from centrode.cams.convergence import convergence
 from centrode.cams.curvature_laws import ConstantCurvature, ExponentialCurvature, LinearCurvature
 from centrode.cams.expanded import expanded_path
+from centrode.cams.series import series_path
 from centrode.cams.text_curvature import TextCurvature
 
 EPS = float(np.finfo(np.float64).eps)
@@ -91,3 +92,21 @@ def test_linear_laws_converge_alike_on_both_sides() -> None:
     one, other = (convergence(LinearCurvature(10.0, slope), 0.05) for slope in (5.0, -5.0))
     assert one.singularity is not None and other.singularity is not None
     assert one.singularity.real == pytest.approx(-other.singularity.real, rel=1e4 * EPS)
+
+
+def test_zeros_of_the_curvature_do_not_spoil_many_terms() -> None:
+    """K = 20 (1 + 0.3 sin 3 phi) vanishes at a complex angle that is nearer than the circle of convergence.
+
+    300 terms leave (0.95 R / R)^300 out of the series; what divides by K makes its roundings grow 1e10 times there.
+    """
+    law = TextCurvature("20*(1 + 0.3*sin(3*phi))", -1.0, 1.0)
+    circle = convergence(law, 0.05)
+    zero = abs(complex(-math.pi / 2, math.acosh(1 / 0.3)) / 3)
+    assert zero < 0.85 * circle.radius
+    at = np.array([0.95 * circle.radius])
+    assert at[0] < 1.0
+    series = series_path(law, 0.05, stop=1.0, terms=300)
+    path = expanded_path(law, 0.05, stop=1.0)
+    # the terms decay like (at/R)^n n^(-3/2): the sum of those left out, times 1/(1 - at/R)
+    left_out = 0.95**300 * 300**-1.5 / 0.05
+    assert abs(float(series.sine(at)[0, 0] - path.sine(at)[0, 0])) < left_out

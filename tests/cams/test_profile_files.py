@@ -14,7 +14,7 @@ import pytest
 import centrode as ct
 from cam_shapes import exchanged
 from centrode.errors import InputError
-from centrode.present import outline_dxf
+from centrode.present.cams import outline_dxf
 
 ezdxf = pytest.importorskip("ezdxf")
 
@@ -142,6 +142,30 @@ def test_outlines_of_neighbouring_pieces_meet(cam: ct.Cam) -> None:
     outlines = [one for one in ct.cam_outlines(ct.cam_body(cam), 100) if one.layer.startswith("profile")]
     ends = np.array([[one.places[0], one.places[-1]] for one in outlines])
     np.testing.assert_allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=1e-15)
+
+
+@pytest.mark.parametrize("k1", [0.75, -0.1])
+def test_at_corners_the_rollers_arc_joins_the_walls(k1: float) -> None:
+    """Mirror images have outward corners where the path rises to its end, inward ones where it falls."""
+    more = '[return]\nkind = "mirrored"\n'
+    law = ('k0 = "0.01 1/mm"\nk1 = 0.75', f"k0 = 30\nk1 = {k1}" if k1 < 0 else f"k0 = 10\nk1 = {k1}")
+    body = ct.cam_body(exchanged(law, ('"15 mm"', '"5 mm"'), more=more))
+    assert len(body.kinks) == 4 and (body.kinks[0].kink < 0) == (k1 > 0)
+    outlines = ct.cam_outlines(body, 180, groove=True)
+    wall = "groove" if k1 > 0 else "profile"
+    pieces = [one for one in outlines if one.layer.startswith(wall)]
+    ends = np.array([[one.places[0], one.places[-1]] for one in pieces])
+    np.testing.assert_allclose(ends[:, 1], np.roll(ends[:, 0], -1, axis=0), atol=1e-15)
+    arcs = [one for one in pieces if np.ptp(one.phi) == pytest.approx(abs(body.kinks[0].kink), rel=1e-9)]
+    assert len(arcs) == 4
+    for arc, joint in zip(arcs, body.kinks, strict=True):
+        corner = body.closed.radius(np.array([joint.at]))[0] * np.array(
+            [math.sin(joint.at), math.cos(joint.at)]
+        )
+        np.testing.assert_allclose(np.hypot(*(arc.places - corner).T), 0.005, rtol=1e-12)
+        tangent = arc.slopes / np.hypot(*arc.slopes.T)[:, None]
+        ahead = np.gradient(arc.places, axis=0)[1:-1]
+        assert np.all(np.sum(tangent[1:-1] * ahead, axis=1) > 0.99 * np.hypot(*ahead.T))
 
 
 def test_a_profile_needs_a_roller() -> None:

@@ -1,4 +1,4 @@
-"""The recursions, in exact fractions: those of the paper, the general one, and that of the equations themselves."""
+"""The recursions, in exact fractions: those of the paper, equation (23), and that of the equations themselves."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fractions import Fraction
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from centrode.cams.recursions import arc_series, exponential_series, general_series, system_series
+from centrode.cams.recursions import arc_series, exponential_series, next_cosine, system_series
 
 TERMS = 12
 # right-angled triangles: sine and cosine of the pressure angle as fractions
@@ -21,6 +21,26 @@ def product(a: list[Fraction], b: list[Fraction], n: int) -> Fraction:
     return sum((a[i] * b[n - i] for i in range(n + 1)), Fraction(0))
 
 
+def by_equation_23(
+    a_0: Fraction, a_1: Fraction, b_0: Fraction, curvature: list[Fraction], terms: int
+) -> tuple[list[Fraction], list[Fraction]]:
+    """Equation (23) of the paper, coefficient by coefficient: right in fractions, but it divides by K.
+
+    In numbers the rounding grows like 1/R^n, R the distance of the nearest zero of K, real or complex.
+    """
+    a, b, k = [a_0, a_1], [b_0], curvature
+    for n in range(terms - 1):
+        total: Fraction = Fraction(0)
+        for i in range(n + 1):
+            total = total + (i + 1) * k[i + 1] * ((n - i + 1) * a[n - i + 1] - b[n - i])
+            total = total - k[i] * a[n - i]
+            if i:
+                total = total - k[i] * ((n - i + 2) * (n - i + 1)) * a[n - i + 2]
+        a.append(total / (k[0] * ((n + 2) * (n + 1))))
+        b.append(next_cosine(a, b))
+    return a, b
+
+
 @settings(max_examples=40, deadline=None)
 @given(ANGLES, POSITIVE, NUMBERS, POSITIVE)
 def test_three_recursions_are_one_for_exponentials(
@@ -30,7 +50,7 @@ def test_three_recursions_are_one_for_exponentials(
     curvature = [k0 * k1**n / math.factorial(n) for n in range(TERMS + 1)]
     slope = cosine - rho * k0
     paper = exponential_series(sine, slope, cosine, k1, TERMS)
-    assert paper == general_series(sine, slope, cosine, curvature, TERMS)
+    assert paper == by_equation_23(sine, slope, cosine, curvature, TERMS)
     _radii, sines, cosines = system_series(rho, sine, cosine, curvature)
     assert paper == (sines[: TERMS + 1], cosines[:TERMS])
 
@@ -42,7 +62,7 @@ def test_the_general_recursion_is_that_of_the_equations(
 ) -> None:
     sine, cosine = Fraction(angle[0], angle[2]), Fraction(angle[1], angle[2])
     curvature = [k0, *more]
-    a, b = general_series(sine, cosine - rho * k0, cosine, curvature, TERMS)
+    a, b = by_equation_23(sine, cosine - rho * k0, cosine, curvature, TERMS)
     radii, sines, cosines = system_series(rho, sine, cosine, curvature)
     assert (a, b) == (sines[: TERMS + 1], cosines[:TERMS])
     for n in range(TERMS):

@@ -16,8 +16,8 @@ from centrode.cams.curvature_laws import ExponentialCurvature, LinearCurvature
 from centrode.cams.expanded import expanded_path
 from centrode.cams.path import CirclePath
 from centrode.errors import InputError
-from centrode.model.cam_files import parse_cam
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
+from centrode.model.cams.files import parse_cam
 
 EPS = 2.0**-52
 PARTS = {

@@ -235,7 +235,7 @@ def test_a_shoe_with_a_cusp_is_refused_with_what_it_lacks() -> None:
 @pytest.mark.parametrize(
     ("pairs", "said"),
     [
-        ([("legs = 4", "legs = 2")], "2 legs were asked for; ask for 3 to 24"),
+        ([("legs = 4", "legs = 2")], "legs must be a whole number from 3 to 24, got 2"),
         ([('"120 mm"', '"10 mm"')], "a post of 10 mm lets the roller of 15 mm reach the ground"),
         (
             [('to = "90 deg"', 'to = "40 deg"')],

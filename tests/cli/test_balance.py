@@ -77,6 +77,13 @@ def test_options_reach_the_balance(centrode: Centrode) -> None:
     assert "about (1.25, 0) m" in done.out
 
 
+def test_no_bound_is_told_where_the_least_force_is_none(centrode: Centrode) -> None:
+    done = centrode("balance", "in-line-four-bar", "--least-maximum")
+    assert done.code == 0, done
+    assert done.rows["proved"] == "no counterweights on these links, with these radii, do better"
+    assert centrode("balance", "in-line-four-bar", "--full").rows["balance"] == "shaking force zero"
+
+
 def test_dark_pictures(centrode: Centrode, folder: Path) -> None:
     for number, dark in enumerate(([], ["--dark"])):
         assert centrode("balance", "in-line-four-bar", "--out", f"r{number}", *dark).code == 0
@@ -98,6 +105,9 @@ def test_dark_pictures(centrode: Centrode, folder: Path) -> None:
         (("single-cylinder-engine", "--fraction", "2"), 2, "from 0 to 1"),
         (("single-cylinder-engine", "--fraction", "half"), 2, "fraction"),
         (("single-cylinder-engine", "--least-maximum", "--fraction", "1/2"), 2, "given together"),
+        (("single-cylinder-engine", "--full", "--least-maximum"), 2, "given together"),
+        (("single-cylinder-engine", "--full", "--fraction", "1/2"), 2, "given together"),
+        (("single-cylinder-engine", "--density", "8000"), 2, "belongs to --thickness"),
         (("single-cylinder-engine", "--weights", "1,0,0"), 2, "belong to --least-maximum"),
         (("single-cylinder-engine", "--least-maximum", "--weights", "1;0"), 2, "weights"),
         (("single-cylinder-engine", "--moment", "--least-maximum"), 2, "balanced fully"),
@@ -107,7 +117,7 @@ def test_dark_pictures(centrode: Centrode, folder: Path) -> None:
         (("single-cylinder-engine", "--radius", "1 mm", "--radius", "2 mm"), 2, "NAME=VALUE"),
         (("single-cylinder-engine", "--most", "5 mm"), 2, "most"),
         (("single-cylinder-engine", "--thickness", "-1 mm"), 2, "must be positive"),
-        (("single-cylinder-engine", "--density", "0"), 2, "must be positive"),
+        (("single-cylinder-engine", "--thickness", "9 mm", "--density", "0"), 2, "must be positive"),
         (("single-cylinder-engine", "--about", "1,x"), 2, "--about"),
         (("single-cylinder-engine", "--about", "nan,1"), 2, "finite"),
         (("single-cylinder-engine", "--steady"), 2, "[machine]"),

@@ -80,7 +80,7 @@ def test_what_is_impossible_ends_with_3_and_is_told_once(centrode: Centrode, whe
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("legs = 4", "legs = 2", "2 legs were asked for"),
+        ("legs = 4", "legs = 2", "legs must be a whole number from 3 to 24, got 2"),
         ('to = "90 deg"', 'to = "40 deg"', "the working arc goes from -45 to 45 deg"),
         ('post = "120 mm"', 'post = "1 mm"', "reach the ground"),
         ("legs = 4", 'legs = 4\nworking_arc = ["-1 rad", "0.5 rad"]', "the same angle on both sides"),

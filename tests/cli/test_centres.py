@@ -166,17 +166,22 @@ REFUSED = {
     ("centres", "crank-rocker", "--pair", "AB,AB"): "AB has no centre against itself; name two bodies",
     ("centres", "crank-rocker", "--at", "1 m"): "crank-rocker, --at: expected an angle",
     ("centres", "crank-rocker", "--at", "1e9"): "crank-rocker, range: it reaches too far",
-    (
-        "centres",
-        "spherical-four-bar",
-    ): "instant centres are not computed on the sphere; ask for a planar mechanism",
+    ("centres", "spherical-four-bar", "--pair", "AB,XY"): 'there is no link "XY"',
     ("centres", "nowhere"): "nowhere: no such file",
     ("centres", "crank-rocker", "--out", "taken"): "taken is not a folder",
     ("centrodes", "crank-rocker"): "--link",
     ("centrodes", "crank-rocker", "--link", "XY"): 'there is no link "XY"',
     ("centrodes", "crank-rocker", "--link", "AB", "--against", "AB"): "AB has no centre against itself",
     ("centrodes", "crank-rocker", "--link", "AB", "--samples", "0"): "0 samples were asked for",
-    ("centrodes", "spherical-four-bar", "--link", "BC"): "not computed on the sphere",
+    (
+        "centrodes",
+        "spherical-four-bar",
+        "--link",
+        "BC",
+        "--at",
+        "1",
+    ): "curvature is not computed on the sphere",
+    ("centrodes", "spherical-four-bar", "--link", "BC", "--against", "XY"): 'there is no link "XY"',
     (
         "centrodes",
         "slider-between-cranks",
@@ -218,3 +223,41 @@ def test_a_big_mechanism_asks_for_pairs(centrode: Centrode, folder: Path) -> Non
     assert done.code == 0, done.err
     assert "two velocity directions" in printed(done.out, "P16,0")
     assert sorted(path.name for path in (folder / "r").iterdir()) == ["centres.csv", "centres.nc"]
+
+
+def test_axes_on_the_sphere(centrode: Centrode, folder: Path) -> None:
+    """Rows with the relative speed, a table with unit vectors, the picture."""
+    done = centrode("centres", "spherical-crank-guide", "--at", "1 rad", "--out", "r")
+    assert done.code == 0, done.err
+    assert "pole of guide C" in done.out and "57.2957795 deg/s" in done.out
+    assert "P20" in done.out and "P21 P10 × P32 P30" in done.out
+    head, *rows = (folder / "r" / "centres.csv").read_text().splitlines()
+    assert head.split(",")[4:8] == ["centre_x", "centre_y", "centre_z", "relative_speed [deg/s]"]
+    assert len(rows) == 6
+    for row in rows:
+        assert abs(sum(float(x) ** 2 for x in row.split(",")[4:7]) - 1.0) <= 8 * np.finfo(float).eps
+    assert sorted(p.name for p in (folder / "r").iterdir()) == [
+        "centres.csv", "centres.nc", "centres.png", "centres.svg"
+    ]  # fmt: skip
+
+
+def test_polodes_on_the_sphere(centrode: Centrode, folder: Path) -> None:
+    done = centrode(
+        "centrodes",
+        "bevel-pair",
+        "--link",
+        "BF",
+        "--against",
+        "AE",
+        "--samples",
+        "25",
+        "--animate",
+        "--out",
+        "r",
+    )
+    assert done.code == 0, done.err
+    assert done.rows["pieces"] == "1"
+    assert done.rows["arc of the fixed centrode"].startswith("160.99")  # 360 deg / sqrt(5)
+    head = (folder / "r" / "centrodes.csv").read_text().splitlines()[0]
+    assert "fixed_centrode_z" in head and "moving_arc [deg]" in head
+    assert (folder / "r" / "centrodes.gif").stat().st_size > 10_000

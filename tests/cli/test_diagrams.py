@@ -174,7 +174,6 @@ def test_transmission_where_it_locks(centrode: Centrode, folder: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["spherical-four-bar"], "plane only"),
         (["two-link-arm"], "no group"),
         (["crank-rocker", "--samples", "0"], "samples"),
     ],

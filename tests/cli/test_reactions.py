@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -43,6 +45,33 @@ value = "-2 kN"
 sides = { B = "ahead" }
 """
 
+LOCKING = """\
+title = "Locks"
+space = "sphere"
+[frame.points]
+A = [0, 0]
+D = [1, 0]
+Z = [0, 1.5]
+[links.AB]
+length = 0.5
+reference = ["A", "D"]
+[links.BC]
+length = 1.2
+[links.DC]
+length = 0.5
+reference = ["D", "Z"]
+[[drives]]
+link = "AB"
+start = 1
+speed = 1
+[[loads]]
+kind = "force"
+point = "C"
+vector = [0, 0, -100]
+[assembly]
+sides = { C = "left" }
+"""
+
 
 def rows_of(path: Path) -> list[dict[str, str]]:
     with path.open(encoding="utf-8", newline="") as file:
@@ -57,6 +86,8 @@ def test_the_press(centrode: Centrode, folder: Path) -> None:
     assert done.rows["samples"] == "37: ok 37"
     assert "not determined" not in done.rows
     assert sorted(path.name for path in (folder / "result").iterdir()) == [
+        "bearing-loads.csv",
+        "bearings.nc",
         "joints.csv",
         "reactions.csv",
         "reactions.nc",
@@ -145,13 +176,56 @@ def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> No
     assert done.code == 0, done
     assert sorted(path.name for path in (folder / "result").glob("*.png")) == [
         "balancing.png",
+        "bearing-loads.png",
+        "bearing-wear.png",
+        "bush-loads.png",
         "frame-force.png",
         "joint-forces.png",
+        "journal-loads.png",
         "other-reactions.png",
     ]
     assert done.rows["not determined"] == "C/wheel; guide C; wheel wheel"
     assert "nan" not in done.out
     assert {row["rolling_normal_wheel [N]"] for row in rows_of(folder / "result" / "reactions.csv")} == {""}
+
+
+def test_what_is_rounding_is_shown_as_zero(centrode: Centrode, folder: Path) -> None:
+    """A torque between a rocker and the frame, and the drive's moment: nothing is left for the frame as a whole."""
+    text = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "torque"\nlink = "DB"\nvalue = 3\n'
+    (folder / "w.toml").write_text(text)
+    mechanism = ct.read_mechanism(folder / "w.toml")
+    found = ct.reactions(mechanism, samples=361)
+    assert found.frame_moment.to_numpy().any()  # but for rounding
+    rows = {row[0]: row[1:] for row in ct.reaction_extremes(mechanism, found)[1]}
+    assert rows["moment on the frame"] == ["N m", "0", "", "0", ""]
+    done = centrode("reactions", "w.toml", "--at", "100 deg", "--at", "200 deg")
+    assert done.code == 0, done
+    assert "e-1" not in done.out.split("\nreaction ", 1)[1]
+
+
+def test_of_values_alike_the_first_is_named() -> None:
+    """The last sample of a turn repeats the first, and one of them is the greater by rounding."""
+    press = ct.example("six-bar-press")
+    found = ct.reactions(press, samples=5)
+    size = np.hypot(*found.frame_force.to_numpy().T)
+    assert np.isclose(size[0], size[-1], rtol=1e-12) and np.max(size) == max(size[0], size[-1])
+    rows = {row[0]: row for row in ct.reaction_extremes(press, found)[1]}
+    assert rows["force on the frame"][5] == "219.1 deg"
+
+
+def test_extremes_of_a_drive_by_a_law_are_told_by_their_time(centrode: Centrode, folder: Path) -> None:
+    """A drive that turns back passes its values more than once; --at takes a time too."""
+    text = ct.example_text("in-line-four-bar").replace('speed = "500 rpm"', 'law = "sin(2*t)"')
+    (folder / "l.toml").write_text(text + "\n[study]\nto = 3\n")
+    done = centrode("reactions", "l.toml", "--samples", 31)
+    assert done.code == 0, done
+    line = next(line for line in done.out.splitlines() if line.startswith("A: "))
+    match = re.search(r"(\S+) +(\S+) s$", line)
+    assert match
+    greatest, time = match.groups()
+    there = centrode("reactions", "l.toml", "--at", f"{time} s").out
+    row = next(line for line in there.splitlines() if line.startswith("A: "))
+    assert math.isclose(float(row.split()[-2]), float(greatest), rel_tol=1e-5)
 
 
 def test_the_real_speed_of_a_machine(centrode: Centrode) -> None:
@@ -221,10 +295,43 @@ def test_a_mechanism_without_masses_and_loads_is_refused(centrode: Centrode) -> 
     assert "give links a mass" in done.err
 
 
-def test_the_sphere_is_refused(centrode: Centrode) -> None:
-    done = centrode("reactions", "spherical-four-bar")
+def test_the_sphere(centrode: Centrode, folder: Path) -> None:
+    """Three components, the forces of the centre, and no column of directions."""
+    done = centrode("reactions", "spherical-crank-rocker-rigid", "--samples", 13, "--out", "r")
+    assert (done.code, done.err) == (0, "")
+    assert done.rows["samples"] == "13: ok 13"
+    assert "centre on BC" in done.out
+    rows = rows_of(folder / "r" / "reactions.csv")
+    assert {"joint_force_B/BC_z [N]", "joint_moment_B/BC_z [N m]", "centre_force_BC_x [N]"} <= set(rows[0])
+    figures = {path.name for path in (folder / "r").iterdir() if path.suffix == ".svg"}
+    assert {"joint-forces.svg", "joint-components.svg", "centre-forces.svg", "frame-force.svg"} <= figures
+    data = ct.reactions(ct.example("spherical-crank-rocker-rigid"), at=[1.0])
+    done = centrode("reactions", "spherical-crank-rocker-rigid", "--at", "1 rad")
+    header = next(line for line in done.out.splitlines() if line.startswith("reaction "))
+    assert header.split() == ["reaction", "unit", "x", "y", "z", "magnitude"]
+    line = next(line for line in done.out.splitlines() if line.startswith("B: BC on AB"))
+    force = data.joint_force.sel(side="B/AB").to_numpy()[0]
+    wanted = [f"{x:.6g}" for x in (*force, np.linalg.norm(force))]
+    assert line.split()[-4:] == wanted
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("spherical-four-bar", "neither masses nor loads"), ("spherical-crank-rocker", "no moment in a hinge")],
+)
+def test_what_makes_no_reactions_on_the_sphere(centrode: Centrode, name: str, reason: str) -> None:
+    done = centrode("reactions", name)
     assert done.code == 2
-    assert "on the sphere are not computed yet" in done.err
+    assert reason in done.err
+    assert "Traceback" not in done.err
+
+
+def test_a_spherical_linkage_that_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
+    (folder / "m.toml").write_text(LOCKING)
+    done = centrode("reactions", "m.toml", "--samples", 21, "--from", "1 rad", "--to", "0 rad")
+    assert done.code == 3
+    assert "locks" in done.err
+    assert "open" in done.out
 
 
 def test_a_run_writes_reactions(centrode: Centrode, folder: Path) -> None:
@@ -248,11 +355,11 @@ def test_a_run_says_why_reactions_are_left_out(centrode: Centrode, folder: Path)
     assert not (folder / "s" / "reactions.csv").exists()
 
 
-def test_friction_by_a_coefficient_and_plain_sums_are_refused(centrode: Centrode, folder: Path) -> None:
+def test_friction_that_no_joint_bears_is_refused(centrode: Centrode, folder: Path) -> None:
     example = ct.example_text("crank-rocker") + '\n[[loads]]\nkind = "friction"\nlink = "DB"\n'
     link = list(ct.example("crank-rocker").links)[-1]
     for keys, message in (
-        ("coefficient = 0.1", "friction by a coefficient needs the reactions"),
+        ("coefficient = 0.1", "friction by a coefficient in a hinge needs the point"),
         ('quadratic = 0.1\nform = "plain sum"', "a plain sum is no moment in a hinge"),
     ):
         (folder / "r.toml").write_text(example.replace('"DB"', f'"{link}"') + keys + "\n")

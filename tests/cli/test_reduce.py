@@ -126,7 +126,10 @@ def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
         ),
         (("[study]", '[[loads]]\nkind = "torque"\nlink = "OA"\nvalue = "w"\n[study]'), (), "unknown name"),
         (
-            ("[study]", '[[loads]]\nkind = "friction"\nlink = "OA"\ncoefficient = 0.1\n[study]'),
+            (
+                "[study]",
+                '[[loads]]\nkind = "friction"\npoint = "O"\nradius = 0.1\ncoefficient = 0.1\n[study]',
+            ),
             (),
             "friction by a coefficient needs the reactions",
         ),

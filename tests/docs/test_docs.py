@@ -86,6 +86,21 @@ def test_scalars_are_told(name: str) -> None:
     assert [scalar for scalar in study.scalars if f"`{scalar}`" not in page] == []
 
 
+@pytest.mark.parametrize("name", ct.example_names("cam"))
+def test_scalars_of_cams_are_told(name: str) -> None:
+    scalars = ct.cam_results(ct.example(name), samples=3).scalars
+    assert [one for one in scalars if not one.startswith("chosen.") and f"`{one}`" not in EVERYTHING] == []
+
+
+CAM_KEYS = [(part, key) for part, key in keys(ct.cam_schema()) if part != "Display"]
+
+
+@pytest.mark.parametrize(("part", "key"), CAM_KEYS)
+def test_keys_of_cams_are_told(part: str, key: str) -> None:
+    pages = [text for page, text in TEXTS.items() if page.stem in ("cams", "cam-profiles", "cam-contact")]
+    assert f"`{key}`" in "\n".join(pages) or f"`[{key}]`" in "\n".join(pages)
+
+
 def test_every_page_is_linked() -> None:
     reached = {(page.parent / target.partition("#")[0]).resolve() for page, target in links()}
     assert set(PAGES[1:]) <= reached

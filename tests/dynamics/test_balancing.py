@@ -331,6 +331,29 @@ def test_discs_balance_the_moment_of_an_in_line_four_bar(seed: int, pendulum: fl
     assert found.before.attrs["greatest_shaking_moment"] > 1e3 * (rate + rest)
 
 
+@pytest.mark.parametrize("weighs", [True, False])
+def test_a_disc_on_a_coupler_whose_inertia_a_shape_tells(weighs: bool) -> None:
+    """A rod has m l^2/12, and a coupler needs m l^2/4: the disc on it adds m l^2/6. One without mass needs none."""
+    coupler = {"mass": 1.4, "shape": "rod"} if weighs else {}
+    mechanism = ct.Mechanism(
+        frame={"points": {"O": [0.0, 0.0], "D": [0.4, 0.0]}},
+        links={
+            "OA": {"length": 0.1, "mass": 0.9, "shape": "rod"},
+            "AB": {"length": 0.4, **coupler},
+            "DB": {"length": 0.3, "mass": 1.1, "shape": "rod"},
+        },
+        drives=[{"link": "OA", "start": 1.0, "speed": SPEED}],
+        assembly={"sides": {"B": "left"}},
+    )
+    found = ct.balance(mechanism, moment=True)
+    discs = {disc.link: disc.inertia for disc in found.discs if disc.base is None}
+    assert discs == ({"AB": pytest.approx(1.4 * 0.4**2 / 6, rel=1e-8)} if weighs else {})
+    assert found.balanced.links["AB"].shape is None or not discs
+    # as much of the moment as the discs are apart from what they should be
+    before, after = (data.attrs["greatest_shaking_moment"] for data in (found.before, found.after))
+    assert after <= 1e-8 * before
+
+
 def test_discs_that_are_not_to_be_had() -> None:
     with pytest.raises(ct.MotionError, match="no discs balance"):
         ct.balance(four_bar(1), moment=True)

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from centrode.dynamics.extremes import extremes
-from centrode.dynamics.quadrature import MOST_PANELS, NODES, Panels, resolved
+from centrode.dynamics.steady_motion.extremes import extremes
+from centrode.dynamics.steady_motion.quadrature import MOST_PANELS, NODES, Panels, resolved
 
 Array = npt.NDArray[np.float64]
 EPS = float(np.finfo(np.float64).eps)

@@ -10,14 +10,14 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.kinetostatics.checking import checks_of
-from centrode.dynamics.kinetostatics.constraint_pulls import positions_of
+from centrode.dynamics.kinetostatics.equilibrium import InPlane
 from centrode.dynamics.kinetostatics.finding import find
 from centrode.dynamics.kinetostatics.inverse import EPSILON, inverse_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.solution import Forces
 from centrode.dynamics.reducer import Burden
-from centrode.dynamics.solution import SETTLED
 from centrode.dynamics.states import Moving, State
+from centrode.dynamics.steady_motion.solution import SETTLED
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
 from centrode.kinematics.spans import span_at
@@ -209,7 +209,7 @@ def test_what_is_not_determined_by_singular_values(seed: int) -> None:
     found = ct.reactions(mechanism, at=[0.9, 1.0])
     structure = ready(mechanism).structure
     state = solve(ready(mechanism), span_at(ready(mechanism).kinematics.path, np.array([0.9])))
-    at = positions_of(State.of(state, Moving(*(np.ones(1),) * 3)), structure.dimensions)
+    at = InPlane().positions(State.of(state, Moving(*(np.ones(1),) * 3)), structure.dimensions)
     matrix = jacobian(
         structure.constraints,
         structure.unknowns,
@@ -345,8 +345,10 @@ def test_wrong_arguments_are_refused() -> None:
         ct.reactions(ct.example("six-bar-press"), start=0.0, speed="steady")
     with pytest.raises(ct.InputError, match="ask for at most"):
         ct.reactions(parallelogram(), samples=900_000)
-    with pytest.raises(ct.NotComputedYet, match="on the sphere"):
+    with pytest.raises(ct.InputError, match="neither masses nor loads"):
         ct.reactions(ct.example("spherical-four-bar"))
+    with pytest.raises(ct.InputError, match="no moment in a hinge"):
+        ct.reactions(ct.example("spherical-crank-rocker"))
 
 
 def test_a_formula_that_names_q_is_refused_with_several_drives() -> None:

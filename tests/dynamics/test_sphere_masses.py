@@ -247,7 +247,7 @@ def rocker(*loads: dict[str, Any]) -> ct.Mechanism:
         ),
         ({"kind": "torque", "link": "BC", "relative_to": "AB", "value": "x"}, "no angle is measured between"),
         (
-            {"kind": "friction", "link": "AB", "coefficient": 0.1},
+            {"kind": "friction", "point": "A", "radius": 0.01, "coefficient": 0.1},
             "friction by a coefficient needs the reactions",
         ),
         ({"kind": "weight", "point": "B", "value": 3}, "give gravity, such as gravity = [0, 0, -9.81]"),

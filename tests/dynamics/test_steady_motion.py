@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import centrode as ct
-from centrode.dynamics.balance import Mean
-from centrode.dynamics.solution import solution_of
+from centrode.dynamics.steady_motion.balance import Mean
+from centrode.dynamics.steady_motion.solution import solution_of
 from machines import CRANK, STROKE, centre_of, crank, engine, kinetic_energy
 
 EPS = float(np.finfo(np.float64).eps)
@@ -239,7 +239,7 @@ def test_nothing_depends_on_the_number_of_samples(samples: int) -> None:
 def test_more_panels_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """The stated error covers what a mesh three times as fine finds."""
     coarse = ct.flywheel(engine())
-    monkeypatch.setattr("centrode.dynamics.cycle.PANELS_PER_TURN", 217)
+    monkeypatch.setattr("centrode.dynamics.steady_motion.cycle.PANELS_PER_TURN", 217)
     fine = ct.flywheel(engine())
     assert abs(fine.work_of_loads - coarse.work_of_loads) <= coarse.error + fine.error
     assert fine.inertia == pytest.approx(coarse.inertia, rel=1e-12)

@@ -38,11 +38,14 @@ def test_every_variable_of_a_motion_is_named() -> None:
     reactions = ["joint_force", "guide_force", "guide_normal", "guide_moment", "gear_moment", "tooth_force"]
     reactions += [f"rolling_{name}" for name in ("force", "normal", "tangential")]
     reactions += [f"{of}_{name}" for of in ("inertia", "frame", "shaking") for name in ("force", "moment")]
-    reactions += ["balancing", "determined", "reaction_status", "reaction_loss"]
+    reactions += ["joint_moment", "centre_force"]
+    reactions += [f"friction_{name}" for name in ("moment", "force", "power", "work", "turns")]
+    reactions += ["efficiency", "self_locking", "balancing", "determined", "reaction_status", "reaction_loss"]
     centres = (
         "centre",
         "centre_direction",
         "centre_case",
+        "relative_speed",
         "fixed_centrode",
         "moving_centrode",
         "fixed_arc",
@@ -90,6 +93,15 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {f"contact_{name}" for name in ("stress", "stress_by_source", "shear", "depth", "half_width")}
     cams |= {"cam_curvature_radius"}
     known |= cams
+    known |= {
+        "bearing_load",
+        "load_on_journal",
+        "load_on_bush",
+        "relative_turning",
+        "load_path",
+        "sector",
+        "wear",
+    }
     assert set(QUANTITIES) == known
     assert all(name.isascii() and name == quantity.name for name, quantity in QUANTITIES.items())
 

@@ -41,7 +41,8 @@ def test_every_example_runs(name: str) -> None:
     rounding = 4 * EPS * len(mechanism.links)
     # angles of gears and rolling wheels are rounded to their own size
     if mechanism.gears or mechanism.rolling:
-        rounding += 4 * EPS * float(np.abs(data["angle"]).max())
+        angles = data["angle" if mechanism.space == "plane" else "joint_angle"]
+        rounding += 4 * EPS * float(np.abs(angles).max())
     assert data.attrs["worst_residual"] <= (INTERPOLATED if name in CHANGE_POINTS else rounding)
     assert ready(mechanism).assembled.residual <= rounding
 

@@ -83,3 +83,25 @@ def test_bars_of_wrong_length_in_a_batch_are_open() -> None:
     assert (motion.status.values[[0, 2]] == ct.Status.OK).all()
     assert (motion.status.values[1] == ct.Status.OPEN).all()
     assert np.isnan(motion.position.values[1]).all()
+
+
+@pytest.mark.parametrize("start", [0.272, 0.3, 0.35])
+def test_a_limit_next_to_the_start_where_constraints_repeat(start: float) -> None:
+    """Constraints that repeat others are looked at next to the start too, where a slot may be out of reach."""
+    offset, away = 0.6, 1.5 - complex(np.cos(start), np.sin(start))
+    turn = float(np.angle(away) - np.arcsin(offset / abs(away)))
+    mechanism = ct.Mechanism(
+        frame={"points": {"O": [0.0, 0.0], "F": [1.5, 0.0]}},
+        links={
+            "OA": {"length": 1.0},
+            "twin": {"points": {"O": [0.0, 0.0], "A": [1.0, 0.0]}},
+            "slotted": {"points": {"A": [0.0, 0.0]}, "angle": turn},
+        },
+        guides=[{"point": "F", "on": "slotted", "through": [0.0, offset], "direction": 0.0}],
+        drives=[{"link": "OA", "start": start, "speed": 1.0}],
+    )
+    limit = float(np.arccos((1.0 + 1.5**2 - offset**2) / 3.0))  # |AF| is the offset
+    assert start - limit < 0.13  # one of the places that are looked at lies beyond
+    found = ct.motion(mechanism, samples=5, start=start, stop=start + 0.3)
+    assert (found.status == ct.Status.OK).all()
+    assert ct.check(mechanism).mobility == 1

@@ -411,7 +411,6 @@ def test_a_drive_along_a_circle_runs_on_over_rounds() -> None:
 
 
 REFUSED = [
-    ({"gears": [{"links": ["AB", "DC"], "ratio": 2}]}, "gears"),
     (
         {"rolling": [{"link": "AB", "centre": "B", "radius": 0.1, "along": {"centre": "D", "radius": 0.2}}]},
         "rolling",
@@ -529,3 +528,50 @@ def crank_at_greatest(crank: ct.Mechanism) -> float:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if slope(middle) > 0 else (low, middle)
     return float(joint(ct.motion(crank, at=[low]), "GF")[0])
+
+
+def test_gears_at_a_group_of_higher_class() -> None:
+    """A wheel may follow a link of such a group; a gear that holds the group together is refused."""
+    exact = ct.motion(
+        ct.Mechanism(
+            space="sphere",
+            frame=SIX_BAR_FRAME,
+            links=SIX_BAR,
+            drives=CRANK,
+            assembly={"sides": {"C": "left", "F": "right"}},
+        ),
+        at=np.linspace(0.8, 1.4, 7),
+    )
+    links = {
+        name: {**link, "angle": float(exact["joint_angle"][3].sel(joint=name))}
+        for name, link in SIX_BAR.items()
+    }
+    start = links["GF"].pop("angle")
+    frame = {"points": {**SIX_BAR_FRAME["points"], "W": [0.2, 0.7]}}
+    wheel = {"WV": {"length": 0.3, "reference": ["W", "D"], "angle": 0.25}}
+    geared = ct.Mechanism(
+        space="sphere",
+        frame=frame,
+        links=links | wheel,
+        gears=[{"links": ["DC", "WV"], "ratio": -3.0}],
+        drives=[{"link": "GF", "start": start, "speed": 1.0}],
+    )
+    found = ct.motion(geared, at=joint(exact, "GF"))
+    assert statuses(found) == ["ok"] * 7
+    turn = joint(exact, "DC") - joint(exact, "DC")[3]
+    assert np.max(np.abs(joint(found, "WV") - 0.25 + 3.0 * turn)) <= 1024 * EPS
+    # without its drive, the loop is held by the gear alone
+    held = ct.Mechanism(
+        space="sphere",
+        frame=SIX_BAR_FRAME,
+        links={name: link for name, link in SIX_BAR.items() if name not in ("EF", "GF")}
+        | {
+            "EG": {"length": 0.6, "points": ["E", "H"]},
+            "GH": {"length": 0.5, "points": ["G", "H"], "reference": ["G", "A"]},
+            "GK": {"length": 0.5, "reference": ["G", "A"]},
+        },
+        gears=[{"links": ["DC", "GH"], "ratio": 2.0}],
+        drives=[{"link": "GK", "start": 0.0, "speed": 1.0}],
+    )
+    with pytest.raises(ct.InputError):
+        ct.motion(held, samples=3)

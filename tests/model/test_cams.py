@@ -11,8 +11,8 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.model.cam_files import cam_text, parse_cam, read_cam
-from centrode.model.cam_schema import CAM_PROPERTIES
+from centrode.model.cams.files import cam_text, parse_cam, read_cam
+from centrode.model.cams.schema import CAM_PROPERTIES
 
 from .test_schema import fits
 
@@ -146,7 +146,7 @@ WRONG = [
     ("k0 = 12", "k0 = 12\nsymmetric = 1", "expected true or false"),
     ("to = 1", "to = 1\n[roller]\nradius = 0.06", "the roller reaches the cam's centre"),
     ("to = 1", "to = 1\n[mover]\nlegs = 4", "[mover] needs a roller"),
-    ("to = 1", "to = 1\n[mover]\nlegs = 1", "legs must be a whole number from 2 to 24"),
+    ("to = 1", "to = 1\n[mover]\nlegs = 1", "legs must be a whole number from 3 to 24"),
     ("to = 1", "to = 1\n[study]\nterms = 1", "terms must be a whole number from 2 to 2000"),
     ("to = 1", "to = 1\n[study]\nterms = 100000", "terms must be a whole number from 2 to 2000"),
     (

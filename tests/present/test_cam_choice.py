@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.present.cam_choice import parameter_symbol, parameter_unit
+from centrode.present.cams.choice import parameter_symbol, parameter_unit
 
 
 @pytest.fixture(scope="module")

@@ -8,9 +8,9 @@ import matplotlib.mathtext
 import pytest
 
 import centrode as ct
-from centrode.present.equation_latex import LatexSpelling, escaped
-from centrode.present.equation_page import LONGEST, Relation, System, sections
-from centrode.present.equation_text import split_at_signs
+from centrode.present.equations.latex import LatexSpelling, escaped
+from centrode.present.equations.page import LONGEST, Relation, System, sections
+from centrode.present.equations.text import split_at_signs
 
 WIDTH = 110
 """Columns of a relation that can be broken."""

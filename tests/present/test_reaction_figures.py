@@ -65,3 +65,44 @@ def test_names_are_no_formulas(name: str) -> None:
     )
     for figure in ct.reaction_figures(rod, ct.reactions(rod, samples=5)).values():
         figure.draw_without_rendering()
+
+
+def test_friction_has_a_figure() -> None:
+    sled = ct.Mechanism(
+        frame={"points": {"O": [0, 0]}},
+        links={"OA": {"length": 1}, "AB": {"length": 3}},
+        guides=[{"point": "B", "on": "frame", "through": "O", "direction": [1, 0]}],
+        drives=[{"link": "OA", "speed": 2.0}],
+        loads=[
+            {"kind": "force", "guide": "B", "value": -5},
+            {"kind": "friction", "guide": "B", "coefficient": 0.1},
+            {"kind": "friction", "point": "A", "coefficient": 0.1, "radius": 0.1},
+        ],
+        assembly={"sides": {"B": "ahead"}},
+    )
+    data = ct.reactions(sled, 25)
+    figures = ct.reaction_figures(sled, data)
+    power, efficiency = figures["friction"].axes
+    assert names(figures["friction"], 0) == ["guide B", "A/AB"]
+    drawn = {line.get_label(): line.get_ydata() for line in power.lines}
+    assert np.array_equal(drawn["A/AB"], data.friction_power.sel(friction="A/AB"))
+    assert (power.get_ylabel(), efficiency.get_ylabel()) == ("$P_f$, W", "$η$")
+
+
+def test_the_sphere() -> None:
+    """Three components at the first link of each hinge, magnitudes of the rest."""
+    rigid = ct.example("spherical-crank-rocker-rigid")
+    data = ct.reactions(rigid, samples=13)
+    figures = ct.reaction_figures(rigid, data)
+    assert list(figures) == ["joint-forces", "joint-components", "centre-forces", "balancing", "frame-force"]
+    axes = figures["joint-components"].axes
+    assert [one.get_ylabel() for one in axes] == ["${R}_{x}$, N", "${R}_{y}$, N", "${R}_{z}$, N"]
+    for number, one in enumerate(axes):
+        drawn = {line.get_label(): line.get_ydata() for line in one.lines}
+        assert np.array_equal(drawn["C/BC"], data.joint_force.sel(side="C/BC").to_numpy()[:, number])
+    drawn = {line.get_label(): line.get_ydata() for line in figures["centre-forces"].axes[0].lines}
+    size = np.linalg.norm(data.centre_force.sel(held="DC").to_numpy(), axis=1)
+    assert np.max(abs(np.asarray(drawn["DC"]) - size)) <= 4 * 2.0**-52 * np.max(size)
+    moment = np.linalg.norm(data.frame_moment.to_numpy(), axis=1)
+    whole = figures["frame-force"].axes[1].lines[0].get_ydata()
+    assert np.max(abs(np.asarray(whole) - moment)) <= 4 * 2.0**-52 * np.max(moment)

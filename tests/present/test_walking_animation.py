@@ -12,8 +12,8 @@ from PIL import Image
 
 import centrode as ct
 from centrode.cams.profiles.tables import walking_wheel
+from centrode.present.cams.walking_animation import _drawn, animate_walking
 from centrode.present.style import house_style
-from centrode.present.walking_animation import _drawn, animate_walking
 
 WHEELS = ["walking-wheel-four-legs", "walking-wheel-three-legs"]
 

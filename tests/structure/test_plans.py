@@ -40,7 +40,7 @@ FORMULAS = {
     "two-link-arm": "I(OA) -> I(AB)",
     "watt-six-bar": "I(OA) -> II(coupler, rocker) -> II(PR, QR)",
 }
-MOBILITY = {"two-link-arm": 2, "five-bar-two-drives": 2, "excavator-arm": 3}
+MOBILITY = {"two-link-arm": 2, "five-bar-two-drives": 2, "bevel-differential": 2, "excavator-arm": 3}
 BY_CHEBYSHEV = MOBILITY | {"three-crank-parallelogram": 0}
 
 

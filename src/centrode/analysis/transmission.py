@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.analysis.transmission_on_sphere import ArcAngles
 from centrode.errors import InputError
 from centrode.kinematics.dataset import named
 from centrode.kinematics.motion import motion
@@ -43,19 +44,16 @@ def transmission_angles(
     motion. Accurate as the positions
     are; at a limit the transmission angle is 0 or 180 deg. Groups of higher class and gears have none.
 
-    Raises InputError on the sphere, and where no group has such an angle; else as `motion` does.
+    On the sphere they are angles between arcs: of links, and from a point to the pole of its guide.
+
+    Raises InputError where no group has such an angle; else as `motion` does.
     """
-    if mechanism.space != "plane":
-        raise InputError(
-            "space",
-            _("transmission angles are computed in the plane only"),
-            _("take the angles between arcs from the motion"),
-        )
     data = motion(mechanism, samples, start, stop, at)
     structure = structure_of(mechanism)
     found = {}
+    arcs = ArcAngles(data) if mechanism.space == "sphere" else None
     for group in structure.groups:
-        angle = _angle(data, structure.dimensions, group)
+        angle = _angle(data, structure.dimensions, group) if arcs is None else arcs.of(group)
         if angle is not None:
             found["-".join(links_of(group) or points_of(group))] = angle
     if not found:

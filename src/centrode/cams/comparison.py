@@ -21,8 +21,8 @@ from centrode.cams.path import SymmetricPath
 from centrode.cams.sampled import angles_of
 from centrode.cams.series import SeriesPath, series_path
 from centrode.kinematics.dataset import labels_of, named
-from centrode.model.cam_files import cam_text
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
+from centrode.model.cams.files import cam_text
 
 Array = npt.NDArray[np.float64]
 

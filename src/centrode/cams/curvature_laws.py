@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -133,7 +134,14 @@ class SplineCurvature:
     cubics: tuple[Cubic, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        TableLaw(self.angles, self.values)  # its checks are those of any table
+        for number, (before, after) in enumerate(pairwise(self.angles), start=2):
+            if not before < after:
+                what = _(
+                    "the angles of a spline increase, point {number} does not: {before:.6g}, then {after:.6g} deg"
+                )
+                told = what.format(number=number, before=math.degrees(before), after=math.degrees(after))
+                raise InputError("[curvature] points", told, _("sort the points"))
+        TableLaw(self.angles, self.values)  # its further checks are those of any table
         object.__setattr__(self, "cubics", tuple(spline(self.angles, self.values)))
 
     @property

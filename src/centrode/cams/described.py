@@ -15,7 +15,7 @@ from centrode.cams.expanded import TOLERANCE, ExpandedPath, expanded_path
 from centrode.cams.path import RollerPath, SymmetricPath
 from centrode.cams.text_curvature import TextCurvature
 from centrode.errors import InputError
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
 
 
 def law_of(cam: Cam) -> CurvatureLaw:

@@ -16,8 +16,8 @@ from centrode.cams.path import RollerPath
 from centrode.cams.sampled import angles_of
 from centrode.errors import Status
 from centrode.kinematics.dataset import Variable, labels_of, named
-from centrode.model.cam_files import cam_text
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
+from centrode.model.cams.files import cam_text
 
 Array = npt.NDArray[np.float64]
 

@@ -109,6 +109,14 @@ def inside(path: RollerPath | StatePath, phi: Array) -> Array:
     return np.where(known, np.clip(places, path.start, path.stop), np.nan)
 
 
+def stalls_of(path: RollerPath) -> tuple[float, ...]:
+    """The ends of a path [rad], growing, at which the follower stalls: there gamma is a right angle exactly."""
+    if path.stall is None:
+        return ()
+    ends = np.array([path.start, path.stop])
+    return tuple(ends[np.abs(path.pressure_angle(ends)) == math.pi / 2].tolist())
+
+
 @dataclass(frozen=True)
 class CirclePath(StatePath):
     """The path of constant curvature in closed form: a circle of radius 1/k0 whose centre lies off the cam's.

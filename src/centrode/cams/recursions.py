@@ -20,7 +20,8 @@ def system_series(
 ) -> tuple[Series, Series, Series]:
     """Coefficients of rho, eta and lambda about a place, from their values and the coefficients of K there.
 
-    Neither K nor its slope is divided by. One order more than K has, work of the order squared.
+    Neither K nor its slope is divided by: the zeros of K do not spoil them. One order more than K has, work of the
+    order squared.
     """
     radii, sines, cosines = [rho], [eta], [cosine]
     for n in range(len(curvature)):
@@ -62,29 +63,6 @@ def exponential_series(
     a, b = [a_0, a_1], [b_0]
     for m in range(terms - 1):
         a.append((rate * ((m + 1) * a[m + 1] - b[m]) - a[m]) / ((m + 2) * (m + 1)))
-        b.append(next_cosine(a, b))
-    return a, b
-
-
-def general_series(
-    a_0: Number, a_1: Number, b_0: Number, curvature: Sequence[Number], terms: int
-) -> tuple[Series, Series]:
-    """The same for any analytic K, from its coefficients k_0 ... k_(terms-1), k_0 not zero.
-
-    Equation (23), coefficient by coefficient: with K = sum k_i phi^i,
-    `k_0 (n+2)(n+1) a_(n+2) = sum_i (i+1) k_(i+1) ((n-i+1) a_(n-i+1) - b_(n-i))
-    - sum_i k_i a_(n-i) - sum_(i>0) k_i (n-i+2)(n-i+1) a_(n-i+2)`. The sum over K' lets (34) out where
-    (i+1) k_(i+1) = k1 k_i.
-    """
-    a, b, k = [a_0, a_1], [b_0], curvature
-    for n in range(terms - 1):
-        total: Number = 0
-        for i in range(n + 1):
-            total = total + (i + 1) * k[i + 1] * ((n - i + 1) * a[n - i + 1] - b[n - i])
-            total = total - k[i] * a[n - i]
-            if i:
-                total = total - k[i] * ((n - i + 2) * (n - i + 1)) * a[n - i + 2]
-        a.append(total / (k[0] * ((n + 2) * (n + 1))))
         b.append(next_cosine(a, b))
     return a, b
 

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
 
 Array = npt.NDArray[np.float64]
 

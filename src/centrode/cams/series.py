@@ -13,10 +13,10 @@ from centrode.cams.asked import check_start
 from centrode.cams.curvature_laws import CurvatureLaw, ExponentialCurvature, derivatives
 from centrode.cams.lawful import check_span
 from centrode.cams.path import inside
-from centrode.cams.recursions import Series, exponential_series, general_series
+from centrode.cams.recursions import Series, exponential_series, system_series
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam_parts import MOST_TERMS
+from centrode.model.cams.parts import MOST_TERMS
 
 Array = NDArray[np.float64]
 
@@ -82,8 +82,8 @@ class SeriesPath:
         return derivatives(self.law, inside(self, phi), order)
 
     def _upright(self, eta: list[Array]) -> Jet:
-        square = 1.0 - Jet(eta) * Jet(eta)
-        with np.errstate(invalid="ignore", divide="ignore"):
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            square = 1.0 - Jet(eta) * Jet(eta)
             return Jet(square_root(square.coefficients, np.sqrt(square.value)))
 
     def _curvature(self, phi: Array, order: int) -> Jet:
@@ -127,8 +127,8 @@ def series_path(
 
     Notes
     -----
-    By the recursions (24), (25), (34) of the paper for an exponential law, by the general one for any other
-    (`cams.recursions.general_series`).
+    By the recursions (24), (25), (34) of the paper for an exponential law, by those of the equations themselves for
+    any other (`cams.recursions.system_series`).
     """
     check_start(rho0, gamma0, start, stop)
     check_span(law, start, stop)
@@ -156,4 +156,5 @@ def coefficients(law: CurvatureLaw, rho0: float, gamma0: float, terms: int) -> t
         slope = cosine - rho0 * curvature[0]
         if isinstance(law, ExponentialCurvature):
             return exponential_series(sine, slope, cosine, law.k1, terms)
-        return general_series(sine, slope, cosine, curvature, terms)
+        _radii, sines, cosines = system_series(rho0, sine, cosine, curvature[:terms])
+        return sines, cosines[:terms]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -34,13 +34,11 @@ OPTIONS: tuple[Callable[..., Any], ...] = (
         metavar=mark("LINK"),
         help=mark('Link for a counterweight, or "LINK@POINT" with the point its radius is measured from.'),
     ),
-    click.option(
-        "--full", "to", flag_value="full", default=True, help=mark("Make the shaking force zero (the rule).")
-    ),
+    click.option("--full", is_flag=True, help=mark("Make the shaking force zero (the rule).")),
     click.option(
         "--least-maximum",
-        "to",
-        flag_value="least",
+        "least",
+        is_flag=True,
         help=mark("Make the greatest effects as small as they can be."),
     ),
     click.option(
@@ -132,19 +130,18 @@ def _asked(given: dict[str, Any]) -> dict[str, Any]:
     """The arguments of `ct.balance` that the options say."""
     found: dict[str, Any] = {
         "on": given["links"] or None,
-        "to": cast("To", "fraction" if given["fraction"] is not None else given["to"]),
+        "to": _aim(given),
         "moment": given["moment"],
-        "speed": "steady" if given["steady"] else "drive",
+        "speed": "steady" if given["steady"] else "mean",
         "radius": _by_link(given["radii"], "--radius", "OA=50 mm"),
         "most": _by_link(given["heaviest"], "--most", "OA=3 kg"),
         "thickness": given["thickness"],
     }
     if given["fraction"] is not None:
-        if given["to"] == "least":
-            what = _("--least-maximum and --fraction are given together")
-            raise InputError("--fraction", what, _("keep one of them"))
         found["fraction"] = given["fraction"]
     if given["density"] is not None:
+        if given["thickness"] is None:
+            raise InputError("--density", _("it belongs to --thickness"), _("give that too"))
         found["density"] = given["density"]
     if given["weights"] is not None:
         if found["to"] != "least":
@@ -153,6 +150,23 @@ def _asked(given: dict[str, Any]) -> dict[str, Any]:
     if given["about"] is not None:
         found["about"] = _place(given["about"])
     return found
+
+
+def _aim(given: dict[str, Any]) -> To:
+    """What the balance is for; InputError where several things are asked for."""
+    asked = {
+        "--full": given["full"],
+        "--least-maximum": given["least"],
+        "--fraction": given["fraction"] is not None,
+    }
+    named = [option for option, said in asked.items() if said]
+    if len(named) > 1:
+        what = _("{one} and {other} are given together").format(one=named[0], other=named[1])
+        raise InputError(named[1], what, _("keep one of them"))
+    if not named:
+        return "full"
+    kinds: dict[str, To] = {"--full": "full", "--least-maximum": "least", "--fraction": "fraction"}
+    return kinds[named[0]]
 
 
 def _by_link(texts: tuple[str, ...], where: str, sample: str) -> str | dict[str, str] | None:

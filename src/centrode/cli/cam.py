@@ -18,8 +18,8 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
-    from centrode.study.cam_results import CamResults
-    from centrode.study.cam_said import CamPart
+    from centrode.study.cams.results import CamResults
+    from centrode.study.cams.said import CamPart
 
 _DXF = find_spec("ezdxf") is not None
 

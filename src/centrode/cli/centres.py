@@ -147,7 +147,7 @@ def _text(
 ) -> str:
     """A heading with the place and a table of its centres; of pairs asked for also what they were found from."""
     rows = ct.centres_rows(description, found, sample, names, made)
-    text = f"{ct.place_words(description, motion, sample)}\n{output.table(rows, ct.centres_header())}"
+    text = f"{ct.place_words(description, motion, sample)}\n{output.table(rows, ct.centres_header(found))}"
     if asked is None or made is None:
         return text
     steps = [_unbroken(step) for step in ct.steps_leading_to(made, asked)]

@@ -16,10 +16,10 @@ from centrode.cli.progress import Progress
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
-    from centrode.dynamics.balance import Mean
-    from centrode.dynamics.steady import Method
+    from centrode.dynamics.steady_motion.balance import Mean
+    from centrode.dynamics.steady_motion.steady import Method
     from centrode.model.mechanism import Mechanism
-    from centrode.study.machines import MachineResults
+    from centrode.study.forces.machines import MachineResults
 
 
 @click.command(help=mark("Find the flywheel of a machine, and its real motion."))

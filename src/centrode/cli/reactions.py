@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -43,6 +43,7 @@ MOST_INSTANTS = 100
     is_flag=True,
     help=mark("At the real speed of a machine in steady motion, not at its mean speed."),
 )
+@click.option("--frictionless", is_flag=True, help=mark("Leave out friction that is given by coefficients."))
 @written_option
 @samples_option
 @start_option
@@ -52,6 +53,7 @@ def reactions(
     mechanism: str,
     instants: tuple[str, ...],
     steady: bool,
+    frictionless: bool,
     out: Path | None,
     samples: int | None,
     start: str | None,
@@ -65,18 +67,19 @@ def reactions(
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")
     names: list[str] = []
+
+    def solved() -> xarray.Dataset:
+        speed: Literal["mean", "steady"] = "steady" if steady else "mean"
+        return ct.reactions(description, samples, first, last, places, speed=speed, friction=not frictionless)
+
     with about(mechanism):
         if out is None:
-            found = ct.reactions(
-                description, samples, first, last, places, speed="steady" if steady else "mean"
-            )
+            found = solved()
         else:
             with output.output_folder(out) as draft, Progress() as progress:
                 progress.say(_("solving"))
-                found = ct.reactions(
-                    description, samples, first, last, places, speed="steady" if steady else "mean"
-                )
-                write(description, found, draft, progress, figures=not no_figures and not instants)
+                found = solved()
+                write(description, found, draft, progress, figures=not no_figures, over_range=not instants)
                 names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or mechanism)
     click.echo("\n" + report(description, found, instants))
@@ -100,16 +103,36 @@ def _check(instants: tuple[str, ...], samples: int | None, start: str | None, st
 
 
 def write(
-    mechanism: ct.Mechanism, found: xarray.Dataset, folder: Path, progress: Progress, *, figures: bool
+    mechanism: ct.Mechanism,
+    found: xarray.Dataset,
+    folder: Path,
+    progress: Progress,
+    *,
+    figures: bool,
+    loads: tuple[ct.BearingLoad, ...] | None = None,
+    over_range: bool = True,
 ) -> None:
-    """Write reactions and the table of joints into a folder, and figures where asked."""
+    """Write reactions and the table of joints into a folder; over a range worst cases, and figures where asked."""
     progress.say(_("writing tables"))
     ct.write_reactions_csv(found, folder / "reactions.csv", mechanism.display)
     ct.write_motion_netcdf(found, folder / "reactions.nc")
     ct.write_joint_table_csv(ct.joint_table(mechanism), folder / "joints.csv")
+    if not over_range:
+        return
+    loads = ct.bearing_loads(mechanism, found) if loads is None else loads
+    ct.write_bearing_loads_csv(mechanism, loads, folder / "bearing-loads.csv")
+    drawn = {}
     if figures:
         progress.say(_("drawing"))
-        ct.save_figures(ct.reaction_figures(mechanism, found), folder)
+        drawn = ct.reaction_figures(mechanism, found)
+    if mechanism.space == "plane":
+        motion = ct.motion_beside(mechanism, found)
+        bearings = ct.bearings(mechanism, found, motion)
+        ct.write_motion_netcdf(bearings, folder / "bearings.nc")
+        drawn |= ct.bearing_figures(mechanism, found, bearings, motion) if figures else {}
+    for number, (name, figure) in enumerate(drawn.items(), start=1):
+        progress.say(_("drawing {name}").format(name=name), number, len(drawn))
+        ct.save_figures({name: figure}, folder)
 
 
 def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, ...]) -> str:
@@ -122,6 +145,9 @@ def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, 
     if not instants:
         header, rows = ct.reaction_extremes(mechanism, found)
         texts.append(output.table(rows, header, right=(2, 4)))
+        losses = ct.friction_losses(found)
+        if losses is not None:
+            texts.append(output.table(losses[1], losses[0], right=(1, 2, 3)))
     for number, text in enumerate(instants):
         header, rows = ct.reactions_at_instant(mechanism, found, number)
         heading = _("at {value}").format(value=text)
@@ -140,3 +166,11 @@ def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
             missing,
         ).format(missing=missing, all=len(status))
         raise MotionError(mechanism, what, _("ask for a range between the limits, or change the dimensions"))
+    locked = int((found["reaction_status"] == Status.SELF_LOCKING).sum())
+    if locked:
+        what = ngettext(
+            "self-locking: at {n} sample no drive overcomes the friction",
+            "self-locking: at {n} samples no drive overcomes the friction",
+            locked,
+        ).format(n=locked)
+        raise MotionError(mechanism, what, _("make the coefficients or radii less, or the sliders longer"))

@@ -86,7 +86,8 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
     if study.machine is not None:
         write_machine(mechanism, study.machine, folder, progress, figures=figures)
     if study.reactions is not None:
-        write_reactions(mechanism, study.reactions, folder, progress, figures=figures)
+        loads = study.bearing_loads
+        write_reactions(mechanism, study.reactions, folder, progress, figures=figures, loads=loads)
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
     (folder / "summary.json").write_text(text, encoding="utf-8")

@@ -8,10 +8,13 @@ from typing import Any, Protocol, TypeAlias
 
 from centrode.algebra.jets import Jet
 from centrode.dynamics.bodies import Centre, Radial
-from centrode.dynamics.pulls import Pull, couple, on_link, on_point
+from centrode.dynamics.pulls import Pull, Vector, couple, on_link, on_point
 from centrode.dynamics.states import Place, State
 from centrode.geometry.plane import turned
+from centrode.geometry.slopes import unit
+from centrode.geometry.sphere import cross, unit_vector
 from centrode.model.mechanism import FRAME
+from centrode.model.values import Placed
 
 Number: TypeAlias = Any
 
@@ -60,11 +63,26 @@ class Slide:
 
     def pulls(self, state: State) -> tuple[Pull, ...]:
         guide = state.mechanism.guide(self.guide)
-        at = place_of(state.point(guide.point))
-        x, y = turned(guide.unit, place_of(state.rotor(guide.on)))
+        at, along = place_of(state.point(guide.point)), self._along(state)
         # a slider that is a link of its own is what is pushed, and not the pin in it
-        slider = on_point(guide.point, (x, y), at) if guide.link is None else on_link(guide.link, (x, y), at)
-        return slider, on_link(guide.on, (-x, -y), at)
+        slider = on_point(guide.point, along, at) if guide.link is None else on_link(guide.link, along, at)
+        return slider, on_link(guide.on, tuple(-x for x in along), at)
+
+    def _along(self, state: State) -> Vector:
+        """Unit vector along which the displacement grows: of the line, or of the circle at the point."""
+        guide = state.mechanism.guide(self.guide)
+        if not state.on_sphere:
+            (x, y), (cosine, sine) = guide.unit, place_of(state.rotor(guide.on))
+            return turned((x, y), (cosine, sine))
+        spot = guide.pole.at if isinstance(guide.pole, Placed) else guide.pole
+        assert spot is not None
+        pole = (
+            state.point(spot)
+            if isinstance(spot, str)
+            else state.heading(guide.on, unit_vector(state.m.base, spot))
+        )
+        (x, y, z), (u, v, w) = place_of(pole), place_of(state.point(guide.point))
+        return unit(state.m.base, cross((x, y, z), (u, v, w)))
 
 
 @dataclass(frozen=True)
@@ -151,13 +169,13 @@ class Component:
         return cosine * x - sine * y, sine * x + cosine * y
 
 
-def place_of(place: Place) -> tuple[Number, Number]:
+def place_of(place: Place) -> Vector:
     """Coordinates without their derivatives."""
-    return place[0].value, place[1].value
+    return tuple(x.value for x in place)
 
 
-def _apart(state: State, first: str, second: str, unit: Number) -> tuple[Pull, ...]:
-    """Two points pushed apart, each with a force of their distance over `unit`."""
-    (x, y), (u, v) = place_of(state.point(first)), place_of(state.point(second))
-    force = (u - x) / unit, (v - y) / unit
-    return on_point(second, force, (u, v)), on_point(first, (-force[0], -force[1]), (x, y))
+def _apart(state: State, first: str, second: str, size: Number) -> tuple[Pull, ...]:
+    """Two points pushed apart, each with a force of their distance over `size`."""
+    one, other = place_of(state.point(first)), place_of(state.point(second))
+    force = tuple((u - x) / size for x, u in zip(one, other, strict=True))
+    return on_point(second, force, other), on_point(first, tuple(-x for x in force), one)

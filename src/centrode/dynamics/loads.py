@@ -34,9 +34,13 @@ Namespace: TypeAlias = Any
 
 
 def loads_of(
-    mechanism: Mechanism, masses: Sequence[Mass], given: Given | None = None, m: Namespace = ARRAYS
+    mechanism: Mechanism,
+    masses: Sequence[Mass],
+    given: Given | None = None,
+    m: Namespace = ARRAYS,
+    described: Sequence[Load] | None = None,
 ) -> tuple[Acting, ...]:
-    """Loads of the description, then the weights that gravity adds; each with a label of its own.
+    """Loads of the description, or some of them, then the weights that gravity adds; each with a label of its own.
 
     Raises
     ------
@@ -45,17 +49,18 @@ def loads_of(
     NotComputedYet
         Friction by a coefficient.
     """
-    labels = _labels(mechanism.loads, mechanism, masses)
-    described = [
+    loads = mechanism.loads if described is None else described
+    labels = _labels(loads, mechanism, masses)
+    found = [
         Acting(label, tuple(_efforts(mechanism, load, masses, where, given, m)), where)
-        for label, load in zip(labels, mechanism.loads, strict=False)
+        for label, load in zip(labels, loads, strict=False)
         for where in [f"[[loads]] {label}"]
     ]
     weights = [
         Acting(label, (_weight(mechanism, mass, mass.mass * _strength(mechanism)),), f"[links.{mass.link}]")
-        for label, mass in zip(labels[len(described) :], _weighing(mechanism, masses), strict=True)
+        for label, mass in zip(labels[len(loads) :], _weighing(mechanism, masses), strict=True)
     ]
-    return (*described, *weights)
+    return (*found, *weights)
 
 
 def _weighing(mechanism: Mechanism, masses: Iterable[Mass]) -> list[Mass]:
@@ -124,7 +129,8 @@ def _friction(mechanism: Mechanism, load: Load, where: str) -> Effort:
     """Friction of a given size: dry, and parts that grow with the speed and its square."""
     if load.coefficient is not None:
         what = _("friction by a coefficient needs the reactions")
-        raise NotComputedYet(where, what, _("give value, viscous or quadratic in place of coefficient"))
+        repair = _("ask for the reactions (ct.reactions, centrode reactions), or give the size by value")
+        raise NotComputedYet(where, what, repair)
     dry = _amount(load.value, where)
     if load.guide is not None:
         amount = Friction(dry, load.viscous or 0.0, load.quadratic or 0.0)

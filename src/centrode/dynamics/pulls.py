@@ -6,11 +6,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from centrode.geometry.plane import Vector, cross, subtract
+from centrode.geometry import plane, sphere
 from centrode.structure.positions import FRAME, Entity
 
 Number: TypeAlias = Any
+Vector: TypeAlias = tuple[Number, ...]
+"""Components along the axes of the space: two, on the sphere three."""
+Moment: TypeAlias = Any
+"""A number in the plane, a vector on the sphere; a plain zero is none in both."""
 NO_FORCE: Vector = (0.0, 0.0)
+NOWHERE: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -20,26 +25,34 @@ class Pull:
     Attributes
     ----------
     body : a point (a pin), or a link, the frame included
-    force : (x, y) [N]
-    at : (x, y) [m]
+    force : (x, y), on the sphere (x, y, z) [N]
+    at : the same [m]
         Where the force acts, as a place of that body.
-    moment : number [N m]
+    moment : number, on the sphere a vector [N m]
         A couple that comes on top; points take none.
     """
 
     body: Entity
     force: Vector
     at: Vector
-    moment: Number = 0.0
+    moment: Moment = 0.0
 
     def times(self, factor: Number) -> Pull:
         """The same, so many times as great."""
-        x, y = self.force
-        return Pull(self.body, (x * factor, y * factor), self.at, self.moment * factor)
+        force = tuple(x * factor for x in self.force)
+        moment = self.moment
+        turned = tuple(x * factor for x in moment) if isinstance(moment, tuple) else moment * factor
+        return Pull(self.body, force, self.at, turned)
 
-    def moment_about(self, place: Vector) -> Number:
+    def moment_about(self, place: Vector) -> Moment:
         """Moment of the force about a place, and the couple [N m]."""
-        return cross(subtract(self.at, place), self.force) + self.moment
+        if len(self.force) == 2:
+            (x, y), (u, v) = self.at, place
+            return plane.cross((x - u, y - v), (self.force[0], self.force[1])) + self.moment
+        x, y, z = self.at
+        u, v, w = place
+        turned = sphere.cross((x - u, y - v, z - w), (self.force[0], self.force[1], self.force[2]))
+        return sphere.add(turned, self.moment) if isinstance(self.moment, tuple) else turned
 
 
 def on_point(point: str, force: Vector, at: Vector) -> Pull:
@@ -52,20 +65,26 @@ def on_link(link: str, force: Vector, at: Vector) -> Pull:
     return Pull(Entity("link", link), force, at)
 
 
-def couple(link: str, moment: Number) -> Pull:
+def couple(link: str, moment: Moment) -> Pull:
     """A moment on a link."""
-    return Pull(Entity("link", link), NO_FORCE, NO_FORCE, moment)
+    none = NOWHERE if isinstance(moment, tuple) else NO_FORCE
+    return Pull(Entity("link", link), none, none, moment)
 
 
-def total(pulls: Iterable[Pull], about: Vector = (0.0, 0.0)) -> tuple[Number, Number, Number]:
-    """Force (x, y) and moment about a place of all pulls together."""
-    x: Number = 0.0
-    y: Number = 0.0
-    moment: Number = 0.0
+def total(pulls: Iterable[Pull], about: Vector) -> tuple[Vector, Moment]:
+    """Force and moment about a place of all pulls together."""
+    force: list[Number] = [0.0] * len(about)
+    moment: Moment = 0.0 if len(about) == 2 else NOWHERE
     for pull in pulls:
-        x, y = x + pull.force[0], y + pull.force[1]
-        moment = moment + pull.moment_about(about)
-    return x, y, moment
+        force = [x + y for x, y in zip(force, pull.force, strict=True)]
+        turned = pull.moment_about(about)
+        moment = sphere.add(moment, turned) if isinstance(moment, tuple) else moment + turned
+    return tuple(force), moment
+
+
+def components(moment: Moment) -> Vector:
+    """The numbers of a moment: one, or three."""
+    return moment if isinstance(moment, tuple) else (moment,)
 
 
 def on_frame(body: Entity, fixed: Iterable[str]) -> bool:

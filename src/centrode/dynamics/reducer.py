@@ -22,6 +22,7 @@ from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
+from centrode.model.loads import Load
 from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -74,8 +75,20 @@ class Burden:
         NotComputedYet
             Friction by a coefficient.
         """
+        return cls._of(mechanism, given, m, mechanism.loads)
+
+    @classmethod
+    def for_reactions(cls, mechanism: Mechanism) -> Burden:
+        """The same without friction by coefficients, as forces on points and links; InputError for what is no force."""
+        loads = [load for load in mechanism.loads if load.coefficient is None]
+        return cls._of(mechanism, None, ARRAYS, loads)._as_forces()
+
+    @classmethod
+    def _of(
+        cls, mechanism: Mechanism, given: Given | None, m: Namespace, described: Sequence[Load]
+    ) -> Burden:
         masses = masses_of(mechanism, given, m)
-        loads = loads_of(mechanism, masses, given, m)
+        loads = loads_of(mechanism, masses, given, m, described)
         if not masses and not loads:
             what = _("there are neither masses nor loads")
             raise InputError("", what, _("give links a mass, or [[loads]]"))
@@ -85,14 +98,16 @@ class Burden:
     def in_plane(cls, mechanism: Mechanism) -> Burden:
         """The same as forces on links of the plane; NotComputedYet on the sphere, InputError for what is no force."""
         if mechanism.space == "sphere":
-            what = _("reactions on the sphere are not computed yet")
+            what = _("force polygons on the sphere are not computed yet")
             raise NotComputedYet("space", what, _("describe a plane one"))
-        found = cls.of(mechanism)
-        for load in found.loads:
+        return cls.of(mechanism)._as_forces()
+
+    def _as_forces(self) -> Burden:
+        for load in self.loads:
             if any(effort.works is not None for effort in load.efforts):
                 what = _("a plain sum is no moment in a hinge, so it makes no reactions")
                 raise InputError(load.where, what, _("take form out"))
-        return found
+        return self
 
     @property
     def links(self) -> tuple[str, ...]:

@@ -7,8 +7,8 @@ from math import hypot
 from typing import Any, TypeAlias
 
 from centrode.algebra.jets import Jet
-from centrode.dynamics.coordinates import Coordinate, Turn
-from centrode.dynamics.pulls import Pull
+from centrode.dynamics.coordinates import Coordinate, Turn, place_of
+from centrode.dynamics.pulls import Pull, couple
 from centrode.dynamics.states import Place, State
 from centrode.errors import InputError
 from centrode.locale import _
@@ -47,7 +47,8 @@ class Spin:
         return sum(parts[1:], parts[0])
 
     def pulls(self, state: State) -> tuple[Pull, ...]:
-        raise NotImplementedError("forces on links are those of the plane")
+        axis = place_of(self._axis(state))
+        return couple(self.link, axis), couple(self.base, tuple(-x for x in axis))
 
     def _axis(self, state: State) -> Place:
         if isinstance(self.axis, str):

@@ -45,7 +45,7 @@ class Sphere:
     axes = ("x", "y", "z")
     unit = "rad"
     crosses_once = False
-    lacks = frozenset({"gears", "rolling", "distance", "guided links"})
+    lacks = frozenset({"rolling", "distance", "guided links"})
     at_rest = AT_REST
 
     def place(self, m: Namespace, pose: Attitude, local: Coordinates) -> Vector:

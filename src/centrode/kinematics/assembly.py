@@ -92,11 +92,10 @@ def assemble(kinematics: Kinematics) -> Assembled:
                 raise undetermined(group) from None
             _check_finite(group, at)
             _check_angles(kinematics, group, at)
-            if isinstance(group, Newton):
-                continue
             kinematics.count(i, at, ARRAYS, starting)
             bounding = Bounding(kinematics, group, signs.get(i, 1.0))
-            solve_group(group, ROUNDED, kinematics.numbers, bounded, Choices(bounding, i))
+            if not isinstance(group, Newton):  # its places have their bounds already
+                solve_group(group, ROUNDED, kinematics.numbers, bounded, Choices(bounding, i))
             kinematics.count(i, bounded, ROUNDED, bounding)
     kinematics = with_phases(kinematics, phases_after(kinematics, at))
     check_touch(kinematics, at)

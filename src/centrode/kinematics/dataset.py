@@ -14,7 +14,7 @@ import xarray as xr
 
 from centrode import __version__
 from centrode.algebra.arrays import ARRAYS
-from centrode.errors import Status
+from centrode.errors import STATUSES_OF_MOTION
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import Span
 from centrode.locale import speaking
@@ -157,8 +157,8 @@ def _contacts(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
 def judgements_of(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Status and residual of every sample."""
     dimensions, status, attributes = named("status", (*front, "sample"), _lanes(solved.status, front))
-    attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
-    attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
+    attributes["flag_values"] = np.array([s.value for s in STATUSES_OF_MOTION], dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(s.name.lower() for s in STATUSES_OF_MOTION)
     return {
         "status": (dimensions, status, attributes),
         "residual": named("residual", (*front, "sample"), _lanes(solved.residual, front)),

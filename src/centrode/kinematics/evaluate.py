@@ -11,7 +11,7 @@ from centrode.kinematics.paths import Path
 from centrode.kinematics.wheels import Continued
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.plan import Structure
-from centrode.structure.positions import Positions
+from centrode.structure.positions import FRAME, Positions
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
@@ -118,8 +118,7 @@ class Kinematics:
         """Add the angles, with their turns, of links of a group on which gears or rolling wheels depend."""
         for link in self.structure.counted[group]:
             if link not in at.angles:
-                cosine, sine = at.poses[link].rotor
-                at.angles[link] = hooks.continued(group, link, m.atan2(sine, cosine))
+                at.angles[link] = hooks.continued(group, link, own_angle(m, self.numbers, at, link))
 
     def guard(self, m: Namespace, parameter: Number, group: int, hooks: Hooks) -> Number:
         """The number whose sign decides whether a group closes: its radicand, or the divisor of a group without one."""
@@ -136,6 +135,16 @@ class Kinematics:
             return x if isinstance(x, float) else x.reshape(-1)[lanes]
 
         return Kinematics(self.structure, self.numbers.mapped(take), self.path.taken(take))
+
+
+def own_angle(m: Namespace, numbers: Dimensions, at: Positions, link: str) -> Number:
+    """Angle of a link in (-pi, pi]: of its axes, on the sphere from the arc that it is measured from."""
+    reference = numbers.reference(link)
+    if reference is None:
+        cosine, sine = at.poses[link].rotor
+        return m.atan2(sine, cosine)
+    base = at.poses[numbers.gearing.measured.get(link, FRAME)]
+    return numbers.space.turn(m, at.poses[link], base, (1.0, 0.0), reference)
 
 
 class _UpTo(Hooks):

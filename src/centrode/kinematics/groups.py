@@ -25,6 +25,7 @@ from centrode.geometry.space import Pose as AnyPose
 from centrode.kinematics.turned_links import add_angle, difference_of, turn_link
 from centrode.kinematics.wheels import (
     beside_track,
+    pose_at,
     rolloff_line,
     solve_train,
     touched_circle,
@@ -94,9 +95,9 @@ def _turned_link(
 ) -> AnyPose:
     turning = group.turning
     if not isinstance(turning, Turning):
-        at_pivot = numbers.local[group.link][group.pivot], at.points[group.pivot]
-        return pose_with_point(*at_pivot, turn_link(turning, group.link, m, numbers, at, choices.continued))
-    add_angle(turning, group.link, at)
+        rotor = turn_link(turning, group.link, m, numbers, at, choices.continued)
+        return pose_at(group.link, group.pivot, rotor, m, numbers, at)
+    add_angle(turning, group.link, numbers, at)
     rotor, reference = difference_of(turning, m, numbers, at), numbers.reference(turning.link)
     base = turning.relative_to
     if group.link != turning.link:  # it is the base that is unknown

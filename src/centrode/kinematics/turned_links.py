@@ -32,7 +32,7 @@ def turn_link(
 ) -> Vector:
     """Rotor of a link whose angle follows, in the plane; the angle is added where it is known with its turns."""
     if isinstance(turning, Turning):
-        add_angle(turning, link, at)
+        add_angle(turning, link, numbers, at)
         return turning_rotor(turning, link, m, numbers, at)
     rotor, angle = followed(turning, link, m, numbers, at, continued)
     if angle is not None:
@@ -40,8 +40,13 @@ def turn_link(
     return rotor
 
 
-def add_angle(turning: Turning, link: str, at: Positions) -> None:
+def add_angle(turning: Turning, link: str, numbers: Dimensions, at: Positions) -> None:
     """Add the angle of a driven link with its turns, if that of the other link is known."""
+    if turning.drive is not None and numbers.reference(turning.link) is not None:
+        # on the sphere the angle is that between the two links itself, and tells nothing of the other one's
+        if link == turning.link:
+            at.angles[link] = at.drives[turning.drive]
+        return
     other = turning.relative_to if link == turning.link else turning.link
     if turning.drive is not None and other in at.angles:
         value = at.drives[turning.drive]

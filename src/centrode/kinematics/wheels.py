@@ -18,9 +18,10 @@ from centrode.geometry.plane import (
     subtract,
     turned,
 )
+from centrode.geometry.space import Pose
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
-from centrode.structure.positions import Positions
+from centrode.structure.positions import FRAME, Positions
 from centrode.structure.wheel_groups import (
     AngleEquation,
     AngleGiven,
@@ -48,12 +49,13 @@ def meshed_angle(turning: Meshed, link: str, numbers: Dimensions, at: Positions)
     """Angle [rad] of one link of a gear from those of the other two."""
     gear = turning.gear
     ratio, phase = numbers.gearing.ratio[gear.gear], numbers.gearing.phase[gear.gear]
+    first, second = numbers.gearing.shares.get(gear.gear, (1.0, 1.0))
     if link == gear.carrier:
-        return (at.angles[gear.second] - ratio * at.angles[gear.first] - phase) / (1.0 - ratio)
+        return (at.angles[gear.second] - ratio * at.angles[gear.first] - phase) / (second - ratio * first)
     carrier = at.angles[gear.carrier]
     if link == gear.second:
-        return carrier + (phase + ratio * (at.angles[gear.first] - carrier))
-    return carrier + (at.angles[gear.second] - carrier - phase) / ratio
+        return second * carrier + (phase + ratio * (at.angles[gear.first] - first * carrier))
+    return first * carrier + (at.angles[gear.second] - second * carrier - phase) / ratio
 
 
 def rolled_turn(
@@ -137,10 +139,19 @@ def place_train(group: Train, m: Namespace, numbers: Dimensions, at: Positions) 
     """Add poses and points of a train whose angles are known."""
     for link, pivot in group.places:
         local = numbers.local[link]
-        at.poses[link] = pose_with_point(local[pivot], at.points[pivot], rotor_of(m, at.angles[link]))
+        at.poses[link] = pose_at(link, pivot, rotor_of(m, at.angles[link]), m, numbers, at)
         for point, bringing in group.brought:
             if bringing == link:
-                at.points[point] = place(at.poses[link], local[point])
+                at.points[point] = numbers.space.place(m, at.poses[link], local[point])
+
+
+def pose_at(link: str, pivot: str, rotor: Vector, m: Namespace, numbers: Dimensions, at: Positions) -> Pose:
+    """Pose of a link about a known point whose angle has a rotor: in the plane the angle of its own axes."""
+    inside, place_of_pivot, reference = numbers.local[link][pivot], at.points[pivot], numbers.reference(link)
+    if reference is None:
+        return pose_with_point(inside, place_of_pivot, rotor)
+    base = at.poses[numbers.gearing.measured.get(link, FRAME)]
+    return numbers.space.turned_pose(m, base, rotor, inside, place_of_pivot, reference)
 
 
 def solved_angles(
@@ -187,7 +198,10 @@ def equation_at(
         spin = gearing.spin(rolling.rolling)
         right = gearing.phase[rolling.rolling] + spin * arm_angle(equation, m, numbers)
         return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}, right
-    return {equation.link: 1.0, equation.relative_to: -1.0}, _given(equation, m, numbers, at)
+    given = _given(equation, m, numbers, at)
+    if numbers.reference(equation.link) is not None:  # on the sphere the angle is that between the two
+        return {equation.link: 1.0}, given
+    return {equation.link: 1.0, equation.relative_to: -1.0}, given
 
 
 def arm_angle(arm: Arm, m: Namespace, numbers: Dimensions) -> Number:

@@ -135,6 +135,8 @@ def _rest(mechanism: Description) -> Iterator[Problem]:
             yield from link_known(mechanism, load.link, (*at, "link"), moving=True)
         if load.guide:
             yield from known(load.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide"))
+        if load.pin:
+            yield from link_known(mechanism, load.pin, (*at, "pin"))
         yield from two_known_points(mechanism, load.points, (*at, "points"))
         yield from link_known(mechanism, load.axes, (*at, "axes"))
         yield from link_known(mechanism, load.relative_to, (*at, "relative_to"))

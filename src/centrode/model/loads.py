@@ -11,8 +11,9 @@ from pydantic import PlainValidator, ValidationInfo, field_validator
 from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.load_keys import load_key_problems
 from centrode.model.names import FRAME, read_name
-from centrode.model.part import Part, missing_key, one_of
+from centrode.model.part import Part
 from centrode.model.problems import Problem, shown
 from centrode.model.tables import Columns, read_rows
 from centrode.model.values import (
@@ -20,6 +21,7 @@ from centrode.model.values import (
     Angle,
     Heading,
     Name,
+    PositiveLength,
     choice,
     listed,
     not_negative,
@@ -40,37 +42,10 @@ Form = Literal["virtual work", "plain sum"]
 VIRTUAL_WORK: Form = "virtual work"
 PLAIN_SUM: Form = "plain sum"
 FORMS = (VIRTUAL_WORK, PLAIN_SUM)
-_FRICTION = ("value", "viscous", "quadratic", "coefficient")
-
-# a force in a point has a vector, one along a guide a value or a table
-_IN_POINT, _ALONG_GUIDE = ("vector", "axes", "while_moving"), ("value", "table")
+Fit = Literal["clearance", "new", "worn-in"]
+CLEARANCE: Fit = "clearance"
+FITS = (CLEARANCE, "new", "worn-in")
 LEAST_ROWS = 2
-
-# kind -> keys that it needs, and keys that it may have; a tuple of alternatives needs exactly one of them.
-_ALTERNATIVES: dict[str, tuple[str, ...]] = {
-    "force": ("point", "guide"),
-    "torque": ("link",),
-    "spring": ("points", "link"),
-    "damper": ("points", "link"),
-    "weight": ("link", "point"),
-    "friction": ("link", "guide"),
-}
-_NEEDED: dict[str, tuple[str, ...]] = {
-    "force": (),
-    "torque": ("value",),
-    "spring": ("stiffness",),
-    "damper": ("damping",),
-    "weight": (),
-    "friction": (),
-}
-_ALLOWED: dict[str, tuple[str, ...]] = {
-    "force": ("vector", "value", "table", "axes", "while_moving"),
-    "torque": ("relative_to", "axis"),
-    "spring": ("free_length", "free_angle", "relative_to", "axis"),
-    "damper": ("relative_to", "axis"),
-    "weight": ("value",),
-    "friction": ("value", "viscous", "quadratic", "coefficient", "form", "relative_to", "axis"),
-}
 
 
 def _amount(value: object, kind: str) -> Amount:
@@ -118,7 +93,11 @@ class Load(Part):
     viscous, quadratic : float [N m s/rad, N m s^2/rad^2]; in a guide [N s/m, N s^2/m^2]
         Friction that grows with the relative speed, and with its square.
     coefficient : float
-        Friction that grows with the reaction.
+        Friction that grows with the reaction, in the hinge of a point or in a guide.
+    radius, fit, pin : float [m], "clearance", "new" or "worn-in", the name of a link
+        Of the pin of that hinge; how its bearings fit; the link that the pin is fixed in.
+    length, height : float [m]
+        Of the slider in that guide, along and across; by them it tilts, and friction has an arm.
     form : "virtual work" or "plain sum"
         The plain sum takes the moments of quadratic friction from the driving moment as they are, as a source does.
     table : rows of (displacement [m], force [N]) or (displacement, force forwards, force backwards)
@@ -146,6 +125,11 @@ class Load(Part):
     viscous: float | None = None
     quadratic: float | None = None
     coefficient: Annotated[float, quantity("ratio", not_negative)] | None = None
+    radius: PositiveLength | None = None
+    fit: Annotated[Fit, choice(*FITS)] = CLEARANCE
+    pin: Name | None = None
+    length: PositiveLength | None = None
+    height: PositiveLength | None = None
     form: Annotated[Form, choice(*FORMS)] = VIRTUAL_WORK
     free_length: Annotated[float, PlainValidator(lambda value: not_negative(value, "length"))] | None = None
     free_angle: Angle | None = None
@@ -195,59 +179,4 @@ class Load(Part):
         kind = given.get("kind")
         if problems or kind not in KINDS:
             return problems
-        present = {key for key, value in given.items() if value is not None}
-        alternatives, needed = _ALTERNATIVES[kind], _NEEDED[kind]
-        foreign = present - {"kind", "name", *alternatives, *needed, *_ALLOWED[kind]}
-        problems += [missing_key(key) for key in needed if key not in present]
-        problems += [
-            _foreign(key, kind)
-            for key in cls.model_fields
-            if key in foreign and not _default(cls, key, given)
-        ]
-        if len(present & set(alternatives)) != 1:
-            words = ", ".join(alternatives)
-            problems.append(Problem(_("a {kind} acts on one of: {keys}").format(kind=kind, keys=words)))
-        elif kind == "force":
-            problems += _of_force(cls, given, present)
-        elif kind == "friction":
-            problems += _of_friction(given, present)
-        return problems
-
-
-def _of_force(cls: type[Part], given: Mapping[str, Any], present: set[str]) -> list[Problem]:
-    """A force in a point has a vector; one along a guide a value or a table."""
-    if "point" in present:
-        missing = [] if "vector" in present else [missing_key("vector")]
-        wrong = [key for key in _ALONG_GUIDE if key in present]
-        what = _("{key} belongs to a force along a guide")
-        repair = _("give vector, or a guide in place of the point")
-    else:
-        missing = one_of(given, _ALONG_GUIDE)
-        wrong = [key for key in _IN_POINT if key in present and not _default(cls, key, given)]
-        what = _("{key} belongs to a force in a point")
-        repair = _("give value or table, or a point in place of the guide")
-    return missing + [Problem(what.format(key=shown(key)), repair) for key in wrong]
-
-
-def _of_friction(given: Mapping[str, Any], present: set[str]) -> list[Problem]:
-    """Friction is as great as its keys say together; the plain sum is one of quadratic friction in hinges."""
-    amounts = [key for key in _FRICTION if key in present]
-    if not amounts:
-        return [Problem(_("one of {keys} is missing").format(keys=", ".join(_FRICTION)))]
-    if "coefficient" in amounts and len(amounts) > 1:
-        what = _("{names} are given together").format(names=", ".join(amounts))
-        return [Problem(what, _("keep the coefficient, or the others"))]
-    if given.get("form") == PLAIN_SUM and (amounts != ["quadratic"] or "link" not in present):
-        what = _("the plain sum belongs to quadratic friction in a hinge")
-        return [Problem(what, _("take form out, or give quadratic alone"))]
-    return []
-
-
-def _default(cls: type[Part], key: str, given: Mapping[str, Any]) -> bool:
-    return bool(given[key] == cls.model_fields[key].default)
-
-
-def _foreign(key: str, kind: str) -> Problem:
-    known = (*_ALTERNATIVES[kind], *_NEEDED[kind], *_ALLOWED[kind])
-    what = _("{key} does not belong to a {kind}").format(key=shown(key), kind=kind)
-    return Problem(what, _("it has: {keys}").format(keys=", ".join(known)))
+        return load_key_problems(kind, given, {key: field.default for key, field in cls.model_fields.items()})

@@ -11,7 +11,7 @@ from centrode.model.asked import Assembly, Display, Study
 from centrode.model.bodies import RING_AND_POINT, SHAPES, Frame, Link
 from centrode.model.description import Description
 from centrode.model.driving import Drive
-from centrode.model.loads import FORMS, KINDS, Load
+from centrode.model.loads import FITS, FORMS, KINDS, Load
 from centrode.model.machines import SHAFTS, FlywheelShape, Machine, Shaft
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.part import Part
@@ -155,6 +155,10 @@ PROPERTIES: dict[type[Part], Schema] = {
         "viscous": quantity_schema("damping"),
         "quadratic": quantity_schema("quadratic damping"),
         "coefficient": quantity_schema("ratio"),
+        "radius": above_zero("length"),
+        "fit": {"enum": list(FITS)},
+        "pin": NAME,
+        **dict.fromkeys(("length", "height"), above_zero("length")),
         "form": {"enum": list(FORMS)},
         "free_length": quantity_schema("length"),
         "free_angle": quantity_schema("angle"),

@@ -13,24 +13,29 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
-    from centrode.present.balance_figures import balance_figures
-    from centrode.present.balance_tables import write_balance_csv, write_harmonics_csv
-    from centrode.present.cam_bodies import cam_body_figures
-    from centrode.present.cam_choice import choice_figures, trade_off_figure
-    from centrode.present.cam_choice_tables import write_choice
-    from centrode.present.cam_contact import contact_figure
-    from centrode.present.cam_drawing import (
+    from centrode.present.cams.bodies import cam_body_figures
+    from centrode.present.cams.choice import choice_figures, trade_off_figure
+    from centrode.present.cams.choice_tables import write_choice
+    from centrode.present.cams.contact import contact_figure
+    from centrode.present.cams.drawing import (
         cam_curves_figure,
         cam_figures,
         cam_path_figure,
         cam_routes_figure,
     )
-    from centrode.present.cam_tables import (
+    from centrode.present.cams.outline_dxf import write_outlines_dxf
+    from centrode.present.cams.outline_files import write_cam_outlines
+    from centrode.present.cams.outline_svg import write_outlines_svg
+    from centrode.present.cams.profile_drawing import profile_figure
+    from centrode.present.cams.profile_tables import write_profile_csv
+    from centrode.present.cams.tables import (
         write_cam_contact_csv,
         write_cam_csv,
         write_cam_routes_csv,
         write_cam_tables,
     )
+    from centrode.present.cams.walking_animation import animate_walking
+    from centrode.present.cams.walking_drawing import walking_figure
     from centrode.present.centres import centres_figure
     from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
     from centrode.present.centrodes import animate_centrodes, centrodes_figure
@@ -38,36 +43,33 @@ if TYPE_CHECKING:
     from centrode.present.curvature import curvature_figure
     from centrode.present.dark import darkened
     from centrode.present.drawing import draw_mechanism
-    from centrode.present.equation_latex import equations_latex, equations_markdown
-    from centrode.present.equation_text import equations_rows, equations_text
+    from centrode.present.equations.latex import equations_latex, equations_markdown
+    from centrode.present.equations.text import equations_rows, equations_text
     from centrode.present.figures import motion_figures
+    from centrode.present.forces.balance_figures import balance_figures
+    from centrode.present.forces.balance_tables import write_balance_csv, write_harmonics_csv
+    from centrode.present.forces.bearing_figures import bearing_figures
+    from centrode.present.forces.bearing_tables import write_bearing_loads_csv
+    from centrode.present.forces.machine_figures import machine_figures
+    from centrode.present.forces.polygon_drawing import polygon_figures
+    from centrode.present.forces.reaction_figures import reaction_figures
+    from centrode.present.forces.reaction_tables import write_joint_table_csv, write_reactions_csv
+    from centrode.present.forces.reduction_figures import reduction_figures
+    from centrode.present.forces.reduction_tables import write_reduction_csv
+    from centrode.present.forces.simulation_figures import simulation_figures
     from centrode.present.instant_drawing import diagram_figures
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
-    from centrode.present.machine_figures import machine_figures
     from centrode.present.motion_animation import animate_motion
-    from centrode.present.outline_dxf import write_outlines_dxf
-    from centrode.present.outline_files import write_cam_outlines
-    from centrode.present.outline_svg import write_outlines_svg
     from centrode.present.plan_drawing import plan_figure
-    from centrode.present.polygon_drawing import polygon_figures
-    from centrode.present.profile_drawing import profile_figure
-    from centrode.present.profile_tables import write_profile_csv
-    from centrode.present.reaction_figures import reaction_figures
-    from centrode.present.reaction_tables import write_joint_table_csv, write_reactions_csv
     from centrode.present.reading import scene_of
-    from centrode.present.reduction_figures import reduction_figures
-    from centrode.present.reduction_tables import write_reduction_csv
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
-    from centrode.present.simulation_figures import simulation_figures
     from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
     from centrode.present.variant_folders import write_variants
-    from centrode.present.walking_animation import animate_walking
-    from centrode.present.walking_drawing import walking_figure
 
 __all__ = [
     "animate_centrodes",
@@ -98,6 +100,7 @@ __all__ = [
     "integration_figures",
     "motion_figures",
     "motion_table",
+    "bearing_figures",
     "reaction_figures",
     "reduction_figures",
     "plan_figure",
@@ -126,6 +129,7 @@ __all__ = [
     "write_joint_table_csv",
     "write_motion_csv",
     "write_motion_netcdf",
+    "write_bearing_loads_csv",
     "write_reactions_csv",
     "write_reduction_csv",
     "write_region_csv",
@@ -135,14 +139,14 @@ __all__ = [
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "balance_figures": ["balance_figures"],
-        "balance_tables": ["write_balance_csv", "write_harmonics_csv"],
-        "cam_bodies": ["cam_body_figures"],
-        "cam_drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
-        "cam_choice": ["choice_figures", "trade_off_figure"],
-        "cam_choice_tables": ["write_choice"],
-        "cam_contact": ["contact_figure"],
-        "cam_tables": ["write_cam_contact_csv", "write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
+        "forces.balance_figures": ["balance_figures"],
+        "forces.balance_tables": ["write_balance_csv", "write_harmonics_csv"],
+        "cams.bodies": ["cam_body_figures"],
+        "cams.drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
+        "cams.choice": ["choice_figures", "trade_off_figure"],
+        "cams.choice_tables": ["write_choice"],
+        "cams.contact": ["contact_figure"],
+        "cams.tables": ["write_cam_contact_csv", "write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "centrodes": ["animate_centrodes", "centrodes_figure"],
@@ -150,36 +154,38 @@ _attached, __dir__, _names = lazy_loader.attach(
         "dark": ["darkened"],
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
-        "equation_latex": ["equations_latex", "equations_markdown"],
-        "equation_text": ["equations_rows", "equations_text"],
+        "equations.latex": ["equations_latex", "equations_markdown"],
+        "equations.text": ["equations_rows", "equations_text"],
         "figures": ["motion_figures"],
-        "machine_figures": ["machine_figures"],
+        "forces.machine_figures": ["machine_figures"],
         "instant_drawing": ["diagram_figures"],
-        "outline_dxf": ["write_outlines_dxf"],
-        "outline_files": ["write_cam_outlines"],
-        "outline_svg": ["write_outlines_svg"],
+        "cams.outline_dxf": ["write_outlines_dxf"],
+        "cams.outline_files": ["write_cam_outlines"],
+        "cams.outline_svg": ["write_outlines_svg"],
         "plan_drawing": ["plan_figure"],
-        "profile_drawing": ["profile_figure"],
-        "profile_tables": ["write_profile_csv"],
+        "cams.profile_drawing": ["profile_figure"],
+        "cams.profile_tables": ["write_profile_csv"],
         "integration_tables": ["write_integration_csv"],
         "integrations": ["integration_figures"],
-        "polygon_drawing": ["polygon_figures"],
-        "reaction_figures": ["reaction_figures"],
-        "reaction_tables": ["write_joint_table_csv", "write_reactions_csv"],
+        "forces.polygon_drawing": ["polygon_figures"],
+        "forces.bearing_figures": ["bearing_figures"],
+        "forces.bearing_tables": ["write_bearing_loads_csv"],
+        "forces.reaction_figures": ["reaction_figures"],
+        "forces.reaction_tables": ["write_joint_table_csv", "write_reactions_csv"],
         "reading": ["scene_of"],
-        "reduction_figures": ["reduction_figures"],
-        "reduction_tables": ["write_reduction_csv"],
+        "forces.reduction_figures": ["reduction_figures"],
+        "forces.reduction_tables": ["write_reduction_csv"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "motion_animation": ["animate_motion"],
         "saving": ["save_figures"],
-        "simulation_figures": ["simulation_figures"],
+        "forces.simulation_figures": ["simulation_figures"],
         "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],
         "variant_folders": ["write_variants"],
-        "walking_animation": ["animate_walking"],
-        "walking_drawing": ["walking_figure"],
+        "cams.walking_animation": ["animate_walking"],
+        "cams.walking_drawing": ["walking_figure"],
     },
 )
 

@@ -19,7 +19,10 @@ from centrode.present.pictures import caption, label_lengths
 from centrode.present.reading import scene_of
 from centrode.present.scene import Array, Scene
 from centrode.present.shown import plain
+from centrode.present.sphere.axes_drawing import draw_axes
+from centrode.present.sphere.globe import globe_of
 from centrode.present.style import INK, MUTED, house_style, pens
+from centrode.present.symbols import subscripted
 from centrode.present.tags import Tag, write_tags
 from centrode.present.window import widened, within
 
@@ -52,7 +55,7 @@ def centres_figure(
     ----------
     mechanism : Mechanism
     motion : Dataset
-        Of a planar mechanism, without batch dimensions; the drawing holds all its samples.
+        Without batch dimensions; the drawing holds all its samples.
     construction : Construction
         Of `construct_centres` at the sample.
     pairs : sequence of (body, body), optional
@@ -63,6 +66,12 @@ def centres_figure(
         needed = construction.needed(shown)
         figure = Figure(figsize=(WIDTH, HEIGHT))
         axes = figure.add_axes(LEFT)
+        if mechanism.space == "sphere":
+            seen = draw_axes(axes, globe_of(mechanism, motion), needed, shown, sample)
+            axes.set_title(caption(mechanism, motion, sample))
+            _column(figure, mechanism, needed, shown, seen)
+            write_title(figure, _("Instantaneous axes"), _(mechanism.title))
+            return figure
         scene = scene_of(mechanism, motion)
         centres = {step.pair: scene.factor * np.array(step.place) for step in needed.steps if step.place}
         places = np.array([centres[pair] for pair in shown if pair in centres]).reshape(-1, 2)
@@ -142,11 +151,6 @@ def _wrapped(texts: Sequence[str]) -> str:
     return "\n".join(", ".join(texts[k : k + 3]) for k in range(0, len(texts), 3))
 
 
-def subscripted(pair: Pair, bodies: int) -> str:
-    """The symbol of a centre as mathematical text."""
-    return f"$P_{{{pair[0]}{',' if bodies > 10 else ''}{pair[1]}}}$"
-
-
 def _column(
     figure: Figure,
     mechanism: Mechanism,
@@ -208,7 +212,7 @@ def constructed(step: Step, bodies: int) -> str:
         return f"{leg(first, step.by[0])} = {leg(second, step.by[0])}"
     words = {
         "hinge": _("hinge"),
-        "guide": _("square to the guide"),
+        "guide": _("square to the guide") if step.place is None else _("pole of the guide"),
         "rolling": _("contact"),
         "gear": _("gear"),
         "rest": _("no relative motion"),

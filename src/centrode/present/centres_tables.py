@@ -30,22 +30,28 @@ def write_centres_csv(
     `constructions` tell of each position how its centres are constructed, and the relative velocity left there
     over the greatest of the motion.
     """
-    factor, unit = shown_as("m", mechanism.display)
+    factor, columns = _places(mechanism, ("centre",))
+    spherical = mechanism.space == "sphere"
+    turning, speed = shown_as("rad/s", mechanism.display)
+    beside = [f"relative_speed [{speed}]"] if spherical else ["centre_direction_x", "centre_direction_y"]
     header = [
         *_instant_header(mechanism, centres),
         "first",
         "second",
-        f"centre_x [{unit}]",
-        f"centre_y [{unit}]",
-        "centre_direction_x",
-        "centre_direction_y",
+        *columns,
+        *beside,
         "case",
         "constructed",
         "mismatch",
     ]
     labels = [str(label).split(",") for label in centres["pair"].values]
     places = factor * centres["centre"].to_numpy()
-    directions, cases = centres["centre_direction"].to_numpy(), centres["centre_case"].to_numpy()
+    cases = centres["centre_case"].to_numpy()
+    besides = (
+        turning * centres["relative_speed"].to_numpy()[..., None]
+        if spherical
+        else centres["centre_direction"].to_numpy()
+    )
     rows: list[list[float | str]] = []
     for sample, instant in enumerate(_instants(mechanism, centres)):
         made = constructions[sample] if sample < len(constructions) else None
@@ -59,7 +65,7 @@ def write_centres_csv(
                     first,
                     second,
                     *map(float, places[sample, column]),
-                    *map(float, directions[sample, column]),
+                    *map(float, besides[sample, column]),
                     Case(int(cases[sample, column])).word,
                     steps[pair].how if known else "",
                     made.mismatch[pair] if made is not None and known else "",
@@ -78,13 +84,13 @@ def ordered(made: Construction | None, first: str, second: str) -> tuple[int, in
 
 def write_centrodes_csv(mechanism: Mechanism, centrodes: xarray.Dataset, path: Path) -> None:
     """Write both centrodes as CSV: one row a sample, in the units of the display."""
-    factor, unit = shown_as("m", mechanism.display)
     names = ("fixed_centrode", "moving_centrode")
-    header = _instant_header(mechanism, centrodes)
-    header += [f"{name}_{axis} [{unit}]" for name in names for axis in "xy"]
+    factor, columns = _places(mechanism, names)
+    length, unit = shown_as("m" if mechanism.space == "plane" else "rad", mechanism.display)
+    header = [*_instant_header(mechanism, centrodes), *columns]
     header += ["piece", f"fixed_arc [{unit}]", f"moving_arc [{unit}]", "status"]
     curves = [factor * centrodes[name].to_numpy() for name in names]
-    arcs = [factor * centrodes[name].to_numpy() for name in ("fixed_arc", "moving_arc")]
+    arcs = [length * centrodes[name].to_numpy() for name in ("fixed_arc", "moving_arc")]
     pieces, statuses = centrodes["centrode_piece"].to_numpy(), centrodes["status"].to_numpy()
     rows: Iterable[list[float | str]] = (
         [
@@ -97,6 +103,14 @@ def write_centrodes_csv(mechanism: Mechanism, centrodes: xarray.Dataset, path: P
         for k, instant in enumerate(_instants(mechanism, centrodes))
     )
     _write(path, header, rows)
+
+
+def _places(mechanism: Mechanism, names: Sequence[str]) -> tuple[float, list[str]]:
+    """Factor of places, and the headings of their columns: unit vectors on the sphere."""
+    if mechanism.space == "sphere":
+        return 1.0, [f"{name}_{axis}" for name in names for axis in "xyz"]
+    factor, unit = shown_as("m", mechanism.display)
+    return factor, [f"{name}_{axis} [{unit}]" for name in names for axis in "xy"]
 
 
 def _instant_header(mechanism: Mechanism, data: xarray.Dataset) -> list[str]:

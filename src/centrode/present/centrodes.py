@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,9 @@ from centrode.present.pictures import caption, initial_sample, label_lengths
 from centrode.present.reading import scene_of
 from centrode.present.scene import Array, Scene
 from centrode.present.shown import plain
+from centrode.present.sphere.axes_drawing import whole
+from centrode.present.sphere.globe import Globe, globe_of
+from centrode.present.sphere.polodes_drawing import draw_polodes
 from centrode.present.style import house_style
 from centrode.present.tags import Tag, write_tags
 from centrode.present.window import carried_by, segments_of, widened, within
@@ -46,11 +50,15 @@ def centrodes_figure(
     ----------
     mechanism : Mechanism
     motion : Dataset
-        Of a planar mechanism, without batch dimensions.
+        Without batch dimensions.
     centrodes : Dataset
-        Of `centrodes`, of the same motion. What lies further out than the mechanism's extent is cut.
+        Of `centrodes`, of the same motion. What lies further out than the mechanism's extent is cut; the
+        sphere is drawn whole.
     """
     with house_style():
+        if mechanism.space == "sphere":
+            globe = whole(globe_of(mechanism, motion))
+            return _on_globe(globe, motion, centrodes, _first(globe, motion, centrodes, sample), names=True)
         scene = _scene(mechanism, motion, centrodes)
         number = _first_with_centre(scene, motion, centrodes) if sample is None else sample
         return _drawn(scene, motion, centrodes, number, names=True)
@@ -72,10 +80,12 @@ def animate_centrodes(
         )
     chosen = rolling[np.linspace(0, rolling.size - 1, min(FRAMES, rolling.size)).astype(int)]
     with house_style():
-        scene = _scene(mechanism, motion, centrodes)
-    write_animation(
-        path, lambda sample: _drawn(scene, motion, centrodes, int(sample), names=False), chosen, dark=dark
-    )
+        if mechanism.space == "sphere":
+            globe = whole(globe_of(mechanism, motion))
+            draw = partial(_on_globe, globe, motion, centrodes, names=False)
+        else:
+            draw = partial(_drawn, _scene(mechanism, motion, centrodes), motion, centrodes, names=False)
+    write_animation(path, lambda sample: draw(int(sample)), chosen, dark=dark)
 
 
 def _scene(mechanism: Mechanism, motion: xarray.Dataset, centrodes: xarray.Dataset) -> Scene:
@@ -93,6 +103,32 @@ def _first_with_centre(scene: Scene, motion: xarray.Dataset, centrodes: xarray.D
         seen = ((fixed >= scene.low) & (fixed <= scene.high)).all(axis=1)
     candidates = np.flatnonzero(seen if seen.any() else np.isfinite(fixed).all(axis=1))
     return int(candidates[np.argmin(np.abs(candidates - start))]) if candidates.size else start
+
+
+def _first(globe: Globe, motion: xarray.Dataset, centrodes: xarray.Dataset, sample: int | None) -> int:
+    """The sample asked for, else the one nearest to the initial one that has an axis."""
+    if sample is not None:
+        return sample
+    start = initial_sample(globe, motion)
+    candidates = np.flatnonzero(centrodes["centrode_piece"].to_numpy() >= 0)
+    return int(candidates[np.argmin(np.abs(candidates - start))]) if candidates.size else start
+
+
+def _on_globe(
+    globe: Globe, motion: xarray.Dataset, centrodes: xarray.Dataset, sample: int, names: bool
+) -> Figure:
+    figure = Figure(figsize=(WIDTH, HEIGHT))
+    axes = figure.add_axes(PLACE)
+    axes.set_title(caption(globe.mechanism, motion, sample))
+    handles = draw_polodes(axes, globe, centrodes, sample, names)
+    against, link = (plain(str(centrodes.attrs[name])) for name in ("against", "link"))
+    texts = [
+        _("fixed polode\n(of {name})").format(name=against),
+        _("moving polode\n(of {name})").format(name=link),
+    ]
+    write_legend(axes, list(zip(handles, texts, strict=True)))
+    write_title(figure, _("Polodes"), _(globe.mechanism.title))
+    return figure
 
 
 def _drawn(

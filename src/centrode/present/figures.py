@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from centrode.locale import _
 from centrode.present.abscissa import Abscissa, main_abscissa, over_drive
 from centrode.present.curves import sheet
-from centrode.present.globe import Globe, globe_of
 from centrode.present.panels import (
     Motion,
     Rows,
@@ -24,6 +23,7 @@ from centrode.present.panels import (
 from centrode.present.pictures import mechanism_figure, paths_figure
 from centrode.present.reading import scene_of
 from centrode.present.scene import Scene
+from centrode.present.sphere.globe import Globe, globe_of
 from centrode.present.style import house_style, pens
 
 if TYPE_CHECKING:

@@ -15,11 +15,11 @@ from centrode.locale import _
 from centrode.present.animation import no_progress, write_animation
 from centrode.present.curves import write_title
 from centrode.present.drawing import MARGIN, draw_mechanism
-from centrode.present.globe import Globe, globe_of
-from centrode.present.globe_drawing import draw_globe, draw_line
 from centrode.present.pictures import complete
 from centrode.present.reading import scene_of
 from centrode.present.scene import Scene
+from centrode.present.sphere.globe import Globe, globe_of
+from centrode.present.sphere.globe_drawing import draw_globe, draw_line
 from centrode.present.style import MUTED
 
 if TYPE_CHECKING:

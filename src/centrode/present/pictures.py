@@ -23,10 +23,10 @@ from centrode.present.curves import (
     write_title,
 )
 from centrode.present.drawing import MARGIN, draw_mechanism
-from centrode.present.globe import Globe
-from centrode.present.globe_drawing import HIDDEN, draw_globe
 from centrode.present.scene import Scene
 from centrode.present.shown import drive_unit, formula, labelled, shown_as
+from centrode.present.sphere.globe import Globe
+from centrode.present.sphere.globe_drawing import HIDDEN, draw_globe
 from centrode.present.style import MUTED, Decimals, Pen, pens
 from centrode.quantities import QUANTITIES, status_word, typeset_unit
 

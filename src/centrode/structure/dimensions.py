@@ -16,6 +16,7 @@ from centrode.geometry.plane import Vector
 from centrode.geometry.space import Curve, Place, Reference, Space
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Guide, Link, Mechanism
+from centrode.structure.bevels import measured_on, shares_of
 from centrode.structure.gearing import Gearing, Round, gearing_of
 from centrode.structure.references import ends_of, references_of
 
@@ -155,6 +156,8 @@ def dimensions_of(
     if space is SPHERE:
         ends = ends_of(mechanism)
         references = references_of(mechanism, frame, local, ends)
+        shares = {gear.id: shares_of(mechanism, gear.id) for gear in mechanism.gears}
+        gearing = replace(gearing, shares=shares, measured=measured_on(mechanism))
     return Dimensions(frame, local, through, direction, turn, bodies, space, ends, references, gearing)
 
 

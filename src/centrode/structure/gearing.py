@@ -45,12 +45,17 @@ class Gearing:
     radius : rolling -> radius of the wheel [m]
     track : rolling -> what it rolls on
     phase : gear or rolling -> the constant [rad] of its equation between angles: how the wheels mesh
+    shares : gear -> how many times the carrier's angle is taken off that of the first and of the second wheel:
+        once in the plane; on the sphere not at all where a wheel's angle is measured on the carrier itself
+    measured : link -> the body that its angle is measured on, where that is not the frame
     """
 
     ratio: Mapping[str, Number] = field(default_factory=dict)
     radius: Mapping[str, Number] = field(default_factory=dict)
     track: Mapping[str, Track] = field(default_factory=dict)
     phase: Mapping[str, Number] = field(default_factory=dict)
+    shares: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    measured: Mapping[str, str] = field(default_factory=dict)
 
     def mapped(self, function: Callable[[Number], Number]) -> Gearing:
         """The same with every number replaced by function(number)."""

@@ -44,7 +44,7 @@ def random_gearing(
             centre = place if named is None else local_of(at, wheel.on, named)
             track[wheel.id] = Round(centre, float(random.uniform(0.7, 1.5)), own.inside)
     phase = dict.fromkeys((*ratio, *radius), 0.0)
-    return Gearing(ratio, radius, track, phase)
+    return Gearing(ratio, radius, track, phase, numbers.gearing.shares, numbers.gearing.measured)
 
 
 def point_at(numbers: Dimensions, body: str, local: Vector) -> str | None:

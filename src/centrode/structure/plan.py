@@ -13,7 +13,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.structure.classify import classify
 from centrode.structure.constraints import Constraint, PointInLink, constraints_of, is_drive, unknowns_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
-from centrode.structure.groups import Group, links_of
+from centrode.structure.groups import Group, Newton, links_of
 from centrode.structure.matching import in_order, match, strong_components
 from centrode.structure.positions import Entity
 from centrode.structure.rank import Matrix, generic_jacobian, independent_rows
@@ -120,7 +120,6 @@ def _refuse_what_the_space_lacks(mechanism: Mechanism, space: Space) -> None:
     distance = any(drive.kind == "distance" for drive in mechanism.drives)
     asked = [
         ("guided links", guided is not None, f"[[guides]] {guided}, link", _("hinge the link at the pole")),
-        ("gears", bool(mechanism.gears), "[[gears]]", _("take them out, or work in the plane")),
         ("rolling", bool(mechanism.rolling), "[[rolling]]", _("take it out, or work in the plane")),
         ("distance", distance, "[[drives]] distance", _("drive the angle of a link")),
     ]
@@ -215,4 +214,18 @@ def _groups(
         rows = sorted(row for entity in component for row in matched[entity])
         equations = [(owners[row], row - first[owners[row]]) for row in rows]
         groups.append(classify(mechanism, component, equations, space.crosses_once))
+        _refuse_unfollowed(mechanism, groups[-1])
     return tuple(groups)
+
+
+def _refuse_unfollowed(mechanism: Mechanism, group: Group) -> None:
+    """On the sphere no turns are counted inside groups of higher class, so gears there have no equation."""
+    if mechanism.space != "sphere" or not isinstance(group, Newton):
+        return
+    gear = next((c.gear for c, _row in group.equations if isinstance(c, GearRatio)), None)
+    if gear is not None:
+        raise NotComputedYet(
+            f"[[gears]] {gear}",
+            _("on the sphere a gear inside a group of higher class is not computed"),
+            _("drive one of its wheels"),
+        )

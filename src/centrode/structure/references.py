@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.structure.bevels import measured_on
 
 Local: TypeAlias = Mapping[str, tuple[Any, Any]]
 
@@ -23,8 +24,12 @@ def references_of(
     local: Mapping[str, Local],
     ends: Mapping[str, tuple[str, ...]],
 ) -> dict[str, tuple[Any, ...]]:
-    """Of each driven link: ends of its own arc in its axes, and of the reference arc in those of its base."""
+    """Of driven links and those of gears: ends of the own arc, and of the reference arc in the base's axes."""
     found = {}
+    for link, body in measured_on(mechanism).items():
+        pivot, second = list(local[link])[:2]
+        base = frame if body == FRAME else local[body]
+        found[link] = (local[link][pivot], local[link][second], base[pivot], base[ends[link][0]])
     for drive in mechanism.drives:
         if drive.link is None:
             continue

@@ -8,6 +8,7 @@ from typing import Protocol
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism, Rolling
+from centrode.structure.bevels import shares_of
 from centrode.structure.constraints import AngleDrive, Constraint, NoTurning, PointInLink
 from centrode.structure.positions import FRAME
 from centrode.structure.wheel_groups import (
@@ -51,7 +52,8 @@ def following(group: Unsolved, constraint: Constraint, link: str) -> Following |
     if isinstance(constraint, GearRatio) and link in constraint.links:
         if not all(group.knows_link(other) for other in constraint.links if other != link):
             return None
-        if link == constraint.carrier and _ratio(group.mechanism, constraint) == 1.0:
+        first, second = shares_of(group.mechanism, constraint.gear)
+        if link == constraint.carrier and _ratio(group.mechanism, constraint) * first == second:
             raise _singular((link,))
         return Meshed(constraint)
     if isinstance(constraint, NoSlip) and link == constraint.link:
@@ -179,10 +181,13 @@ def _weights(mechanism: Mechanism, equation: AngleEquation) -> Mapping[str, floa
     """Link -> factor of its angle, with the numbers of the description."""
     if isinstance(equation, GearRatio):
         ratio = _ratio(mechanism, equation)
-        return {equation.first: -ratio, equation.second: 1.0, equation.carrier: ratio - 1.0}
+        first, second = shares_of(mechanism, equation.gear)
+        return {equation.first: -ratio, equation.second: 1.0, equation.carrier: ratio * first - second}
     if isinstance(equation, Arm):
         spin = _spin(_description(mechanism, equation.rolling.rolling))
         return {equation.rolling.link: 1.0, equation.rolling.on: spin - 1.0, equation.link: -spin}
+    if mechanism.space == "sphere":
+        return {equation.link: 1.0}
     return dict(zip(angles_in(equation), (1.0, -1.0), strict=True))
 
 

@@ -55,9 +55,12 @@ def _unit(drive: Drive) -> str:
     return "rad" if drive.kind == "angle" else "m"
 
 
-def centres_header() -> tuple[str, ...]:
-    """Headings of the columns of `centres_rows`."""
-    return (_("centre"), _("bodies"), _("place"), _("case"), _("constructed from"), _("off"))
+def centres_header(centres: xr.Dataset | None = None) -> tuple[str, ...]:
+    """Headings of the columns of `centres_rows`; on the sphere (told by the centres) with the relative speed."""
+    last = (_("case"), _("constructed from"), _("off"))
+    if centres is None or "relative_speed" not in centres:
+        return (_("centre"), _("bodies"), _("place"), *last)
+    return (_("axis"), _("bodies"), _("end of the axis"), _("relative speed"), *last)
 
 
 def centres_rows(
@@ -68,6 +71,8 @@ def centres_rows(
     construction: Construction | None = None,
 ) -> Rows:
     """Rows of one position: symbol, bodies, place, case, how it is constructed, and by how much both differ.
+
+    On the sphere the place is the end of the axis, and the relative angular velocity about it stands behind it.
 
     Parameters
     ----------
@@ -88,12 +93,22 @@ def centres_rows(
                 centre_symbol(pair, len(names)),
                 _("{first} against {second}").format(first=first, second=second),
                 place_text(at, mechanism.display),
+                *_speed(at, mechanism.display),
                 Case(int(at["centre_case"])).sentence,
                 "" if step is None else step_text(step, names),
                 "" if step is None or construction is None else f"{construction.mismatch[step.pair]:.1e}",
             )
         )
     return rows
+
+
+def _speed(centre: xr.Dataset, display: Display) -> tuple[str, ...]:
+    """Relative angular velocity, where there is one: on the sphere."""
+    if "relative_speed" not in centre:
+        return ()
+    factor, unit = display_unit("rad/s", display.length, display.angle)
+    speed = float(centre["relative_speed"])
+    return ("-" if math.isnan(speed) else f"{factor * speed:.9g} {unit}",)
 
 
 def steps_leading_to(construction: Construction, pairs: Sequence[tuple[str, str]]) -> list[str]:
@@ -118,6 +133,8 @@ def place_text(centre: xr.Dataset, display: Display) -> str:
     place = centre["centre"].to_numpy()
     if np.isfinite(place).all():
         return _place(place, display)
+    if "centre_direction" not in centre:
+        return "-"
     direction = centre["centre_direction"].to_numpy()
     if np.isfinite(direction).all():
         return _("at infinity, {angle:.6g} deg").format(angle=bearing(direction.tolist()))
@@ -138,7 +155,7 @@ def step_text(step: Step, names: Sequence[str]) -> str:
         return f"{symbol(first, step.by[0])} = {symbol(second, step.by[0])}"
     return {
         "hinge": _("hinge {name}"),
-        "guide": _("square to guide {name}"),
+        "guide": _("square to guide {name}") if step.place is None else _("pole of guide {name}"),
         "rolling": _("contact of {name}"),
         "gear": _("gear {name}"),
         "rest": _("no relative motion"),
@@ -153,14 +170,14 @@ def centrode_rows(mechanism: Mechanism, centrodes: xr.Dataset) -> Rows:
     rolled = [sum(_last(arc[pieces == piece]) for piece in np.unique(pieces[pieces >= 0])) for arc in arcs]
     slip = float(np.nanmax(np.abs(arcs[0] - arcs[1]), initial=0.0))
     link, against = (str(centrodes.attrs[name]) for name in ("link", "against"))
-    display = mechanism.display
+    display, unit = mechanism.display, "m" if mechanism.space == "plane" else "rad"
     return [
         (_("bodies"), _("{first} against {second}").format(first=link, second=against)),
         (_("samples with a centre"), f"{int((pieces >= 0).sum())} / {pieces.size}"),
         (_("pieces"), str(int(pieces.max()) + 1)),
-        (_("arc of the fixed centrode"), value_text(rolled[0], "m", display)),
-        (_("arc of the moving centrode"), value_text(rolled[1], "m", display)),
-        (_("greatest difference"), value_text(slip, "m", display)),
+        (_("arc of the fixed centrode"), value_text(rolled[0], unit, display)),
+        (_("arc of the moving centrode"), value_text(rolled[1], unit, display)),
+        (_("greatest difference"), value_text(slip, unit, display)),
     ]
 
 
@@ -196,7 +213,8 @@ def _size(value: float, display: Display) -> str:
 def _place(place: np.ndarray[tuple[int, ...], np.dtype[np.float64]], display: Display) -> str:
     if not np.isfinite(place).all():
         return "-"
-    factor, unit = display_unit("m", display.length, display.angle)
+    # a place on the sphere is a unit vector
+    factor, unit = display_unit("m", display.length, display.angle) if len(place) == 2 else (1.0, "")
     size = float(np.max(np.abs(place)))
     shown = ", ".join(f"{0.0 if abs(v) < 1e-12 * size else v * factor:.9g}" for v in place)
-    return f"({shown}) {unit}"
+    return f"({shown}) {unit}".rstrip()

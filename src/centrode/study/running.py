@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from centrode.dynamics.friction.contacts import contacts_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.reducer import Burden
-from centrode.errors import InputError, MotionError, NotComputedYet, Status
+from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.several_drives.coefficients import coefficients_of, most_samples
@@ -21,7 +22,8 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.structure.dimensions import SPACES
 from centrode.study.checking import Check, check_of
-from centrode.study.machines import MachineResults, flywheel_scalars, machine_results
+from centrode.study.forces.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
+from centrode.study.forces.machines import MachineResults, flywheel_scalars, machine_results
 from centrode.study.scalars import Scalar
 from centrode.study.wording import Words, extremes, unit_of_drive
 
@@ -40,6 +42,7 @@ class StudyResults:
     coefficients : kinematic coefficients by each drive, where there are several
     machine : energies, flywheel and real motion, where the description has a machine that can be computed
     reactions : forces in every joint at the samples, where the description has masses or loads
+    bearing_loads : greatest, least and mean of each reaction
     scalars : name -> number and SI unit, as `summary.json` holds them
     failure : why the mechanism cannot do what was asked, in a sentence; None if it can
     notes : what a reader should know besides
@@ -53,6 +56,7 @@ class StudyResults:
     coefficients: xr.Dataset | None
     machine: MachineResults | None
     reactions: xr.Dataset | None
+    bearing_loads: tuple[BearingLoad, ...]
     scalars: dict[str, Scalar]
     failure: str | None
     notes: tuple[str, ...]
@@ -70,6 +74,7 @@ def study(
     words = Words(solved)
     machine, notes = _machine(mechanism, samples)
     reactions, lacking = _reactions(mechanism, solved)
+    loads = () if reactions is None else bearing_loads(mechanism, reactions)
     notes = [*_notes(mechanism, solved, words), *notes, *lacking]
     return StudyResults(
         mechanism,
@@ -79,7 +84,10 @@ def study(
         coefficients_of(solved) if _by_each_drive(solved) else None,
         machine,
         reactions,
-        _scalars(checked, solved) | (flywheel_scalars(machine.flywheel) if machine else {}),
+        loads,
+        _scalars(checked, solved)
+        | (flywheel_scalars(machine.flywheel) if machine else {})
+        | bearing_load_scalars(mechanism, loads),
         _failure(solved, words),
         tuple(notes),
         words,
@@ -102,11 +110,23 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
     if not mechanism.loads and not any(link.mass or link.inertia for link in mechanism.links.values()):
         return None, []
     try:
-        burden = Burden.in_plane(mechanism)
-        return reactions_at(solved, burden, pace_of(solved, burden)), []
+        burden = Burden.for_reactions(mechanism)
+        found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
+        return found, _jams(found)
     except (InputError, NotComputedYet) as missing:
         what = f"{missing.where}: {missing.what}" if missing.where else missing.what
         return None, [_("reactions are left out: {reason}").format(reason=what)]
+
+
+def _jams(reactions: xr.Dataset) -> list[str]:
+    """A note where friction lets nothing move."""
+    locked = int((reactions["reaction_status"] == Status.SELF_LOCKING).sum())
+    text = ngettext(
+        "self-locking: at {n} sample no drive overcomes the friction",
+        "self-locking: at {n} samples no drive overcomes the friction",
+        locked,
+    )
+    return [text.format(n=locked)] if locked else []
 
 
 def _by_each_drive(solved: Solved) -> bool:
@@ -164,7 +184,7 @@ def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
         **_times(solved),
         "worst_residual": Scalar(float(np.nanmax(solved.residual, initial=0.0)), "1"),
     }
-    for status in Status:
+    for status in STATUSES_OF_MOTION:
         found[f"samples_{status.name.lower()}"] = Scalar(int(np.sum(solved.status == status)), "1")
     for kind in ("limit", "change point"):
         places = dict.fromkeys(event.at for event in solved.events() if event.kind == kind)

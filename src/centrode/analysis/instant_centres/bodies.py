@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.errors import InputError, NotComputedYet
+from centrode.errors import InputError
 from centrode.kinematics.dataset import BATCH
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
@@ -36,28 +36,23 @@ of its digits given to the conditioning."""
 
 
 @dataclass(frozen=True)
-class Bodies:
-    """Frame, links and sliders over a motion; a batch has its dimension in front.
+class Named:
+    """Frame, links and sliders by number, in the plane and on the sphere.
 
     Attributes
     ----------
     names : the frame first, links and sliders in description order
     sliders : name of a slider -> its guide
-    place, velocity, acceleration : (..., samples, bodies) of one point of each body [m, m by unit of the drive]
-    turn, spin, spin_rate : (..., samples, bodies) of its axes [rad, rad by unit of the drive]
-    scale : greatest length of the mechanism [m]
     """
 
     mechanism: Mechanism
     names: tuple[str, ...]
     sliders: Mapping[str, Guide]
-    place: Places
-    velocity: Places
-    acceleration: Places
-    turn: Array
-    spin: Array
-    spin_rate: Array
-    scale: float
+
+    @property
+    def rate(self) -> Array:
+        """Greatest rate of the motion at each sample; NaN where there is none."""
+        raise NotImplementedError
 
     def number(self, name: str) -> int:
         """Number of a body; raises InputError for a name that is none."""
@@ -65,6 +60,26 @@ class Bodies:
             return self.names.index(name)
         what = _("there is no link {name}").format(name=shown(name))
         raise InputError("pair", what, nearest(name, self.names))
+
+
+@dataclass(frozen=True)
+class Bodies(Named):
+    """Frame, links and sliders over a planar motion; a batch has its dimension in front.
+
+    Attributes
+    ----------
+    place, velocity, acceleration : (..., samples, bodies) of one point of each body [m, m by unit of the drive]
+    turn, spin, spin_rate : (..., samples, bodies) of its axes [rad, rad by unit of the drive]
+    scale : greatest length of the mechanism [m]
+    """
+
+    place: Places
+    velocity: Places
+    acceleration: Places
+    turn: Array
+    spin: Array
+    spin_rate: Array
+    scale: float
 
     @cached_property
     def rate(self) -> Array:
@@ -110,12 +125,13 @@ def described(motion: xr.Dataset) -> Mechanism:
     return mechanism
 
 
+def is_spherical(motion: xr.Dataset) -> bool:
+    """Whether a motion is one on the sphere."""
+    return "angle" not in motion
+
+
 def bodies_of(motion: xr.Dataset) -> Bodies:
-    """The bodies of a planar motion; refuses the sphere."""
-    if "angle" not in motion:
-        raise NotComputedYet(
-            "space", _("instant centres are not computed on the sphere"), _("ask for a planar mechanism")
-        )
+    """The bodies of a planar motion."""
     mechanism = described(motion)
     sliders = sliders_of(mechanism)
     names = (FRAME, *mechanism.link_names, *sliders)

@@ -8,8 +8,19 @@ from itertools import combinations
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.instant_centres.bodies import Array, Bodies, Pair, Places, bodies_of, vectors
+from centrode.analysis.instant_centres.axes import axis_cases, axis_of, axis_speed
+from centrode.analysis.instant_centres.bodies import (
+    Array,
+    Bodies,
+    Named,
+    Pair,
+    Places,
+    bodies_of,
+    is_spherical,
+    vectors,
+)
 from centrode.analysis.instant_centres.cases import Case, Recogniser
+from centrode.analysis.instant_centres.turning_bodies import TurningBodies, turning_bodies_of
 from centrode.errors import InputError
 from centrode.kinematics.dataset import labels_of, named
 from centrode.kinematics.solve import GREATEST_RESULT
@@ -25,7 +36,7 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     Parameters
     ----------
     motion : Dataset
-        As `motion` returns it, of a planar mechanism; a batch too.
+        As `motion` returns it; a batch too.
     pairs : sequence of (body, body), optional
         Names of links, "frame", or sliders ("slider C": a point on a guide without a link of its own). All
         pairs if left out, each the later body against the earlier one.
@@ -35,23 +46,41 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     Dataset
         `centre` (sample, pair, axis) [m], NaN where it lies at infinity; `centre_direction` (sample, pair,
         axis), there the unit vector towards it; `centre_case` (sample, pair), the number of a `Case`. A pair
-        is named "AC,frame".
+        is named "AC,frame". On the sphere `centre` is the end of the instantaneous axis (a unit vector) about
+        which the first body turns counter-clockwise, seen from outside, as the drive's value (or time) grows;
+        `relative_speed` (sample, pair) [rad/s] is how fast it does.
 
     Raises
     ------
     InputError
         Unknown or equal bodies, more than fits into memory.
-    NotComputedYet
-        The mechanism moves on the sphere.
 
     Notes
     -----
     A relative spin below eps^(2/3) of the motion's greatest velocity over its greatest length is none: the
     centre is then at infinity. A centre is as exact as the velocities over the relative spin.
     """
-    bodies = bodies_of(motion)
+    bodies = turning_bodies_of(motion) if is_spherical(motion) else bodies_of(motion)
     numbers = numbered(bodies, pairs)
     _check_size(bodies, len(numbers))
+    spherical = isinstance(bodies, TurningBodies)
+    found = _axes(bodies, numbers) if isinstance(bodies, TurningBodies) else _centres(bodies, numbers)
+    front = tuple(map(str, motion["status"].dims))
+    labels = [f"{bodies.names[first]},{bodies.names[second]}" for first, second in numbers]
+    variables = {
+        name: named(
+            name, (*front, "pair", "axis")[: values.ndim], values, length_unit="rad" if spherical else "m"
+        )
+        for name, values in found.items()
+    }
+    variables["centre_case"][2]["flag_values"] = np.array([case.value for case in Case], dtype=np.int8)
+    variables["centre_case"][2]["flag_meanings"] = " ".join(case.name.lower() for case in Case)
+    kept = motion[["status"]].assign_coords(drive_value=motion["drive_value"], axis=motion["axis"])
+    return kept.assign_coords(pair=labels_of(tuple(labels))).assign(variables)
+
+
+def _centres(bodies: Bodies, numbers: Sequence[Pair]) -> dict[str, Array]:
+    """Centres of a planar motion: places, directions of those at infinity, cases."""
     recogniser = Recogniser(bodies)
     shape = (*bodies.rate.shape, len(numbers))
     centre, direction = np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan)
@@ -59,17 +88,19 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     for column, pair in enumerate(numbers):
         cases[..., column] = recogniser.cases(pair)
         centre[..., column, :], direction[..., column, :] = _located(bodies, pair, cases[..., column])
-    front = tuple(map(str, motion["status"].dims))
-    labels = [f"{bodies.names[first]},{bodies.names[second]}" for first, second in numbers]
-    variables = {
-        "centre": named("centre", (*front, "pair", "axis"), centre),
-        "centre_direction": named("centre_direction", (*front, "pair", "axis"), direction),
-        "centre_case": named("centre_case", (*front, "pair"), cases),
+    return {"centre": centre, "centre_direction": direction, "centre_case": cases}
+
+
+def _axes(bodies: TurningBodies, numbers: Sequence[Pair]) -> dict[str, Array]:
+    """Axes of a motion on the sphere: their ends, cases, relative speeds."""
+    axes = [axis_of(bodies, pair) for pair in numbers]
+    return {
+        "centre": np.stack(axes, axis=-2),
+        "centre_case": np.stack([axis_cases(bodies, pair) for pair in numbers], axis=-1),
+        "relative_speed": np.stack(
+            [axis_speed(bodies, pair, axis) for pair, axis in zip(numbers, axes, strict=True)], axis=-1
+        ),
     }
-    variables["centre_case"][2]["flag_values"] = np.array([case.value for case in Case], dtype=np.int8)
-    variables["centre_case"][2]["flag_meanings"] = " ".join(case.name.lower() for case in Case)
-    kept = motion[["status"]].assign_coords(drive_value=motion["drive_value"], axis=motion["axis"])
-    return kept.assign_coords(pair=labels_of(tuple(labels))).assign(variables)
 
 
 def _located(bodies: Bodies, pair: Pair, cases: Array) -> tuple[Array, Array]:
@@ -97,7 +128,7 @@ def bearing(direction: Sequence[float]) -> float:
     return 0.0 if min(angle, 180.0 - angle) < 1e-9 else angle
 
 
-def numbered(bodies: Bodies, pairs: Sequence[tuple[str, str]] | None) -> list[Pair]:
+def numbered(bodies: Named, pairs: Sequence[tuple[str, str]] | None) -> list[Pair]:
     """Pairs by the numbers of their bodies; all of them, the later body against the earlier one, if left out."""
     if pairs is None:
         return [(second, first) for first, second in combinations(range(len(bodies.names)), 2)]
@@ -112,7 +143,7 @@ def numbered(bodies: Bodies, pairs: Sequence[tuple[str, str]] | None) -> list[Pa
     return found
 
 
-def _check_size(bodies: Bodies, pairs: int) -> None:
+def _check_size(bodies: Named, pairs: int) -> None:
     samples = int(bodies.rate.size)
     if NUMBERS * pairs * samples > GREATEST_RESULT:
         raise InputError(

@@ -1,4 +1,7 @@
-"""Fixed and moving centrode of one body against another: two curves that roll on each other without slip."""
+"""Fixed and moving centrode of one body against another: two curves that roll on each other without slip.
+
+Those of the sphere are called polodes; they are the curves of `polodes`.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,11 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.analysis.instant_centres.bodies import ROUNDED, Array, Places, bodies_of, vectors
+from centrode.analysis.instant_centres.bodies import ROUNDED, Array, bodies_of, is_spherical, vectors
 from centrode.analysis.instant_centres.centres import numbered
-from centrode.analysis.instant_centres.relative import Seen, seen_by
+from centrode.analysis.instant_centres.polodes import Polodes, polodes_of
+from centrode.analysis.instant_centres.relative import seen_by
+from centrode.analysis.instant_centres.turning_bodies import turning_bodies_of
 from centrode.errors import Status
 from centrode.kinematics.dataset import named
 
@@ -21,7 +26,7 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
     Parameters
     ----------
     motion : Dataset
-        As `motion` returns it, of a planar mechanism; a batch too.
+        As `motion` returns it; a batch too.
     link, against : str
         Bodies: links, "frame", sliders ("slider C").
 
@@ -31,87 +36,110 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
         `fixed_centrode` (sample, axis) [m] in the axes of `against`, `moving_centrode` (sample, axis) [m] in
         those of `link`; `centrode_piece` (sample), which counts the pieces between places where the centre
         goes to infinity, -1 where there is none; `fixed_arc`, `moving_arc` (sample) [m], arcs from the
-        beginning of each piece. The attributes `link` and `against` name the bodies.
+        beginning of each piece. The attributes `link` and `against` name the bodies. On the sphere both are
+        polodes: unit vectors (x, y, z) of the end of the instantaneous axis that `instant_centres` gives, and
+        arcs [rad]; a piece ends where the relative rotation stops and turns back.
 
     Raises
     ------
     InputError
         Unknown or equal bodies.
-    NotComputedYet
-        The mechanism moves on the sphere.
 
     Notes
     -----
     Both arcs are integrated apart, each from its own places; that they agree tells that nothing slips. They
     are of the fourth order in the distance of the samples.
     """
-    bodies = bodies_of(motion)
-    (pair,) = numbered(bodies, [(link, against)])
-    seen = seen_by(bodies, pair)
-    none = ~(np.abs(seen.w[0]) * bodies.scale > ROUNDED * bodies.rate)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        fixed, moving = np.where(none, np.nan, seen.pole), np.where(none, np.nan, seen.pole_in_body)
-        pieces = _pieces(seen, none | (motion["status"].to_numpy() != Status.OK))
-        rates = _rates(motion, seen)
-        arcs = [_arc(curve, rate, pieces) for curve, rate in zip((fixed, moving), rates, strict=True)]
-    front = tuple(map(str, motion["status"].dims))
+    spherical = is_spherical(motion)
+    found = _on_sphere(motion, link, against) if spherical else _in_plane(motion, link, against)
+    pieces = _pieces(found, motion["status"].to_numpy() == Status.OK)
+    step = _steps(motion)
+    arcs = [
+        _arc(curve, rate * step[:, None], pieces)
+        for curve, rate in zip((found.fixed, found.moving), found.rates, strict=True)
+    ]
+    front, unit = tuple(map(str, motion["status"].dims)), "rad" if spherical else "m"
+    along = (*front, "axis")
     variables = {
-        "fixed_centrode": named("fixed_centrode", (*front, "axis"), vectors(fixed)),
-        "moving_centrode": named("moving_centrode", (*front, "axis"), vectors(moving)),
+        "fixed_centrode": named("fixed_centrode", along, found.fixed, length_unit=unit),
+        "moving_centrode": named("moving_centrode", along, found.moving, length_unit=unit),
         "centrode_piece": named("centrode_piece", front, pieces),
-        "fixed_arc": named("fixed_arc", front, arcs[0]),
-        "moving_arc": named("moving_arc", front, arcs[1]),
+        "fixed_arc": named("fixed_arc", front, arcs[0], length_unit=unit),
+        "moving_arc": named("moving_arc", front, arcs[1], length_unit=unit),
     }
     kept = motion[["status"]].assign_coords(axis=motion["axis"], drive_value=motion["drive_value"])
     return kept.assign(variables).assign_attrs(link=link, against=against)
 
 
-def _pieces(seen: Seen, absent: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
-    """Numbers of the pieces between samples where the relative spin changes its sense or nothing is there."""
-    sense = np.sign(np.where(absent, np.nan, seen.w[0]))
-    begins = np.ones(sense.shape, dtype=bool)
-    begins[..., 1:] = sense[..., 1:] != sense[..., :-1]  # so it is beside what is absent
+def _in_plane(motion: xr.Dataset, link: str, against: str) -> Polodes:
+    """Both centrodes of a planar motion."""
+    bodies = bodies_of(motion)
+    (pair,) = numbered(bodies, [(link, against)])
+    seen = seen_by(bodies, pair)
+    none = ~(np.abs(seen.w[0]) * bodies.scale > ROUNDED * bodies.rate)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        curves = [vectors(np.where(none, np.nan, curve)) for curve in (seen.pole, seen.pole_in_body)]
+        rate = seen.pole_velocity
+        rates = vectors(rate), vectors(np.asarray(np.conj(seen.turned) * rate))
+    return Polodes(curves[0], curves[1], rates, np.sign(np.where(none, np.nan, seen.w[0]))[..., None])
+
+
+def _on_sphere(motion: xr.Dataset, link: str, against: str) -> Polodes:
+    bodies = turning_bodies_of(motion)
+    (pair,) = numbered(bodies, [(link, against)])
+    return polodes_of(bodies, pair)
+
+
+def _pieces(found: Polodes, present: npt.NDArray[np.bool_]) -> npt.NDArray[np.int32]:
+    """Numbers of the pieces between samples where the relative rotation turns back or nothing is there."""
+    absent = ~(present & np.isfinite(found.fixed).all(axis=-1) & np.isfinite(found.moving).all(axis=-1))
+    begins = np.ones(absent.shape, dtype=bool)
+    with np.errstate(invalid="ignore"):
+        onwards = np.sum(found.sense[..., 1:, :] * found.sense[..., :-1, :], axis=-1) > 0.0
+    begins[..., 1:] = ~onwards | absent[..., 1:] | absent[..., :-1]
     numbers = np.cumsum(begins & ~absent, axis=-1) - 1
     return np.asarray(np.where(absent, -1, numbers), dtype=np.int32)
 
 
-def _rates(motion: xr.Dataset, seen: Seen) -> tuple[Places, Places]:
-    """Velocities of the pole along both curves, by the number of the sample."""
+def _steps(motion: xr.Dataset) -> Array:
+    """By how much the parameter of the rates grows from sample to sample."""
     by_drive = "velocity_coefficient" in motion
     parameter = motion["drive_value"].isel(drive=0) if by_drive else motion["time"]
-    step = np.gradient(parameter.to_numpy()) if motion.sizes["sample"] > 1 else np.zeros(1)
-    fixed = seen.pole_velocity * step
-    return fixed, np.asarray(np.conj(seen.turned) * fixed)
+    return np.asarray(np.gradient(parameter.to_numpy()) if motion.sizes["sample"] > 1 else np.zeros(1))
 
 
-def _tamed(chord: Places, first: Places, last: Places) -> tuple[Places, Places]:
+def _tamed(chord: Array, first: Array, last: Array) -> tuple[Array, Array]:
     """Tangents of cubics, no longer than thrice the chord where all three point the same way.
 
     Next to infinity the pole covers nearly all of a step at one of its ends: with such a tangent the cubic would run
     beyond the place where it ends, and back. Where the curve has a cusp the tangents point against each other.
     """
-    reach = 3.0 * np.abs(chord)
+    reach = 3.0 * np.linalg.norm(chord, axis=-1)
     onwards = [
-        np.real(np.conj(one) * other) > 0.0 for one, other in ((first, last), (first, chord), (last, chord))
+        np.sum(one * other, axis=-1) > 0.0 for one, other in ((first, last), (first, chord), (last, chord))
     ]
     same = np.logical_and.reduce(onwards)
-    tamed = [
-        np.where(same & (np.abs(one) > reach), one * (reach / np.abs(one)), one) for one in (first, last)
-    ]
+    tamed = []
+    for one in (first, last):
+        size = np.linalg.norm(one, axis=-1)
+        factor = np.where(same & (size > reach), reach / size, 1.0)
+        tamed.append(one * factor[..., None])
     return tamed[0], tamed[1]
 
 
-def _arc(curve: Places, rate: Places, pieces: npt.NDArray[np.int32]) -> Array:
+def _arc(curve: Array, rate: Array, pieces: npt.NDArray[np.int32]) -> Array:
     """Length of a curve from the beginning of each piece: that of cubics through its places with its tangents."""
-    chord = curve[..., 1:] - curve[..., :-1]
-    first, last = _tamed(chord, rate[..., :-1], rate[..., 1:])
-    steps = np.zeros(chord.shape)
-    for node, weight in zip(NODES, WEIGHTS, strict=True):
-        t = 0.5 * (node + 1.0)
-        slope = 6.0 * t * (1.0 - t) * chord + (1.0 - t) * (1.0 - 3.0 * t) * first + t * (3.0 * t - 2.0) * last
-        steps += 0.5 * weight * np.abs(slope)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        chord = curve[..., 1:, :] - curve[..., :-1, :]
+        first, last = _tamed(chord, rate[..., :-1, :], rate[..., 1:, :])
+        steps = np.zeros_like(chord[..., 0])
+        for node, weight in zip(NODES, WEIGHTS, strict=True):
+            t = 0.5 * (node + 1.0)
+            slope = 6.0 * t * (1.0 - t) * chord + (1.0 - t) * (1.0 - 3.0 * t) * first
+            slope = slope + t * (3.0 * t - 2.0) * last
+            steps += 0.5 * weight * np.linalg.norm(slope, axis=-1)
     joined = pieces[..., 1:] == pieces[..., :-1]
-    total = np.zeros(curve.shape)
-    for k in range(chord.shape[-1]):  # each piece begins at zero
+    total = np.zeros(pieces.shape)
+    for k in range(steps.shape[-1]):  # each piece begins at zero
         total[..., k + 1] = np.where(joined[..., k], total[..., k] + steps[..., k], 0.0)
     return np.asarray(np.where(pieces < 0, np.nan, total))

@@ -21,12 +21,12 @@ class Step:
     Attributes
     ----------
     pair : numbers of the two bodies, the later first
-    how : "hinge", "guide" (at infinity square to it), "rolling" (contact), "gear", "kennedy" (two lines),
-        "together" (its two neighbours lie in one place), "rest" (no relative motion), "field" (the velocity
-        field, where Kennedy's theorem is not enough)
+    how : "hinge", "guide" (at infinity square to it, on the sphere its pole), "rolling" (contact), "gear",
+        "kennedy" (two lines), "together" (its two neighbours lie in one place), "rest" (no relative motion),
+        "field" (the velocity field, where Kennedy's theorem is not enough)
     name : of the hinge, guide, wheel or gear
     by : numbers of the bodies whose lines meet, or that were gone by
-    place : [m], None at infinity and at rest
+    place : (x, y) [m], None at infinity and at rest; on the sphere (x, y, z) of one end of the axis
     direction : unit vector towards a centre at infinity, else None
     error : bound on rounding, as an angle between places seen from the mechanism's size
     """
@@ -35,8 +35,8 @@ class Step:
     how: How
     name: str
     by: tuple[int, ...]
-    place: tuple[float, float] | None
-    direction: tuple[float, float] | None
+    place: tuple[float, ...] | None
+    direction: tuple[float, ...] | None
     error: float
 
 

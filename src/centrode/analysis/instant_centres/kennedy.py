@@ -14,21 +14,13 @@ from typing import TypeAlias
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.instant_centres.bodies import ROUNDED, Bodies, Pair, bodies_of, refuse_batch
-from centrode.analysis.instant_centres.centres import numbered, upward
+from centrode.analysis.instant_centres.bodies import ROUNDED, Pair, bodies_of, is_spherical, refuse_batch
+from centrode.analysis.instant_centres.centres import numbered
 from centrode.analysis.instant_centres.construction import Construction, How, Step
-from centrode.analysis.instant_centres.primary import (
-    Gearing,
-    Joint,
-    gearings_of,
-    joints_of,
-    ordered,
-    place_of,
-)
+from centrode.analysis.instant_centres.primary import Gearing, Joint, gearings_of, joints_of, ordered
 from centrode.analysis.instant_centres.projective import (
     EPS,
     Spot,
-    Triple,
     best_crossing,
     cross,
     crossing,
@@ -37,6 +29,8 @@ from centrode.analysis.instant_centres.projective import (
     length,
     spot,
 )
+from centrode.analysis.instant_centres.spots import Spots, Where, spots_of
+from centrode.analysis.instant_centres.turning_bodies import turning_bodies_of
 from centrode.errors import InputError
 from centrode.locale import _
 
@@ -71,11 +65,14 @@ def construct_centres(
     ------
     InputError
         No position at the sample, more than 40 bodies, an unknown body.
-    NotComputedYet
-        The mechanism moves on the sphere.
+
+    Notes
+    -----
+    On the sphere a centre is an axis through the centre of the sphere, and the three axes of three bodies lie in
+    one plane: they meet the sphere on one great circle. `place` of a step is one of its two ends.
     """
     refuse_batch(motion)
-    everything = bodies_of(motion)
+    everything = turning_bodies_of(motion) if is_spherical(motion) else bodies_of(motion)
     wanted = None if pairs is None else numbered(everything, pairs)
     if len(everything.names) > MOST_BODIES:
         raise InputError(
@@ -92,19 +89,18 @@ def construct_centres(
             "at", _("the mechanism has no position with velocities there"), _("ask for another one")
         )
     residual = float(motion["residual"][sample])
-    found = _Constructing(everything.sample(sample), residual).run()
+    found = _Constructing(spots_of(everything.sample(sample)), residual).run()
     return found if wanted is None else found.needed(wanted)
 
 
 class _Constructing:
     """Centres known so far at one position."""
 
-    def __init__(self, bodies: Bodies, residual: float) -> None:
-        self.bodies = bodies
+    def __init__(self, spots: Spots, residual: float) -> None:
+        self.spots = spots
+        self.bodies = spots.bodies
         self.start = ROUNDINGS + residual
-        self.middle = complex(np.mean(bodies.place))
-        self.size = max(bodies.scale, float(np.max(np.abs(bodies.place - self.middle))))
-        self.gears = gearings_of(bodies.mechanism, bodies)
+        self.gears = gearings_of(self.bodies.mechanism, self.bodies)
         self.known: dict[Pair, Spot | None] = {}  # None: at rest against each other
         self.steps: list[Step] = []
 
@@ -128,11 +124,10 @@ class _Constructing:
 
     def _see(self, joint: Joint) -> None:
         """Take in the centre that a joint shows."""
-        place, at_infinity = place_of(joint, self.bodies)
-        where = self._spot(place, at_infinity)
+        where, place = self.spots.shown(joint, self.start)
         before = self.known.get(joint.pair)
         if joint.pair not in self.known:
-            self._note(joint.pair, where, joint.kind, joint.name, at=None if at_infinity else place)
+            self._note(joint.pair, where, joint.kind, joint.name, at=place)
         elif before is not None and differ(before, where):
             self._rest(joint.pair, ())  # joined twice, the bodies cannot move against each other
 
@@ -150,13 +145,6 @@ class _Constructing:
         for pair in sorted(rigid):
             self._rest(pair, ())
 
-    def _spot(self, place: complex, at_infinity: bool) -> Spot:
-        return (
-            spot(place, 0.0, self.start)
-            if at_infinity
-            else spot((place - self.middle) / self.size, 1.0, self.start)
-        )
-
     def _note(
         self,
         pair: Pair,
@@ -164,17 +152,11 @@ class _Constructing:
         how: How,
         name: str = "",
         by: tuple[int, ...] = (),
-        at: complex | None = None,
+        at: Where | None = None,
     ) -> None:
         self.known[pair] = where
-        x, w = complex(where.vector[0], where.vector[1]), where.vector[2]
-        place = direction = None
-        if where.at_infinity:
-            towards = complex(upward(np.array(x / abs(x))))
-            direction = (towards.real, towards.imag)
-        else:
-            at = self.middle + self.size * x / w if at is None else at
-            place = (at.real, at.imag)
+        place, direction = self.spots.read(where)
+        place = place if at is None else at
         self.steps.append(Step(pair, how, name, by, place, direction, where.error))
 
     def _rest(self, pair: Pair, by: tuple[int, ...]) -> None:
@@ -216,7 +198,7 @@ class _Constructing:
                 yield third, self.known[legs[0]], self.known[legs[1]]
 
     def _by_gear(self, gear: Gearing, pair: Pair) -> tuple[Spot | None, int]:
-        """The third centre of a gear: with A, B of the wheels on the carrier, P - A = i (P - B)."""
+        """The third centre of a gear, from those of the other two pairs."""
         legs = {
             "first": ordered((gear.first, gear.carrier)),
             "second": ordered((gear.second, gear.carrier)),
@@ -225,39 +207,21 @@ class _Constructing:
         wanted = next((name for name, leg in legs.items() if leg == pair), None)
         third = next((n for n in (gear.first, gear.second, gear.carrier) if n not in pair), gear.carrier)
         others = [self.known.get(leg) for name, leg in legs.items() if name != wanted]
-        if wanted is None or any(one is None or one.at_infinity for one in others):
+        known = [one for one in others if one is not None]
+        if wanted is None or len(known) < 2:
             return None, third
-        a, b = (complex(one.vector[0], one.vector[1]) / one.vector[2] for one in others if one is not None)
-        ratio = gear.ratio
-        x, w = {
-            "first": (ratio * a + (1.0 - ratio) * b, 1.0),
-            "second": (a - (1.0 - ratio) * b, ratio),
-            "mesh": (a - ratio * b, 1.0 - ratio),
-        }[wanted]
-        error = sum(one.error for one in others if one is not None) * (1.0 + abs(ratio)) * 4.0
-        if abs(x) <= error and abs(w) <= EPS * abs(ratio):
-            return None, third  # equal turns about one axis: at rest
-        return spot(x, w, error), third
+        return self.spots.geared(gear, wanted, known), third
 
     def _borrowed(self, unknown: Sequence[Pair]) -> Derived:
         """A centre from the velocity field, the frame's first, where one line is known already if there is such."""
         lines = {pair: sum(1 for _third in self._thirds(pair)) for pair in unknown}
         pair = min(unknown, key=lambda pair: (pair[1] != 0, lines[pair] == 0, pair))
-        pole = self._pole(pair)
+        pole = self.spots.pole(pair)
         if length(pole) <= ROUNDED:
             return pair, None, "rest", "", ()
         return pair, spot(complex(pole[0], pole[1]), pole[2], self.start), "field", "", ()
 
-    def _pole(self, pair: Pair) -> Triple:
-        """The velocity field of a pair as a place: (x, y, w) over its spin, in the greatest velocity."""
-        moving, spin = self.bodies.relative(pair)
-        rate = float(self.bodies.rate) or 1.0
-        turning = float(spin) * self.size / rate
-        arm = (complex(self.bodies.place[pair[0]]) - self.middle) / self.size
-        x = turning * arm + 1j * complex(moving) / rate
-        return x.real, x.imag, turning
-
     def _mismatch(self, pair: Pair) -> float:
         """Relative velocity at the constructed centre, in the greatest of the motion."""
-        pole, where = self._pole(pair), self.known[pair]
+        pole, where = self.spots.pole(pair), self.known[pair]
         return length(pole if where is None else cross(pole, where.vector))

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from centrode.analysis.instant_centres.bodies import Bodies, Pair
+from centrode.analysis.instant_centres.bodies import Bodies, Named, Pair
 from centrode.model.mechanism import FRAME, Guide, Mechanism, Rolling
 
 Kind: TypeAlias = Literal["hinge", "guide", "rolling"]
@@ -35,7 +35,7 @@ class Gearing:
     ratio: float
 
 
-def joints_of(mechanism: Mechanism, bodies: Bodies) -> tuple[Joint, ...]:
+def joints_of(mechanism: Mechanism, bodies: Named) -> tuple[Joint, ...]:
     """Hinges, guides and rolling wheels, in the order of the points, the guides and the wheels."""
     found: list[Joint] = []
     for point in mechanism.points:
@@ -49,7 +49,7 @@ def joints_of(mechanism: Mechanism, bodies: Bodies) -> tuple[Joint, ...]:
     return tuple(found)
 
 
-def gearings_of(mechanism: Mechanism, bodies: Bodies) -> tuple[Gearing, ...]:
+def gearings_of(mechanism: Mechanism, bodies: Named) -> tuple[Gearing, ...]:
     """Gears as ties between centres."""
     return tuple(
         Gearing(
@@ -68,7 +68,7 @@ def ordered(pair: Pair) -> Pair:
     return max(pair), min(pair)
 
 
-def carriers(bodies: Bodies, point: str) -> list[int]:
+def carriers(bodies: Named, point: str) -> list[int]:
     """Bodies that are hinged at a point: links and the frame that name it, and its sliders."""
     mechanism = bodies.mechanism
     names = [FRAME] if point in mechanism.frame.points else []
@@ -77,7 +77,7 @@ def carriers(bodies: Bodies, point: str) -> list[int]:
     return [bodies.number(name) for name in names]
 
 
-def slider_of(bodies: Bodies, guide: Guide) -> str:
+def slider_of(bodies: Named, guide: Guide) -> str:
     """Name of the slider of a guide."""
     return next(name for name, own in bodies.sliders.items() if own.id == guide.id)
 
@@ -123,7 +123,7 @@ def contact_of(wheel: Rolling, bodies: Bodies) -> complex:
     return middle + far * radius * (centre - middle) / abs(centre - middle)
 
 
-def rolling_pairs(mechanism: Mechanism, bodies: Bodies) -> Iterator[Pair]:
+def rolling_pairs(mechanism: Mechanism, bodies: Named) -> Iterator[Pair]:
     """Pairs that roll on each other: wheels on their tracks, and geared links on their pitch circles."""
     for wheel in mechanism.rolling:
         yield ordered((bodies.number(wheel.link), bodies.number(wheel.on)))

@@ -59,8 +59,9 @@ def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
     """RRR: between the two rods; RRP: between the rod and the normal of the line; RPR: between arm and normal."""
     name = name_of(group)
     sphere = kinematics.numbers.space.name == "sphere"
-    if isinstance(group, Aim) and group.contact is None and not sphere:
-        return Watched(name, "rad", lambda at: _of_aim(kinematics, group, at))
+    if isinstance(group, Aim) and group.contact is None:
+        of_aim = _of_aim_on_sphere if sphere else _of_aim
+        return Watched(name, "rad", lambda at: of_aim(kinematics, group, at))
     if not isinstance(group, Meet):
         return None
     centres = [locus for locus in group.loci if isinstance(locus, (Rod, Stroke))]
@@ -90,6 +91,15 @@ def _to_pole(kinematics: Kinematics, rod: Any, line: Rail, at: Positions) -> Pai
     pole = space.place(JETS, at.poses[line.on], numbers.through[line.guide])
     arc, to_pole = tangent(pin, centre), tangent(pin, pole)
     return dot(arc, to_pole), dot(pin, cross(arc, to_pole))
+
+
+def _of_aim_on_sphere(kinematics: Kinematics, group: Aim, at: Positions) -> Pair:
+    """In the target, between the arcs to the pivot and to the pole of the guide's circle."""
+    space, numbers = kinematics.numbers.space, kinematics.numbers
+    target, pivot = at.points[group.target], at.points[group.pivot]
+    pole = space.place(JETS, at.poses[group.link], numbers.through[group.guide])
+    arc, to_pole = tangent(target, pivot), tangent(target, pole)
+    return dot(arc, to_pole), dot(target, cross(arc, to_pole))
 
 
 def _to_normal(kinematics: Kinematics, rod: Any, line: Locus, carriage: str | None, at: Positions) -> Pair:

@@ -9,7 +9,7 @@ from centrode.cams.choosing.choice import Choice, choose
 from centrode.cams.choosing.families import bounds_of, chosen_cam, family_of, start_of
 from centrode.cams.choosing.proving import Proof, prove
 from centrode.cams.choosing.trade_off import POINTS, TradeOff, trade_off
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
 
 MORE = 3
 """So often the search goes on from a neighbour that is better, as there are where a law is not smooth."""

@@ -16,8 +16,8 @@ from centrode.cams.curvature_laws import derivatives
 from centrode.cams.described import law_of
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam_values import CONSTANT, POINT
-from centrode.model.cams import Cam, varied
+from centrode.model.cams.description import Cam, varied
+from centrode.model.cams.values import CONSTANT, POINT
 from centrode.model.frozen import FrozenMap
 
 Array = NDArray[np.float64]
@@ -37,14 +37,16 @@ def contact_of(cam: Cam) -> Contact | None:
 
 
 def working_arc(cam: Cam) -> tuple[float, float]:
-    """Angles [rad] between which the roller is pressed: a leg's working arc, else the whole range."""
+    """Angles [rad] between which the roller is pressed: where a leg stands, else the whole range.
+
+    A leg stands over ±pi/N, however much further `[mover] working_arc` lets the law hold.
+    """
     low = -cam.range.stop if cam.curvature.symmetric else cam.range.start
     high = cam.range.stop
     if cam.mover is None:
         return low, high
     half = math.pi / cam.mover.legs
-    asked = cam.mover.working_arc or (-half, half)
-    return max(low, asked[0]), min(high, asked[1])
+    return max(low, -half), min(high, half)
 
 
 def family_of(cam: Cam) -> Family:

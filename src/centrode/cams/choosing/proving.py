@@ -18,7 +18,7 @@ from centrode.cams.choosing.measures import ALWAYS, MEASURES
 from centrode.cams.choosing.tried import Tried
 from centrode.cams.described import path_of
 from centrode.errors import InputError
-from centrode.model.cams import Cam, varied
+from centrode.model.cams.description import Cam, varied
 
 Array = NDArray[np.float64]
 

@@ -190,10 +190,13 @@ def working_arc(path: RollerPath, legs: int | None = None, half: float | None = 
         what = _("the working arc goes from {arc}, the path from {there}").format(arc=arc, there=there)
         stalled = _("the follower stalls there: take more legs or another law")
         raise InputError(
-            "", what, stalled if path.stall is not None else _("ask for a longer path, or a symmetric law")
+            "[range]",
+            what,
+            stalled if path.stall is not None else _("ask for a longer path, or a symmetric law"),
         )
     if not 0 < stop - start < math.tau - ROUNDING:
-        raise InputError("", _("a working arc is longer than zero and shorter than a turn"))
+        what = _("a working arc is longer than zero and shorter than a turn")
+        raise InputError("[mover] working_arc" if half is not None else "[range]", what, _("change it"))
     return Arc("working", path, start, stop, breaks_of(path, start, stop))
 
 

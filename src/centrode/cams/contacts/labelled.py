@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,14 +11,16 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from centrode.cams.choosing.families import contact_of, working_arc
-from centrode.cams.contacts.along import stress_along
+from centrode.cams.contacts.along import Greatest, Stressed, stress_along
+from centrode.cams.contacts.line import Contact
 from centrode.cams.described import path_of
 from centrode.cams.labelled import status_of
+from centrode.cams.path import stalls_of
 from centrode.cams.sampled import angles_of
 from centrode.errors import InputError
 from centrode.kinematics.dataset import named
 from centrode.locale import _
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
 
 Array = NDArray[np.float64]
 
@@ -37,12 +41,12 @@ def cam_contact(cam: Cam, samples: int | None = None) -> xr.Dataset:
         By the angle `carrier_angle`: `contact_stress`, `contact_stress_by_source`, `contact_shear`,
         `contact_depth`, `contact_half_width` and `cam_curvature_radius`, NaN where the cam is undercut or the
         follower has stalled. Its attributes hold the greatest stress by both formulas with its angle, of a symmetric
-        cam the positive one.
+        cam the positive one; infinite where the working arc ends in a stall.
 
     Raises
     ------
     InputError
-        No contact, a curvature that no cam has.
+        No contact, a curvature that no cam has; a strip wider than the roller, for which the formulas do not hold.
     """
     contact = contact_of(cam)
     if contact is None:
@@ -54,6 +58,11 @@ def cam_contact(cam: Cam, samples: int | None = None) -> xr.Dataset:
     phi = np.linspace(*ends, len(angles_of(cam, samples)))
     looked = (0.0, ends[1]) if cam.curvature.symmetric else ends
     found = stress_along(path, contact, phi, looked)
+    stalls = [one for one in stalls_of(path) if one in looked]
+    if stalls:  # cos gamma runs to zero
+        endless = Greatest(math.inf, stalls[-1])
+        found = replace(found, greatest=endless, greatest_by_source=endless)
+    _check_strip(found, contact)
     values = {
         "contact_stress": found.strip.pressure,
         "contact_stress_by_source": found.by_source,
@@ -76,3 +85,16 @@ def cam_contact(cam: Cam, samples: int | None = None) -> xr.Dataset:
     data["status"] = status_of(path, phi)
     coordinates = {"carrier_angle": named("carrier_angle", ("sample",), phi)}
     return xr.Dataset(data, coords=coordinates, attrs=attributes)
+
+
+def _check_strip(found: Stressed, contact: Contact) -> None:
+    """Raise InputError where all strips are wider than the roller: a force or modulus in other units."""
+    widths = 2.0 * found.strip.half_width
+    known = widths[np.isfinite(widths)]
+    if known.size and float(known.min()) > 2.0 * contact.roller_radius:
+        what = _("the strip of contact would be {width:.4g} mm wide, wider than the roller").format(
+            width=1e3 * float(known.min())
+        )
+        raise InputError(
+            "[contact]", what, _('check the units: a force such as "3 kN", an elasticity "206 GPa"')
+        )

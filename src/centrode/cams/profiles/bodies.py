@@ -14,7 +14,7 @@ from centrode.cams.closed.bounds import Bounds
 from centrode.cams.closed.designing import Returned, designed
 from centrode.cams.described import path_of
 from centrode.cams.frames import Array, frames
-from centrode.cams.path import RollerPath
+from centrode.cams.path import RollerPath, stalls_of
 from centrode.cams.profiles.equidistants import (
     Equidistant,
     Side,
@@ -26,10 +26,10 @@ from centrode.cams.profiles.equidistants import (
     undercut,
 )
 from centrode.cams.searching import roots
-from centrode.errors import InputError
+from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.model.cam_parts import Return
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
+from centrode.model.cams.parts import Return
 
 LEAST_BEND = 0.1
 """Least radius of curvature of a designed profile over the roller's radius, where the description gives none."""
@@ -131,7 +131,7 @@ def cam_body(cam: Cam) -> CamBody:
     InputError
         No roller; a working arc or bounds that do not fit; a path of a whole turn that does not close.
     MotionError
-        No return arc within the bounds was found.
+        The follower stalls on the working arc; no return arc within the bounds was found.
     """
     return _body(cam)
 
@@ -144,8 +144,9 @@ def _body(cam: Cam) -> CamBody:
     path, asked = path_of(cam), cam.return_arc or Return()
     if cam.return_arc is None and cam.mover is None:
         whole = path.stop - path.start >= math.tau * (1 - CLOSED)
-        return CamBody(_whole_turn(path) if whole else ClosedPath((working_arc(path),)), cam.roller.radius)
-    working = working_of(cam, path)
+        closed = _whole_turn(path) if whole else ClosedPath((_reached(path, working_arc(path)),))
+        return CamBody(closed, cam.roller.radius)
+    working = _reached(path, working_of(cam, path))
     if asked.kind == "mirrored":
         return CamBody(mirrored(working), cam.roller.radius)
     found = designed(working, bounds_of(asked, cam.roller.radius, working))
@@ -183,6 +184,17 @@ def bounds_of(asked: Return, roller: float, working: Arc) -> Bounds:
         convex=asked.convex,
         least_hollow=roller,
         pressure_angle=asked.pressure_angle or math.pi / 2,
+    )
+
+
+def _reached(path: RollerPath, working: Arc) -> Arc:
+    """The working arc; MotionError where it ends in a stall, at which the path's direction is that of the ray."""
+    reached = [one for one in stalls_of(path) if one in (working.start, working.stop)]
+    if not reached:
+        return working
+    what = _("no profile leads a roller to {place:.6g} deg, where the follower stalls")
+    raise MotionError(
+        "[range]", what.format(place=math.degrees(reached[-1])), _("end the range before that angle")
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,7 +12,7 @@ import numpy as np
 
 from centrode.cams.closed.arcs import Arc
 from centrode.cams.frames import Array, frames
-from centrode.cams.profiles.bodies import CamBody
+from centrode.cams.profiles.bodies import CLOSED, CamBody
 from centrode.cams.profiles.equidistants import Side, equidistant, signed
 from centrode.cams.wheel.shoe import Shoe
 
@@ -31,7 +32,7 @@ class Outline:
     layer : str
         What it belongs to.
     phi : (n) [rad]
-        Growing.
+        Growing; about a corner by what the normal has turned.
     places, slopes : (n, 2) [m], [m/rad]
         Points and derivatives by phi.
     """
@@ -70,7 +71,27 @@ def cam_outlines(body: CamBody, samples: int, *, groove: bool = False) -> list[O
             else:
                 name = "groove-working" if arc.kind == "working" else "groove-return"
             found.append(Outline(name, phi, off.place, off.speed[:, None] * frame.tangent))
+        number = body.closed.arcs.index(arc)
+        if phi[-1] > arc.edges[-2] and number < len(body.closed.joints):
+            found += [one for side in sides for one in _corner(body, number, side, samples)]
     return found
+
+
+def _corner(body: CamBody, number: int, side: Side, samples: int) -> list[Outline]:
+    """The roller's own arc about a corner of the path, on the side where the walls before and behind it part."""
+    joint, arc = body.closed.joints[number], body.closed.arcs[number]
+    parts: Side = "outer" if joint.kink < 0.0 else "inner"
+    if abs(joint.kink) <= CLOSED or side != parts:
+        return []
+    frame = frames(arc.curve, np.array([arc.stop]))
+    count = max(2 * LEAST_PIECE, round(samples * abs(joint.kink) / math.tau))
+    turned = np.linspace(0.0, abs(joint.kink), count + 1)
+    sense, distance = -math.copysign(1.0, joint.kink), signed(body.roller, side)
+    normal = frame.normal_angle + sense * turned
+    outwards = np.stack([np.sin(normal), np.cos(normal)], axis=-1)
+    along = np.stack([np.cos(normal), -np.sin(normal)], axis=-1)
+    layer: Layer = "groove-return" if side == "outer" else "profile-return"
+    return [Outline(layer, joint.at + turned, frame.place + distance * outwards, sense * distance * along)]
 
 
 def shoe_outlines(shoe: Shoe, samples: int) -> list[Outline]:

@@ -16,7 +16,7 @@ from centrode.errors import InputError
 from centrode.kinematics.dataset import named
 from centrode.locale import _
 from centrode.model import limits
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
 
 DEFAULT_SAMPLES = 361
 AXES = ["x", "y"]

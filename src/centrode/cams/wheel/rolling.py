@@ -13,7 +13,7 @@ from numpy.polynomial import legendre
 
 from centrode.cams.frames import Array
 from centrode.cams.wheel.walking import Mover, quadrature_panels
-from centrode.dynamics.quadrature import NODES
+from centrode.dynamics.steady_motion.quadrature import NODES
 
 SAMPLES = 181
 SEARCH = 401
@@ -40,6 +40,9 @@ class Rolling:
     clearance, clearance_at : float [m], [rad]
         Least height over the ground of a shoe that does not stand, and the leg's angle. It is zero where the leg
         leaves the ground; negative where a shoe would dig in.
+    room, room_at : float [m], [rad]
+        Least room between the rollers of neighbouring legs, and the angle of the first leg; negative where they
+        would overlap.
     """
 
     level: float
@@ -49,10 +52,12 @@ class Rolling:
     joint: float
     clearance: float
     clearance_at: float
+    room: float
+    room_at: float
 
 
 def rolling(mover: Mover) -> Rolling:
-    """Prove a walking wheel at 181 angles of a working leg and 721 of a returning one."""
+    """Prove a walking wheel at 181 angles of a working leg, and 721 of one that returns or goes round."""
     phi = np.linspace(-mover.half, mover.half, SAMPLES)
     ends = mover.rate(np.array([-mover.half, mover.half]))
     arc, ground = _lengths(mover)
@@ -65,6 +70,7 @@ def rolling(mover: Mover) -> Rolling:
         float(ends[0] - ends[1]),
         clearance,
         at,
+        *_room(mover),
     )
 
 
@@ -131,3 +137,12 @@ def _clearance(mover: Mover) -> tuple[float, float]:
     lowest = mover.height - levers.max(axis=1)
     worst = int(np.argmin(lowest))
     return float(lowest[worst]), float(phi[worst])
+
+
+def _room(mover: Mover) -> tuple[float, float]:
+    """Least room between neighbouring rollers, and the angle of the first one's leg."""
+    phi, pitch = np.linspace(-math.pi, math.pi, RETURNING), math.tau / mover.legs
+    one, two = mover.closed.radius(phi)[0], mover.closed.radius(phi + pitch)[0]
+    apart = np.hypot(two * math.cos(pitch) - one, two * math.sin(pitch))
+    worst = int(np.argmin(apart))
+    return float(apart[worst]) - 2.0 * mover.roller, float(phi[worst])

@@ -18,7 +18,7 @@ from centrode.cams.closed.arcs import Arc, ClosedPath
 from centrode.cams.frames import Array
 from centrode.cams.searching import Extremes, extremes
 from centrode.cams.wheel.shoe import Shoe, shoe
-from centrode.dynamics.quadrature import Panels, Series
+from centrode.dynamics.steady_motion.quadrature import Panels, Series
 from centrode.errors import InputError
 from centrode.locale import _
 

@@ -88,7 +88,7 @@ def balance(
     fraction: float = 0.5,
     moment: bool = False,
     about: About = (0.0, 0.0),
-    speed: Speed = "drive",
+    speed: Speed = "mean",
     samples: int | None = None,
     orders: int = ORDERS,
 ) -> Balance:
@@ -157,7 +157,7 @@ def balance(
     if moment:
         discs = discs_for(Turning.of(balanced, complex(*centre), speed), balanced)
         balanced = with_discs(balanced, discs)
-    ends = (turning.first, turning.first + turning.period) if speed == "drive" else (None, None)
+    ends = (turning.first, turning.first + turning.period) if speed == "mean" else (None, None)
     before, after = (
         shaking(one, samples, *ends, about=centre, speed=speed, orders=orders)
         for one in (mechanism, balanced)

@@ -171,3 +171,14 @@ def _heavier(link: Link, own: Mass | None, added: Counterweight) -> Link:
     inertia += added.inertia + mass * abs(centre - middle) ** 2 + added.mass * abs(extra - middle) ** 2
     changes = {"mass": whole, "centre": (middle.real, middle.imag), "inertia": inertia}
     return link.model_copy(update={**changes, "shape": None, "radius": None})
+
+
+def stiffened(link: Link, own: Mass | None, inertia: float) -> Link:
+    """A link with so much more inertia; what its shape tells of it becomes numbers."""
+    if own is None:
+        return link.model_copy(update={"inertia": inertia})
+    x, y = link.coordinates[own.planar_centre.base]
+    changes: dict[str, object] = {"inertia": own.moment_of_inertia + inertia, "shape": None, "radius": None}
+    if own.weighs:
+        changes["centre"] = (x + own.planar_centre.along, y + own.planar_centre.across)
+    return link.model_copy(update=changes)

@@ -13,7 +13,7 @@ import numpy as np
 
 from centrode.dynamics.balancing.inertial import Array, Complex
 from centrode.dynamics.balancing.turning import NODES_PER_TURN, Turning
-from centrode.dynamics.quadrature import Panels
+from centrode.dynamics.steady_motion.quadrature import Panels
 
 MOST_DOUBLINGS = 5
 SETTLED = 1e-13

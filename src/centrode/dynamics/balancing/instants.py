@@ -10,11 +10,11 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from centrode.dynamics.balancing.inertial import Array, Pace
-from centrode.dynamics.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME
 from centrode.dynamics.masses import Mass
-from centrode.dynamics.quadrature import Panels
-from centrode.dynamics.solution import Solution, solution_of
 from centrode.dynamics.states import Moving, State
+from centrode.dynamics.steady_motion.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME
+from centrode.dynamics.steady_motion.quadrature import Panels
+from centrode.dynamics.steady_motion.solution import Solution, solution_of
 from centrode.errors import InputError, MotionError, NotComputedYet
 from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
@@ -22,7 +22,7 @@ from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
-Speed: TypeAlias = Literal["drive", "steady"]
+Speed: TypeAlias = Literal["mean", "steady"]
 SPEEDS = get_args(Speed)
 
 
@@ -44,7 +44,7 @@ class Instants:
     _places: Places | None = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, mechanism: Mechanism, speed: Speed = "drive") -> Instants:
+    def of(cls, mechanism: Mechanism, speed: Speed = "mean") -> Instants:
         """The mechanism at the speed that loads see (see `ct.reduce`), or at its real one (`ct.steady_motion`).
 
         Raises InputError for several drives, for a drive without a constant speed, and as `steady_motion`.

@@ -10,8 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from centrode.dynamics.masses import Mass
-from centrode.errors import InputError
-from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
 
@@ -109,20 +107,6 @@ def shares_of(mechanism: Mechanism, masses: Sequence[Mass], loop: Loop) -> tuple
     if loop.rocker is not None and loop.D is not None:
         found.append(share_of(mechanism, masses, loop.rocker, loop.D, loop.B))
     return tuple(found)
-
-
-def full_of_four_bar(mechanism: Mechanism, masses: Sequence[Mass], loop: Loop) -> dict[str, complex]:
-    """Products of mass and radius that balance a four-bar fully, on crank and rocker, from their fixed joints [kg m].
-
-    Source: Berkof and Lowen 1969; with the coupler's mass replaced at A and B each side link balances itself.
-    """
-    if loop.rocker is None or loop.D is None:
-        raise InputError("", _("the mechanism is no four-bar linkage"))
-    crank, coupler, rocker = shares_of(mechanism, masses, loop)
-    return {
-        loop.crank: -(crank.at_second + coupler.at_first) * arm(mechanism, loop.crank, loop.O, loop.A),
-        loop.rocker: -(rocker.at_second + coupler.at_second) * arm(mechanism, loop.rocker, loop.D, loop.B),
-    }
 
 
 def fraction_of_slider_crank(

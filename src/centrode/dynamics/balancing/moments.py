@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from centrode.dynamics.balancing.counterweights import replaced
+from centrode.dynamics.balancing.counterweights import replaced, stiffened
 from centrode.dynamics.balancing.full import INSTANTS
 from centrode.dynamics.balancing.inertial import Array, Tracks, cross, orders
 from centrode.dynamics.balancing.reachable import hinged_from
-from centrode.dynamics.balancing.turning import Turning
+from centrode.dynamics.balancing.turning import Turning, heavy
 from centrode.dynamics.masses import Mass
 from centrode.errors import MotionError
 from centrode.locale import _
@@ -112,12 +112,10 @@ def _too_much(link: str, surplus: float) -> MotionError:
 def with_discs(mechanism: Mechanism, discs: Sequence[Disc]) -> Mechanism:
     """The description with the discs: fixed ones in the inertia of their links, the others as links with gears."""
     links, gears = dict(mechanism.links), list(mechanism.gears)
+    own = {mass.link: mass for mass in heavy(mechanism)}
     for disc in discs:
-        own = links[disc.link]
         if disc.base is None:
-            before = own.inertia or 0.0
-            assert isinstance(before, float)  # the plane's
-            links[disc.link] = own.model_copy(update={"inertia": before + disc.inertia})
+            links[disc.link] = stiffened(links[disc.link], own.get(disc.link), disc.inertia)
             continue
         name = disc_name(mechanism, disc.link)
         links[name] = Link(points={disc.base: (0.0, 0.0)}, inertia=disc.inertia)

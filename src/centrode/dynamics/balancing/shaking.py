@@ -13,9 +13,9 @@ from centrode.dynamics.balancing.harmonics import Harmonics, harmonics_of
 from centrode.dynamics.balancing.inertial import Array, Effects, Pace, effects_of, tracks_of
 from centrode.dynamics.balancing.instants import Speed, check_speed, on_sphere
 from centrode.dynamics.balancing.turning import Turning, heavy, top
-from centrode.dynamics.solution import solution_of
 from centrode.dynamics.states import Moving, State
-from centrode.dynamics.steady import turned_at
+from centrode.dynamics.steady_motion.solution import solution_of
+from centrode.dynamics.steady_motion.steady import turned_at
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.dataset import (
     Variable,
@@ -44,7 +44,7 @@ def shaking(
     at: npt.ArrayLike | None = None,
     *,
     about: About = (0.0, 0.0),
-    speed: Speed = "drive",
+    speed: Speed = "mean",
     orders: int = ORDERS,
 ) -> xr.Dataset:
     """Force and moment that the inertia of a mechanism puts on its frame, at the samples of a motion.
@@ -55,7 +55,7 @@ def shaking(
         As for `motion`; in steady motion as for `steady_motion`, over its cycle.
     about : name of a point of the frame, or (x, y) [m]
         What moments are taken about; the frame's origin if left out.
-    speed : "drive" or "steady"
+    speed : "mean" or "steady"
         The machine's mean speed, or the drive's own where there is none; or the real one of `steady_motion`.
     orders : int
         Harmonics up to this multiple of the drive's turns.

@@ -57,7 +57,7 @@ class Turning:
         cls,
         mechanism: Mechanism,
         about: complex,
-        speed: Speed = "drive",
+        speed: Speed = "mean",
         carriers: Sequence[tuple[str, str]] = (),
     ) -> Turning:
         """The cycle of a mechanism, and of what stands on carriers; raises as `Instants.of` and `turns_of_cycle`."""

@@ -10,13 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
+from centrode.dynamics.bodies import About, Spread, Vector3
 from centrode.dynamics.coordinates import place_of
 from centrode.dynamics.inertia import shares
 from centrode.dynamics.loads import Acting
 from centrode.dynamics.masses import Mass
-from centrode.dynamics.pulls import Pull, couple, on_link
+from centrode.dynamics.pulls import Moment, Pull, Vector, couple, on_link
 from centrode.dynamics.reducer import Burden
 from centrode.dynamics.states import State
+from centrode.geometry.sphere import add, cross, dot, times
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -24,12 +26,15 @@ Number: TypeAlias = Any
 
 @dataclass(frozen=True)
 class InertiaForce:
-    """Inertia force -m a [N] in the centre of mass, and inertia moment -I alpha [N m], of one link."""
+    """Inertia force -m a [N] in the centre of mass, and inertia moment [N m] about it, of one link.
+
+    The moment is -I alpha, on the sphere minus the rate of the moment of momentum about the centre of mass.
+    """
 
     link: str
-    force: tuple[Number, Number]
-    at: tuple[Number, Number]
-    moment: Number
+    force: Vector
+    at: Vector
+    moment: Moment
 
     @property
     def pulls(self) -> tuple[Pull, ...]:
@@ -47,11 +52,14 @@ class Outer:
     inertia : of each link that has mass
     moment : (1, n)
         What both do along the path's parameter, by virtual work: power over its rate.
+    shares : (loads, 1, n)
+        What each load does.
     """
 
     loads: tuple[Pull, ...]
     inertia: tuple[InertiaForce, ...]
     moment: Array
+    shares: Array
 
     @property
     def pulls(self) -> tuple[Pull, ...]:
@@ -64,36 +72,73 @@ def outer_of(state: State, burden: Burden, acceleration: Array, known: Any) -> O
 
     Raises InputError for a load without a finite amount although the positions are `known`.
     """
-    pulls, moment = _loads(state, burden.loads, known)
-    inertia, slope = (part.sum(axis=0) for part in shares(state, burden.masses, moment.shape))
-    moment = moment - inertia * acceleration - 0.5 * slope * state.rate**2
-    return Outer(tuple(pulls), _inertia_forces(state, burden.masses, acceleration), moment)
+    pulls, by_load = _loads(state, burden.loads, known)
+    inertia, slope = (part.sum(axis=0) for part in shares(state, burden.masses, by_load.shape[1:]))
+    moment = by_load.sum(axis=0) - inertia * acceleration - 0.5 * slope * state.rate**2
+    return Outer(tuple(pulls), _inertia_forces(state, burden.masses, acceleration), moment, by_load)
 
 
 def _loads(state: State, loads: Sequence[Acting], known: Any) -> tuple[list[Pull], Array]:
     pulls: list[Pull] = []
-    moment = np.zeros((1, len(state.parameter)))
+    done = np.zeros((len(loads), 1, len(state.parameter)))
     with np.errstate(all="ignore"):
-        for load in loads:
+        for k, load in enumerate(loads):
             strengths = load.strengths(state, known)
-            moment = moment + load.along(state, strengths)
+            done[k] = load.along(state, strengths)
             for effort, strength in zip(load.efforts, strengths, strict=True):
                 pulls += [pull.times(strength) for pull in effort.pulls(state)]
-    return pulls, moment
+    return pulls, done
 
 
 def _inertia_forces(state: State, masses: Sequence[Mass], acceleration: Array) -> tuple[InertiaForce, ...]:
-    accelerates = bool(acceleration.any())
+    inertial = _Inertial(state, acceleration if acceleration.any() else None)
+    return tuple(inertial.of(mass) for mass in masses)
 
-    def second(jet: Jet) -> Number:
-        straight = jet.derivative(2) * state.rate**2
-        return straight + jet.derivative(1) * acceleration if accelerates else straight
 
-    found = []
-    for mass in masses:
-        assert not isinstance(mass.inertia, tuple)
-        x, y = state.centre(mass.centre)
-        force = (-mass.mass * second(x), -mass.mass * second(y)) if mass.weighs else (0.0, 0.0)
-        moment = -mass.moment_of_inertia * second(state.angle(mass.link)) if mass.resists else 0.0
-        found.append(InertiaForce(mass.link, force, place_of((x, y)), moment))
-    return tuple(found)
+@dataclass(frozen=True)
+class _Inertial:
+    """Inertia forces in a state; `acceleration` is that of the parameter, None where there is none."""
+
+    state: State
+    acceleration: Array | None
+
+    def of(self, mass: Mass) -> InertiaForce:
+        centre = self.state.centre(mass.centre)
+        force = tuple(-mass.mass * self._second(x) if mass.weighs else 0.0 for x in centre)
+        return InertiaForce(mass.link, force, place_of(centre), self._moment(mass))
+
+    def _moment(self, mass: Mass) -> Moment:
+        if not isinstance(mass.inertia, tuple):
+            inertia, angle = mass.moment_of_inertia, mass.link
+            return -inertia * self._second(self.state.angle(angle)) if mass.resists else 0.0
+        moment: Vector3 = (0.0, 0.0, 0.0)
+        for part in mass.inertia:
+            rate = (
+                self._of_spread(mass.link, part)
+                if isinstance(part, Spread)
+                else self._of_ring(mass.link, part)
+            )
+            moment = add(moment, times(-part.moment, rate))
+        return moment
+
+    def _of_spread(self, link: str, part: Spread) -> Vector3:
+        """Mass spread along u has the moment of momentum u x u', whose rate is u x u''."""
+        x, y, z = self.state.heading(link, part.direction)
+        return cross((x.value, y.value, z.value), (self._second(x), self._second(y), self._second(z)))
+
+    def _of_ring(self, link: str, part: About) -> Vector3:
+        """A ring has the moment of momentum (omega . e) e."""
+        x, y, z = (axis.lowered() for axis in self.state.heading(link, part.direction))
+        u, v, w = self.state.spin(link)
+        along = dot((u, v, w), (x, y, z))
+        return self._first(along * x), self._first(along * y), self._first(along * z)
+
+    def _second(self, jet: Jet) -> Number:
+        """Second derivative by time."""
+        straight = jet.derivative(2) * self.state.rate**2
+        return straight if self.acceleration is None else straight + jet.derivative(1) * self.acceleration
+
+    def _first(self, jet: Jet) -> Number:
+        """Derivative by time of what is itself a derivative by the parameter."""
+        straight = jet.derivative(1) * self.state.rate**2
+        return straight if self.acceleration is None else straight + jet.value * self.acceleration

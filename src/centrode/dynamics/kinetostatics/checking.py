@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy.typing as npt
 from centrode.dynamics.kinetostatics.finding import Found
 from centrode.dynamics.kinetostatics.solution import Forces
 from centrode.dynamics.kinetostatics.stacking import column
-from centrode.dynamics.pulls import Pull, total
+from centrode.dynamics.pulls import components, total
 from centrode.errors import Status
 from centrode.structure.positions import Entity
 
@@ -38,37 +39,44 @@ def _worst(found: Found, missing: Array, size: Array) -> float:
 
 
 def _equilibrium(forces: Forces) -> tuple[Array, Array]:
-    """What is missing to the equilibrium of every pin and link, moments about its first point; greatest force."""
-    system, mechanism = forces.system, forces.system.scheme.structure.mechanism
+    """What is missing to the equilibrium of every pin and link, moments about its first point; greatest force.
+
+    The centre of a sphere bears what the forces on a link leave, so that there its moments alone tell.
+    """
+    system = forces.system
     samples = system.shape[-1]
-    on: dict[Entity, list[Pull]] = {entity: [] for entity in system.scheme.structure.unknowns}
+    sums: dict[Entity, Sequence[Number]] = {entity: (0.0,) * 3 for entity in system.scheme.structure.unknowns}
     size: Number = 0.0
-    for pull in forces.all_pulls:
-        if pull.body in on:
-            on[pull.body].append(pull)
-        size = np.maximum(size, np.maximum(np.abs(pull.force[0]), np.abs(pull.force[1])))
-        size = np.maximum(size, np.abs(pull.moment) / system.scale)
+    for pull in forces.acting:
+        if pull.body in sums:
+            parts = system.on_link(pull.body.name, pull) if pull.body.kind == "link" else pull.force
+            sums[pull.body] = tuple(x + y for x, y in zip(sums[pull.body], parts, strict=False))
+        size = _greater(_greater(size, pull.force, 1.0), components(pull.moment), system.scale)
     missing: Number = 0.0
-    for entity, pulls in on.items():
-        point = next(iter(mechanism.links[entity.name].coordinates)) if entity.kind == "link" else entity.name
-        x, y, moment = total(pulls, system.at.points[point])
-        missing = np.maximum(missing, np.maximum(np.abs(x), np.abs(y)))
-        missing = np.maximum(missing, np.abs(moment) / system.scale) if entity.kind == "link" else missing
+    for left in sums.values():
+        missing = _greater(missing, left, 1.0)
     return column(missing, samples), column(size, samples)
+
+
+def _greater(size: Number, parts: Sequence[Number], unit: float) -> Number:
+    """The greatest of a size and of some numbers over their unit."""
+    for part in parts:
+        size = np.maximum(size, np.abs(part) / unit)
+    return size
 
 
 def _frame(found: Found) -> tuple[Array, Array]:
     """What the frame bears, less all loads and the inertia forces, which are minus the rate of momentum."""
     forces, scale = found.forces, found.forces.system.scale
     samples = forces.system.shape[-1]
-    borne, acting = total(forces.on_frame), total(found.outer.pulls)
-    missing: Number = 0.0
+    origin = forces.system.equilibrium.origin
+    (borne, turned), (acting, turning) = total(forces.on_frame, origin), total(found.outer.pulls, origin)
+    missing = _greater(0.0, [x - y for x, y in zip(borne, acting, strict=True)], 1.0)
+    pairs = zip(components(turned), components(turning), strict=True)
+    missing = _greater(missing, [x - y for x, y in pairs], scale)
     size: Number = 0.0
-    for k, unit in enumerate((1.0, 1.0, scale)):
-        missing = np.maximum(missing, np.abs(borne[k] - acting[k]) / unit)
     for pull in [*forces.on_frame, *found.outer.pulls]:
-        size = np.maximum(size, np.maximum(np.abs(pull.force[0]), np.abs(pull.force[1])))
-        size = np.maximum(size, np.abs(pull.moment_about((0.0, 0.0))) / scale)
+        size = _greater(_greater(size, pull.force, 1.0), components(pull.moment_about(origin)), scale)
     return column(missing, samples), column(size, samples)
 
 

@@ -8,10 +8,16 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.jets import Jet
+from centrode.dynamics.friction.labelled import (
+    friction_attributes,
+    friction_coordinates,
+    friction_variables,
+)
 from centrode.dynamics.kinetostatics.checking import checks_of
 from centrode.dynamics.kinetostatics.finding import Found
-from centrode.dynamics.kinetostatics.totals import totals_of
+from centrode.dynamics.kinetostatics.moving import rates_of
+from centrode.dynamics.kinetostatics.results import centre_forces
+from centrode.dynamics.kinetostatics.totals import joint_moments, totals_of
 from centrode.dynamics.reducer import Burden
 from centrode.errors import Status
 from centrode.kinematics.dataset import (
@@ -23,14 +29,17 @@ from centrode.kinematics.dataset import (
     named,
     units_of_drives,
 )
-from centrode.kinematics.paths import JETS
 from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
+SPATIAL = ("inertia_moment", "frame_moment", "shaking_moment")
+"""Moments that have components on the sphere."""
 GEAR_BODIES = ("first", "second", "carrier")
 DIMENSIONS = {
     "joint_force": ("side", "axis"),
+    "joint_moment": ("side", "axis"),
+    "centre_force": ("held", "axis"),
     "guide_force": ("guide", "axis"),
     "guide_normal": ("guide",),
     "guide_moment": ("guide",),
@@ -39,6 +48,10 @@ DIMENSIONS = {
     "rolling_force": ("rolling", "axis"),
     "rolling_normal": ("rolling",),
     "rolling_tangential": ("rolling",),
+    "friction_moment": ("bearing",),
+    "friction_force": ("guide",),
+    "friction_power": ("friction",),
+    "efficiency": (),
     "balancing": ("drive",),
     "inertia_force": ("link", "axis"),
     "inertia_moment": ("link",),
@@ -49,18 +62,21 @@ DIMENSIONS = {
 }
 
 
-def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
-    """The dataset of `reactions`."""
+def labelled(solved: Solved, burden: Burden, found: Found, whole: bool) -> xr.Dataset:
+    """The dataset of `reactions`; `whole` where the samples are a range, and works over it have a sense."""
     parts = found.parts | totals_of(found)
-    checks = checks_of(found, _rates(solved, found))
+    checks = checks_of(found, rates_of(solved, found.pace))
     # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
     absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
     undetermined = _masked(parts, found)
+    if "centre_force" in parts:
+        parts["joint_moment"] = joint_moments(found, parts["joint_force"])
     for values in parts.values():
         values[absent] = np.nan
     units = units_of_drives(solved)
     variables = {
-        name: named(name, ("sample", *DIMENSIONS[name]), values, units[0]) for name, values in parts.items()
+        name: named(name, ("sample", *_dimensions(name, values)), values, units[0])
+        for name, values in parts.items()
     }
     if len(set(units)) > 1:
         variables["balancing"][2]["units"] = ", ".join("N m" if unit == "rad" else "N" for unit in units)
@@ -71,23 +87,26 @@ def labelled(solved: Solved, burden: Burden, found: Found) -> xr.Dataset:
     variables["determined"] = named("determined", ("side",), sides)
     attributes = attributes_of(solved) | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
-    return xr.Dataset(variables, coords=_coordinates(solved, burden, found), attrs=attributes)
+    coordinates = _coordinates(solved, burden, found)
+    if found.friction is not None:
+        rubbed, powers = found.friction.rubbed, found.friction.powers
+        variables |= friction_variables(solved, rubbed, powers, whole)
+        coordinates |= friction_coordinates(rubbed.contacts)
+        attributes |= friction_attributes(solved, rubbed, powers, whole)
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
-def _rates(solved: Solved, found: Found) -> Array:
-    """Speeds of the drives (samples, drives)."""
-    path = solved.ready.kinematics.path
-    if not path.by_time:
-        return found.pace.moving.rate[:, None]
-    time = Jet.variable(solved.span.time, 1)
-    values = path.drive_values(JETS, time).values()
-    speeds = [value.derivative(1) if isinstance(value, Jet) else 0.0 for value in values]
-    return np.stack([np.broadcast_to(speed, solved.span.time.shape) for speed in speeds], axis=-1)
+def _dimensions(name: str, values: Array) -> tuple[str, ...]:
+    known = DIMENSIONS[name]
+    return (*known, "axis") if name in SPATIAL and values.ndim > 1 + len(known) else known
 
 
 def _statuses(solved: Solved, found: Found) -> dict[str, Variable]:
     motion = judgements_of(solved, ())["status"]
-    flags = {key: motion[2][key] for key in ("flag_values", "flag_meanings")}
+    flags = {
+        "flag_values": np.array(list(Status), dtype=np.int8),
+        "flag_meanings": " ".join(status.name.lower() for status in Status),
+    }
     dimensions, values, attributes = named("reaction_status", ("sample",), found.status)
     loss = found.forces.system.inverse.loss[0]
     return {
@@ -107,6 +126,8 @@ def _coordinates(solved: Solved, burden: Burden, found: Found) -> dict[str, Any]
     coordinates["side"] = labels_of(tuple(side.label for side in found.sides))
     coordinates["side_point"] = (("side",), np.array([side.point for side in found.sides], dtype=str))
     coordinates["side_link"] = (("side",), np.array([side.body for side in found.sides], dtype=str))
+    if "centre_force" in found.parts:
+        coordinates["held"] = labels_of(tuple(centre_forces(found.forces)))
     if mechanism.gears:
         coordinates["gear"] = labels_of(tuple(gear.id for gear in mechanism.gears))
         coordinates["gear_body"] = labels_of(GEAR_BODIES)
@@ -134,6 +155,7 @@ def _names(found: Found) -> dict[str, list[str]]:
     wheels = [f"rolling {wheel.id}" for wheel in mechanism.rolling]
     return {
         "joint_force": [side.label for side in found.sides],
+        "centre_force": [f"centre on {name}" for name in centre_forces(found.forces)],
         "guide_force": [f"guide {guide}" for guide in guides],
         "guide_normal": [f"guide {guide}" for guide in guides],
         "guide_moment": [f"moment of guide {guide}" for guide in guides],

@@ -8,11 +8,13 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.jets import Jet
 from centrode.dynamics.reducer import Burden, Reducer
 from centrode.dynamics.several import refuse_drive_in_formulas
-from centrode.dynamics.solution import solution_of
 from centrode.dynamics.states import Moving
-from centrode.dynamics.steady import turned_at
+from centrode.dynamics.steady_motion.solution import solution_of
+from centrode.dynamics.steady_motion.steady import turned_at
+from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import Span, is_uniform
@@ -61,6 +63,17 @@ def steady_span(
         cycle.sense * speed.acceleration(turned),
     )
     return found.prepared, span, _along(span, "steady")
+
+
+def rates_of(solved: Solved, pace: Pace) -> Array:
+    """Speeds of the drives (samples, drives)."""
+    path = solved.ready.kinematics.path
+    if not path.by_time:
+        return pace.moving.rate[:, None]
+    time = Jet.variable(solved.span.time, 1)
+    values = path.drive_values(JETS, time).values()
+    speeds = [value.derivative(1) if isinstance(value, Jet) else 0.0 for value in values]
+    return np.stack([np.broadcast_to(speed, solved.span.time.shape) for speed in speeds], axis=-1)
 
 
 def _along(span: Span, source: str) -> Pace:

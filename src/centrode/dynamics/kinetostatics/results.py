@@ -11,9 +11,10 @@ import numpy.typing as npt
 from centrode.dynamics.kinetostatics.sides import Side, side_forces
 from centrode.dynamics.kinetostatics.solution import Forces
 from centrode.dynamics.kinetostatics.stacking import columns, tables
-from centrode.dynamics.pulls import Pull
+from centrode.dynamics.pulls import Pull, Vector
 from centrode.structure.constraints import Constraint, NoTurning, PointOnGuide, is_drive
 from centrode.structure.gearing import Straight
+from centrode.structure.positions import FRAME
 from centrode.structure.wheels import Contact, GearRatio, NoSlip
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -27,18 +28,30 @@ def reactions_of(forces: Forces, sides: Sequence[Side]) -> dict[str, Array]:
         kind: [c for c in structure.constraints if isinstance(c, kind)]
         for kind in (PointOnGuide, GearRatio, Contact, NoSlip)
     }
-    samples = forces.system.shape[-1]
+    samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
     drives = [_value(forces, c) for c in structure.constraints if is_drive(c)]
     found = {
-        "joint_force": tables([*side_forces(forces, sides).values()], 2, samples),
+        "joint_force": tables([*side_forces(forces, sides).values()], axes, samples),
         "balancing": columns(drives, samples),
     }
+    if axes == 3:
+        found["centre_force"] = tables([*centre_forces(forces).values()], axes, samples)
     if of_kind[PointOnGuide]:
         found |= _of_guides(forces, of_kind[PointOnGuide])
     if of_kind[GearRatio]:
         found |= _of_gears(forces, of_kind[GearRatio])
     if of_kind[Contact]:
         found |= _of_wheels(forces, of_kind[Contact], of_kind[NoSlip])
+    return found
+
+
+def centre_forces(forces: Forces) -> dict[str, Vector]:
+    """On the sphere: force of its centre on each link, and on each pin of several links that loads act on."""
+    found = {pull.body.name: pull.force for pull in forces.centre if pull.body.name != FRAME}
+    for one in forces.pressing:
+        if one.bearer == FRAME:
+            known = found.get(f"pin {one.point}", forces.system.equilibrium.origin)
+            found[f"pin {one.point}"] = tuple(x - y for x, y in zip(known, one.force, strict=True))
     return found
 
 
@@ -58,12 +71,10 @@ def _of_guides(forces: Forces, guides: Sequence[Constraint]) -> dict[str, Array]
     units = [_force_of(forces.system.pulls[c, 0]) for c in guides]
     vectors = [[value * x for x in unit] for value, unit in zip(normal, units, strict=True)]
     moments = [_value(forces, turning.get(c.guide)) for c in guides if isinstance(c, PointOnGuide)]
-    samples = forces.system.shape[-1]
-    return {
-        "guide_force": tables(vectors, 2, samples),
-        "guide_normal": columns(normal, samples),
-        "guide_moment": columns(moments, samples),
-    }
+    samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
+    found = {"guide_force": tables(vectors, axes, samples), "guide_normal": columns(normal, samples)}
+    # the guides of the sphere have no links of their own
+    return found if axes == 3 else found | {"guide_moment": columns(moments, samples)}
 
 
 def _of_gears(forces: Forces, gears: Sequence[Constraint]) -> dict[str, Array]:
@@ -74,10 +85,12 @@ def _of_gears(forces: Forces, gears: Sequence[Constraint]) -> dict[str, Array]:
         weights = gear.weights(forces.system.numbers)
         moments.append([value * weights[link] for link in gear.links])
         force = forces.system.pulls[gear, 0][0].force
-        known = gear.gear in forces.system.teeth.axes
+        # of bevel wheels that turn alike the moment alone is known
+        told = any(not isinstance(x, float) or x for x in force)
+        known = told and gear.gear in forces.system.teeth.axes
         teeth.append([value * x if known else np.nan for x in force])
-    samples = forces.system.shape[-1]
-    return {"gear_moment": tables(moments, 3, samples), "tooth_force": tables(teeth, 2, samples)}
+    samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
+    return {"gear_moment": tables(moments, 3, samples), "tooth_force": tables(teeth, axes, samples)}
 
 
 def _of_wheels(

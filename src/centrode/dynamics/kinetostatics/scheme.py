@@ -2,7 +2,8 @@
 
 Unknowns are the multipliers of J' lambda = -Q: the force of a constraint is its multiplier times its row. A
 pin has no mass, so a link of each pin, its host, bears whatever else acts on the pin: the force between pin and
-host is left to the pin's own balance, and three equations a link remain.
+host is left to the pin's own balance, and three equations a link remain. The host's own two rows are the axes
+of that balance, along the sphere as in the plane.
 """
 
 from __future__ import annotations
@@ -76,9 +77,14 @@ class Scheme:
 
 
 def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
-    """The unknown that bears each coordinate of each pin: the first that there is."""
+    """The unknowns that bear each pin: both rows of the first link that has both."""
     found: dict[Axis, Unknown] = {}
+    whole = set(kept)
     for constraint, row in kept:
-        if isinstance(constraint, PointInLink) and constraint.point in points:
+        if (
+            isinstance(constraint, PointInLink)
+            and constraint.point in points
+            and (constraint, 1 - row) in whole
+        ):
             found.setdefault((constraint.point, row), (constraint, row))
     return found

@@ -6,12 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-import numpy as np
-
 from centrode.dynamics.kinetostatics.solution import Forces
-from centrode.dynamics.pulls import Pull
+from centrode.dynamics.pulls import Pull, Vector
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.structure.constraints import PointInLink
+from centrode.structure.positions import Entity
 
 Number: TypeAlias = Any
 
@@ -47,29 +46,32 @@ def sides_of(mechanism: Mechanism) -> tuple[Side, ...]:
     return tuple(found)
 
 
-def side_forces(forces: Forces, sides: Iterable[Side]) -> dict[Side, tuple[Number, Number]]:
+def side_forces(forces: Forces, sides: Iterable[Side]) -> dict[Side, Vector]:
     """Force of the pin on the body at each side [N], in the frame's axes."""
-    found: dict[Side, tuple[Number, Number]] = {}
-    for side in sides:
-        if side.body == FRAME:
-            found[side] = _on_frame(forces, side.point)
-        else:
-            parts = [_multiplier(forces, PointInLink(side.point, side.body), row) for row in range(2)]
-            found[side] = -parts[0], -parts[1]
+    origin = forces.system.equilibrium.origin
+    return {
+        side: _sum(
+            pulls_on_point(forces, side.point) if side.body == FRAME else _on_body(forces, side), origin
+        )
+        for side in sides
+    }
+
+
+def _on_body(forces: Forces, side: Side) -> list[Pull]:
+    """What the pin does to a link: by being its point, and on the sphere by being pressed against it alone."""
+    tie = PointInLink(side.point, side.body)
+    known = [(tie, row) for row in range(tie.size) if (tie, row) in forces.multipliers]
+    tied = [pull for unknown in known for pull in forces.pulls(unknown) if pull.body.kind == "link"]
+    pressed = [pull for one in forces.pressing if one.point == side.point for pull in one.pulls]
+    return [*tied, *(pull for pull in pressed if pull.body == Entity("link", side.body))]
+
+
+def _sum(pulls: Iterable[Pull], origin: Vector) -> Vector:
+    """Sum of forces; of none, nothing."""
+    found = origin
+    for pull in pulls:
+        found = tuple(x + y for x, y in zip(found, pull.force, strict=True))
     return found
-
-
-def _multiplier(forces: Forces, constraint: PointInLink, row: int) -> Number:
-    return forces.multipliers.get((constraint, row), 0.0)
-
-
-def _on_frame(forces: Forces, point: str) -> tuple[Number, Number]:
-    """What a pin passes on to the frame: everything that acts on it."""
-    x: Number = np.zeros(forces.system.shape)
-    y: Number = np.zeros(forces.system.shape)
-    for pull in pulls_on_point(forces, point):
-        x, y = x + pull.force[0], y + pull.force[1]
-    return x, y
 
 
 def pulls_on_point(forces: Forces, point: str) -> list[Pull]:

@@ -10,11 +10,12 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.dynamics.kinetostatics.constraint_pulls import positions_of, pulls_of
+from centrode.dynamics.kinetostatics.constraint_pulls import pulls_of
+from centrode.dynamics.kinetostatics.equilibrium import Equilibrium, Foot, Pressing, equilibrium_of
 from centrode.dynamics.kinetostatics.inverse import Inverse, inverse_of
 from centrode.dynamics.kinetostatics.scheme import Axis, Scheme, Unknown
 from centrode.dynamics.kinetostatics.teeth import Teeth
-from centrode.dynamics.pulls import Pull, on_frame
+from centrode.dynamics.pulls import Pull, Vector, on_frame
 from centrode.dynamics.states import State
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import Positions
@@ -39,14 +40,34 @@ class Forces:
 
     def pulls(self, unknown: Unknown) -> list[Pull]:
         """Forces and moments of one scalar constraint on all it ties together."""
-        value = self.multipliers[unknown]
-        return [pull.times(value) for pull in self.system.pulls[unknown]]
+        return self._tied[unknown]
+
+    @cached_property
+    def _tied(self) -> dict[Unknown, list[Pull]]:
+        pulls = self.system.pulls
+        return {one: [pull.times(value) for pull in pulls[one]] for one, value in self.multipliers.items()}
+
+    @cached_property
+    def pressing(self) -> tuple[Pressing, ...]:
+        """What of loads on pins does not lie along a sphere."""
+        mechanism = self.system.scheme.structure.mechanism
+        return self.system.equilibrium.pressing(self.outer, mechanism, self.system.at)
+
+    @cached_property
+    def acting(self) -> tuple[Pull, ...]:
+        """Everything that acts on any body but the centre of a sphere."""
+        tied = [pull for pulls in self._tied.values() for pull in pulls]
+        return (*tied, *self.outer, *(pull for one in self.pressing for pull in one.pulls))
+
+    @cached_property
+    def centre(self) -> tuple[Pull, ...]:
+        """What the centre of a sphere exerts on each link, and the opposite on the frame."""
+        return self.system.equilibrium.centre(self.acting, self.system.scheme.structure.mechanism)
 
     @cached_property
     def all_pulls(self) -> tuple[Pull, ...]:
         """Everything that acts on any body."""
-        inner = [pull for unknown in self.multipliers for pull in self.pulls(unknown)]
-        return (*inner, *self.outer)
+        return (*self.acting, *self.centre)
 
     @cached_property
     def on_frame(self) -> list[Pull]:
@@ -57,13 +78,14 @@ class Forces:
 
 @dataclass(frozen=True)
 class Kinetostatics:
-    """J' lambda = -Q at the positions of a state (planar, one mechanism): any Q, without building J again.
+    """J' lambda = -Q at the positions of a state (one mechanism): any Q, without building J again.
 
     Attributes
     ----------
     scheme : what is solved for
     numbers : the mechanism's dimensions
     teeth : where gears mesh
+    equilibrium : what the space makes of forces
     scale : the mechanism's greatest length [m], by which moments are measured
     at : plain positions
     pulls : unknown -> forces and moments of its row, at a multiplier of one
@@ -73,6 +95,7 @@ class Kinetostatics:
     scheme: Scheme
     numbers: Dimensions
     teeth: Teeth
+    equilibrium: Equilibrium
     scale: float
     at: Positions
     pulls: Mapping[Unknown, tuple[Pull, ...]]
@@ -81,14 +104,15 @@ class Kinetostatics:
     @classmethod
     def of(cls, scheme: Scheme, numbers: Dimensions, state: State, teeth: Teeth) -> Kinetostatics:
         """The equations at the positions of a state."""
-        at = positions_of(state, numbers)
+        space = equilibrium_of(state.mechanism)
+        at = space.positions(state, numbers)
         pulls: dict[Unknown, tuple[Pull, ...]] = {}
         with np.errstate(all="ignore"):
             for constraint in scheme.structure.constraints:
-                found = pulls_of(constraint, state.mechanism, numbers, at, teeth)
+                found = pulls_of(constraint, state.mechanism, numbers, at, teeth, space)
                 pulls |= {(constraint, row): each for row, each in enumerate(found)}
         shape = (1, len(state.parameter))
-        return cls(scheme, numbers, teeth, float(numbers.scale), at, pulls, shape)
+        return cls(scheme, numbers, teeth, space, space.scale(numbers), at, pulls, shape)
 
     @cached_property
     def inverse(self) -> Inverse:
@@ -97,7 +121,7 @@ class Kinetostatics:
         matrix = np.zeros((size, len(unknowns), *self.shape))
         for column, unknown in enumerate(unknowns):
             self._add(matrix[:, column], self.pulls[unknown])
-            if unknown[0].angular:
+            if self.equilibrium.by_moment(unknown[0]):
                 matrix[:, column] *= self.scale
         return inverse_of(np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1))))
 
@@ -116,7 +140,8 @@ class Kinetostatics:
         solved = self.inverse.times(-self.right_side(outer))
         multipliers: dict[Unknown, Number] = {}
         for row, unknown in enumerate(self.scheme.unknowns):
-            multipliers[unknown] = solved[row] * self.scale if unknown[0].angular else solved[row]
+            turns = self.equilibrium.by_moment(unknown[0])
+            multipliers[unknown] = solved[row] * self.scale if turns else solved[row]
         multipliers |= self._at_hosts(multipliers, outer)
         return Forces(self, multipliers, tuple(outer))
 
@@ -130,9 +155,15 @@ class Kinetostatics:
             if pull.body.kind == "point":
                 for axis in range(2):
                     place = pull.body.name, axis
-                    if place in sums and not _nothing(pull.force[axis]):
-                        sums[place] = sums[place] + pull.force[axis] * value
+                    along = _along(pull.force, self._host_axis(place)) if place in sums else 0.0
+                    if not _nothing(along):
+                        sums[place] = sums[place] + along * value
         return {unknown: -sums[place] for place, unknown in self.scheme.hosts.items()}
+
+    def _host_axis(self, place: Axis) -> Vector:
+        """Direction in which a pin's host bears it: that of its row, a unit vector square to that of its other row."""
+        pulls = self.pulls[self.scheme.hosts[place]]
+        return next(pull.force for pull in pulls if pull.body.kind == "point")
 
     def _add(self, column: Array, pulls: Iterable[Pull]) -> None:
         """Add what pulls do to each equation; the frame has none."""
@@ -142,28 +173,41 @@ class Kinetostatics:
                     column[row] += value
 
     def _entries(self, pull: Pull) -> list[tuple[int, Number]]:
-        (x, y), scheme = pull.force, self.scheme
+        name, scheme = pull.body.name, self.scheme
         if pull.body.kind == "link":
-            return self._on_link(pull.body.name, pull) if pull.body.name in scheme.links else []
-        found: list[tuple[int, Number]] = []
-        for axis, force in enumerate(((x, 0.0), (0.0, y))):
-            place = pull.body.name, axis
-            if place in scheme.hosts:
-                host = scheme.hosts[place][0].link  # type: ignore[attr-defined]
-                found += self._on_link(host, Pull(pull.body, force, pull.at))
-            elif place in scheme.loose:
-                found.append((3 * len(scheme.links) + scheme.loose.index(place), force[axis]))
-        return found
+            return self._on_link(name, pull) if name in scheme.links else []
+        if (name, 0) in scheme.hosts:
+            return self._on_link(scheme.hosts[name, 0][0].link, pull)  # type: ignore[attr-defined]
+        if (name, 0) not in scheme.loose:
+            return []
+        row, axes = 3 * len(scheme.links) + scheme.loose.index((name, 0)), self._pin_axes(name)
+        return [(row + k, _along(pull.force, axis)) for k, axis in enumerate(axes)]
+
+    def _pin_axes(self, point: str) -> Sequence[Vector]:
+        return self.equilibrium.pin_axes(self.at.points[point])
 
     def _on_link(self, link: str, pull: Pull) -> list[tuple[int, Number]]:
-        """Force and moment about the link's first point, moments measured by the greatest length."""
-        row, mechanism = self.scheme.first_row(link), self.scheme.structure.mechanism
-        first = self.at.points[next(iter(mechanism.links[link].coordinates))]
-        return [
-            (row, pull.force[0]),
-            (row + 1, pull.force[1]),
-            (row + 2, pull.moment_about(first) / self.scale),
-        ]
+        row = self.scheme.first_row(link)
+        return [(row + k, value) for k, value in enumerate(self.on_link(link, pull))]
+
+    def on_link(self, link: str, pull: Pull) -> tuple[Number, Number, Number]:
+        """What a pull does to the three equations of its link [N]: about its first point, by the greatest length."""
+        return self.equilibrium.on_link(pull, self._feet[link], self.scale)
+
+    @cached_property
+    def _feet(self) -> dict[str, Foot]:
+        links = self.scheme.structure.mechanism.links
+        firsts = {name: next(iter(link.coordinates)) for name, link in links.items()}
+        return {name: self.equilibrium.foot(self.at.points[first]) for name, first in firsts.items()}
+
+
+def _along(force: Vector, axis: Vector) -> Number:
+    """Component of a force; a component that is plainly zero costs nothing."""
+    found: Number = 0.0
+    for x, u in zip(force, axis, strict=True):
+        if not _nothing(x) and not _nothing(u):
+            found = found + (x if isinstance(u, float) and u == 1.0 else x * u)
+    return found
 
 
 def _nothing(value: Number) -> bool:

@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from centrode.algebra.text import SCALARS
 from centrode.dynamics.amounts import Situation
-from centrode.dynamics.quadrature import NODES
 from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.rows import (
     BACKWARDS,
@@ -27,6 +26,7 @@ from centrode.dynamics.simulation.rows import (
 )
 from centrode.dynamics.simulation.sorts import FRICTION, OTHER, SORTS, STORED, of_time
 from centrode.dynamics.simulation.tracks import Tracks
+from centrode.dynamics.steady_motion.quadrature import NODES
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

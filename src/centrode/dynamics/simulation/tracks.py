@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from centrode.dynamics.quadrature import NODES, resolved
 from centrode.dynamics.simulation.rows import COORDINATE, EACH, FORMULAS, INERTIA, SLOPE, Rows
+from centrode.dynamics.steady_motion.quadrature import NODES, resolved
 from centrode.errors import InputError
 from centrode.locale import _
 

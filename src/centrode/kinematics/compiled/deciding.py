@@ -92,7 +92,7 @@ def refuse_untraceable(ready: Ready, span: Span) -> None:
         if isinstance(group, Newton):
             if kinematics.path.by_time:
                 raise Untraceable(mark("groups of higher class with several drives"))
-            if "gears" in kinematics.numbers.space.lacks:
+            if "rolling" in kinematics.numbers.space.lacks:
                 raise Untraceable(mark("groups of higher class on the sphere"))
             if pattern_of(group).free > MOST_FREE:
                 raise Untraceable(mark("a group of higher class with very many unknowns"))

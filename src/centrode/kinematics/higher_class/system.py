@@ -75,7 +75,7 @@ class System:
     @cached_property
     def _turns(self) -> dict[str, int]:
         """The free coordinate that turns a link, where turns are counted."""
-        if "gears" in self.numbers.space.lacks:
+        if "rolling" in self.numbers.space.lacks:
             return {}  # no turns are counted there
         return {f.entity.name: f.turn for f in self.pattern.follows if f.entity.kind == "link"}
 

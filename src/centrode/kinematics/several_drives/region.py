@@ -11,7 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode import __version__
-from centrode.errors import InputError, NotComputedYet, Status
+from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet, Status
 from centrode.kinematics.dataset import labels_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.several_drives.grids import Lines, cells_of, lines_along, reached_from
@@ -97,8 +97,8 @@ def reachable_region(
         ),
         **_border(prepared, nodes, (along_first, along_second), reached),
     }
-    variables["status"][2]["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
-    variables["status"][2]["flag_meanings"] = " ".join(s.name.lower() for s in Status)
+    variables["status"][2]["flag_values"] = np.array([s.value for s in STATUSES_OF_MOTION], dtype=np.int8)
+    variables["status"][2]["flag_meanings"] = " ".join(s.name.lower() for s in STATUSES_OF_MOTION)
     return _dataset(prepared, variables, (first, second), nodes, others)
 
 

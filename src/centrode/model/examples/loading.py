@@ -7,8 +7,8 @@ from typing import Literal, TypeAlias, overload
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam_files import parse_cam, read_cam
-from centrode.model.cams import Cam
+from centrode.model.cams.description import Cam
+from centrode.model.cams.files import parse_cam, read_cam
 from centrode.model.examples import example_names, example_text
 from centrode.model.files import parse_mechanism, read_mechanism
 from centrode.model.mechanism import Mechanism

@@ -1,0 +1,193 @@
+"""The flywheel of a machine: how much inertia keeps its speed as even as asked, and how great a wheel that is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from centrode.dynamics.steady_motion.balance import Mean
+from centrode.dynamics.steady_motion.by_source import needed_by_source
+from centrode.dynamics.steady_motion.sizes import (
+    SOURCE_DENSITY,
+    SOURCE_INNER,
+    SOURCE_WIDTH,
+    Wheel,
+    by_source,
+    wheel,
+)
+from centrode.dynamics.steady_motion.solution import Solution, in_other_mean, solution_of
+from centrode.dynamics.steady_motion.speeds import Tangents, with_inertia
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.machines import FlywheelShape
+from centrode.model.mechanism import Mechanism
+
+__all__ = ["Flywheel", "flywheel", "flywheel_of"]
+
+
+@dataclass(frozen=True)
+class Flywheel:
+    """A machine's energies over a cycle and the flywheel it needs; what is None belongs to a fluctuation not given.
+
+    Angles turned [rad] count from the initial position in the sense in which the drive turns.
+
+    Attributes
+    ----------
+    mean : "middle" or "time"
+        What the mean speed is: half of greatest plus least, or turns over time.
+    mean_speed, fluctuation : float [rad/s], [1]
+    turns : int
+        Of the drive in a cycle.
+    work_of_loads, driving_moment : float [J], [N m]
+        Over the cycle; mean over the cycle.
+    error : float [J]
+        Bound of the error of the works.
+    energy_greatest, energy_least : float [J]
+        Of the change of energy of group I, at the angles `greatest_at` and `least_at` [rad].
+    inertia_first_order, inertia_by_tangents, inertia : float [kg m^2]
+        J_I that is needed: to first order, by Wittenbauer's diagram, exactly for `mean`.
+    inertia_in_time : float [kg m^2]
+        Exactly where the mean speed is the one in time.
+    present : float [kg m^2]
+        Of the shafts, reduced to the drive.
+    added : float [kg m^2]
+        Of the flywheel on its own shaft, exactly; 0 where none is needed.
+    added_first_order : float [kg m^2]
+        The same by `inertia_first_order`.
+    least_speed, greatest_speed, time_of_cycle : float [rad/s], [rad/s], [s]
+        With the flywheel, exactly.
+    obtained : float
+        Coefficient of fluctuation that the energy equation gives with this inertia: a route of its own.
+    tangents : Tangents
+    rim, disc : Wheel or None
+        Of `added`; None where no flywheel is needed.
+    source_rim, source_disc : Wheel or None
+        Of `added_first_order` by the coursework's coefficients, where material and proportions are its own; their
+        `inertia` is what these sizes really have.
+    """
+
+    mean: Mean
+    mean_speed: float
+    fluctuation: float | None
+    turns: int
+    work_of_loads: float
+    driving_moment: float
+    error: float
+    energy_greatest: float
+    greatest_at: float
+    energy_least: float
+    least_at: float
+    present: float
+    least_speed: float
+    greatest_speed: float
+    time_of_cycle: float
+    obtained: float
+    inertia_first_order: float | None = None
+    inertia_by_tangents: float | None = None
+    inertia: float | None = None
+    inertia_in_time: float | None = None
+    added: float | None = None
+    added_first_order: float | None = None
+    tangents: Tangents | None = None
+    rim: Wheel | None = None
+    disc: Wheel | None = None
+    source_rim: Wheel | None = None
+    source_disc: Wheel | None = None
+
+
+def flywheel(mechanism: Mechanism, mean: Mean = "middle") -> Flywheel:
+    """The flywheel that gives a machine the fluctuation its `[machine]` asks for.
+
+    Parameters
+    ----------
+    mean : "middle" or "time"
+        What `mean_speed` is: half of greatest plus least speed, or turns over time.
+
+    Returns
+    -------
+    Flywheel
+        The inertia needed in the coursework's way, by Wittenbauer's diagram and exactly, what it is taken from,
+        and sizes.
+
+    Raises
+    ------
+    InputError
+        No machine or no fluctuation, no drive that turns, nothing that moves or resists, loads that drive.
+    MotionError
+        The mechanism does not turn fully.
+
+    Notes
+    -----
+    Works are exact to `error`; the exact speed has the fluctuation and the mean to rounding, some 1e-14.
+    """
+    if mechanism.machine is not None and mechanism.machine.fluctuation is None:
+        raise InputError(
+            "[machine]",
+            _("fluctuation is missing"),
+            _("give the one that is allowed, such as fluctuation = 0.05"),
+        )
+    return flywheel_of(solution_of(mechanism, mean))
+
+
+def flywheel_of(found: Solution) -> Flywheel:
+    """What a solution says of energies and flywheel; what needs a fluctuation is None without one."""
+    machine, energies = found.machine, found.by_source.energies
+    ends = found.speed.extremes()
+    # by the energy equation for this inertia alone, not by the tangents that gave it
+    checked = with_inertia(found.speed.balance, machine.mean_speed, found.speed.inertia, found.kind)
+    common = Flywheel(
+        mean=found.kind,
+        mean_speed=machine.mean_speed,
+        fluctuation=machine.fluctuation,
+        turns=found.cycle.turns,
+        work_of_loads=found.speed.balance.work_of_loads,
+        driving_moment=found.speed.balance.driving_moment,
+        error=found.speed.balance.error,
+        energy_greatest=energies.greatest,
+        greatest_at=energies.at_greatest,
+        energy_least=energies.least,
+        least_at=energies.at_least,
+        present=found.present,
+        least_speed=ends.least,
+        greatest_speed=ends.greatest,
+        time_of_cycle=found.cycle.period / found.speed.mean("time"),
+        obtained=checked.extremes().range / machine.mean_speed,
+    )
+    if machine.fluctuation is None or found.needed is None or found.tangents is None:
+        return common
+    by_source = needed_by_source(energies, machine.mean_speed, machine.fluctuation)
+    in_time = found if found.kind == "time" else in_other_mean(found, "time")
+    shape = machine.flywheel
+    added, added_first_order = (
+        max(0.0, (inertia - found.present) / shape.ratio**2) for inertia in (found.needed, by_source)
+    )
+    speed = abs(shape.ratio) * ends.greatest
+    rim, disc = (_sized(added, shape, inner, speed) for inner in (shape.inner, 0.0))
+    source_rim, source_disc = (_by_source(added_first_order, shape, speed, rim=rim) for rim in (True, False))
+    return replace(
+        common,
+        inertia_first_order=by_source,
+        inertia_by_tangents=found.tangents.inertia,
+        inertia=found.needed,
+        inertia_in_time=in_time.needed,
+        added=added,
+        added_first_order=added_first_order,
+        tangents=found.tangents,
+        rim=rim,
+        disc=disc,
+        source_rim=source_rim,
+        source_disc=source_disc,
+    )
+
+
+def _sized(inertia: float, shape: FlywheelShape, inner: float, speed: float) -> Wheel | None:
+    if inertia <= 0.0:
+        return None
+    return wheel(inertia, shape.density, shape.width, inner, speed, shape.rim_speed)
+
+
+def _by_source(inertia: float, shape: FlywheelShape, speed: float, *, rim: bool) -> Wheel | None:
+    """By the coursework's coefficients, which belong to its own density and proportions."""
+    its_own = (shape.density, shape.width) == (SOURCE_DENSITY, SOURCE_WIDTH)
+    if inertia <= 0.0 or not its_own or (rim and shape.inner != SOURCE_INNER):
+        return None
+    return by_source(inertia, speed, rim=rim)

@@ -1,0 +1,119 @@
+"""Outlines of a cam or a shoe as DXF: splines and the points they go through, in layers, in millimetres."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import lazy_loader
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.present.cams.outline_strokes import STROKES, grouped
+
+if TYPE_CHECKING:
+    from centrode.cams.profiles.outlines import Outline
+
+VERSION = "R2010"
+MILLIMETRES = 4
+DEGREE = 3
+CENTRE = 4.0
+"""Half the length of the strokes of the centre mark [mm]."""
+TEXT = 3.5
+"""Height of the title [mm]."""
+CREASE = 1e-9
+"""Pieces whose ends are nearer than this share of a metre are one polyline."""
+
+_ezdxf = functools.partial(lazy_loader.load, "ezdxf")  # an extra, and slow to import
+
+
+def write_outlines_dxf(outlines: Sequence[Outline], path: Path, title: str = "") -> None:
+    """Write outlines as DXF (AutoCAD 2010), one unit a millimetre.
+
+    Each piece is a cubic spline through its points with its own slopes at both ends, on the layer of its name; the
+    points stand as polylines on the layer `points-` of it. The centre is marked, the title stands below. The same
+    outlines give the same bytes.
+
+    Raises
+    ------
+    InputError
+        The extra `drawings` is not installed.
+    """
+    if find_spec("ezdxf") is None:
+        raise InputError(
+            str(path),
+            _("DXF needs ezdxf, which is not installed"),
+            _('install it with pip install "centrode[drawings]"'),
+        )
+    library = _ezdxf()
+    with _fixed(library):
+        document = library.new(VERSION, units=MILLIMETRES)
+        document.header["$MEASUREMENT"] = 1
+        space = document.modelspace()
+        for layer, pieces in grouped(outlines).items():
+            stroke = STROKES[layer]
+            document.layers.add(layer, color=stroke.number)
+            document.layers.add(f"points-{layer}", color=stroke.number)
+            for piece in pieces:
+                _spline(space, piece, layer)
+            for places in _joined(pieces):
+                space.add_lwpolyline(places.tolist(), dxfattribs={"layer": f"points-{layer}"})
+        _centre(document, space)
+        _title(document, space, outlines, title)
+        document.saveas(path, encoding="utf-8")
+
+
+@contextmanager
+def _fixed(library: Any) -> Iterator[None]:
+    """Context in which files carry no time and no chance identity."""
+    options = library.options
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
+
+
+def _spline(space: Any, piece: Outline, layer: str) -> None:
+    ends = 1e3 * piece.slopes[[0, -1]]
+    angles = piece.phi - piece.phi[0]  # knots that begin at 0: some readers know no others
+    curve = make_interp_spline(angles, 1e3 * piece.places, k=DEGREE, bc_type=([(1, ends[0])], [(1, ends[1])]))
+    controls = np.column_stack([curve.c, np.zeros(len(curve.c))])
+    space.add_open_spline(
+        controls.tolist(), degree=DEGREE, knots=curve.t.tolist(), dxfattribs={"layer": layer}
+    )
+
+
+def _joined(pieces: Sequence[Outline]) -> list[np.ndarray[Any, Any]]:
+    """Points [mm] of pieces, those end to end together."""
+    found: list[np.ndarray[Any, Any]] = []
+    for piece in pieces:
+        places = 1e3 * piece.places
+        if found and np.abs(found[-1][-1] - places[0]).max() < 1e3 * CREASE:
+            found[-1] = np.concatenate([found[-1], places[1:]])
+        else:
+            found.append(places)
+    return found
+
+
+def _centre(document: Any, space: Any) -> None:
+    document.layers.add("centre", color=7)
+    for end in ((CENTRE, 0.0), (0.0, CENTRE)):
+        space.add_line((-end[0], -end[1]), end, dxfattribs={"layer": "centre"})
+
+
+def _title(document: Any, space: Any, outlines: Sequence[Outline], title: str) -> None:
+    if not title:
+        return
+    document.layers.add("title", color=7)
+    places = 1e3 * np.concatenate([one.places for one in outlines])
+    left, bottom = float(places[:, 0].min()), float(places[:, 1].min())
+    text = space.add_text(title, height=TEXT, dxfattribs={"layer": "title"})
+    text.set_placement((left, bottom - 3.0 * TEXT))

@@ -1,0 +1,104 @@
+"""Zhukovsky's lever as a page: the turned velocity diagram with all forces at the images of their places."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from centrode.analysis.graphic.board import round_scale
+from centrode.locale import _
+from centrode.present import signs
+from centrode.present.diagram_drawing import flat, typeset
+from centrode.present.forces.force_signs import force_arrows, moment_arc
+from centrode.present.page import Page, View, new_page
+from centrode.present.scene import corners
+from centrode.present.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
+from centrode.present.shown import shown_as
+from centrode.present.style import INK, pens
+from centrode.study.forces.force_polygons import lever_lines
+
+if TYPE_CHECKING:
+    from centrode.dynamics.force_polygons.lever import Lever
+    from centrode.dynamics.force_polygons.result import ForcePolygons
+
+WIDE = 0.68
+"""Share of the sheet that the lever has."""
+TOGETHER = 0.7
+"""Images nearer than this [mm] get one name."""
+TINY = 1e-12
+
+
+def lever_page(found: ForcePolygons, lever: Lever, text: str) -> Figure:
+    """The lever with its forces, and the moments about its pole."""
+    page = new_page(sheet_size(found.paper))
+    wide, high = page.size
+    factor, unit = shown_as("m", found.mechanism.display)
+    if lever.unit == "N":
+        factor, unit = 1.0, "1"
+    corner, size = np.array([LEFT, FOOT]), np.array([WIDE * wide, high - TOP - FOOT - GUTTER])
+    ends = flat([0j, *lever.images.values(), *(one.image for one in lever.forces)])
+    extent = factor * np.ptp(ends, axis=0)
+    # names and arrows need room around the lever
+    scale = round_scale(float(np.max(extent / (size - 46.0))), 1.0)
+    view = View.about(corner, size, factor * ends, scale)
+    draw_outlines(page, view, found, lever, factor)
+    name_images(page, view, lever, factor)
+    draw_forces(page, view, found, lever, factor)
+    column = LEFT + WIDE * wide + GUTTER
+    per = "/rad" if lever.unit == "N m" else ""
+    size_of = f"{scale:g} {unit}{per}" if unit != "1" else f"{scale:g}"
+    heads = [text, f"$\\mu_v$ = {size_of} " + _("per mm")]
+    write_title(page, column, _("Zhukovsky's lever"), found.mechanism)
+    write_column(
+        page, column, _("Velocity diagram turned by 90° clockwise"), heads, lever_lines(found, lever)
+    )
+    page.place_names(np.array([[1.0, 1.0], [column - 1.0, high - TOP + 2.0]]))
+    return page.figure
+
+
+def draw_outlines(page: Page, view: View, found: ForcePolygons, lever: Lever, factor: float) -> None:
+    """Images of the links, and thin lines from the pole."""
+    colours = pens(found.mechanism.link_names)
+    for name, link in found.mechanism.links.items():
+        places = [view.mm(flat([factor * lever.images[point]])[0]) for point in corners(link)]
+        if len(places) < 2:
+            continue
+        path = np.array([*places, places[0]])
+        page.overlay.plot(
+            *path.T, color=colours[name].colour, linestyle=colours[name].dashes, linewidth=1.6, zorder=4
+        )
+        page.avoid(pairwise(path))
+
+
+def name_images(page: Page, view: View, lever: Lever, factor: float) -> None:
+    """The pole and the images of the points; those that coincide share a name."""
+    named = [(view.mm(np.zeros(2)), ["p_v"])]
+    for name, image in lever.images.items():
+        at = view.mm(flat([factor * image])[0])
+        near = next((names for place, names in named if np.hypot(*(place - at)) < TOGETHER), None)
+        if near is not None:
+            near.append(name.lower())
+        else:
+            named.append((at, [name.lower()]))
+    for at, names in named:
+        signs.hinge(page.overlay, at, 0.9)
+        text = ", ".join(names[:6]) + (", …" if len(names) > 6 else "")
+        page.name(at, typeset(text), clear=1.6, size=9.0)
+
+
+def draw_forces(page: Page, view: View, found: ForcePolygons, lever: Lever, factor: float) -> None:
+    """Forces at their images, couples in the middle of the images of their links; at the pole none turns the lever."""
+    acting = [one for one in lever.forces if one.force != 0 and one.image != 0]
+    force_arrows(page, [(o.name, o.force, view.mm(flat([factor * o.image])[0]), INK) for o in acting])
+    greatest = max((abs(one.moment) for one in lever.forces), default=0.0)
+    for one in lever.forces:
+        if abs(one.couple) <= TINY * greatest:
+            continue
+        points = lever.links.get(one.body, ())
+        middle = sum((lever.images[point] for point in points), 0j) / max(1, len(points))
+        moment_arc(page, view.mm(flat([factor * middle])[0]), one.couple, one.name)
+    if lever.unit == "N m" and abs(lever.balancing) > TINY * greatest:
+        moment_arc(page, view.mm(np.zeros(2)), lever.balancing, "Mb")

@@ -1,0 +1,184 @@
+"""Force polygons as pages of a document: a group with its forces, beside it its polygon to scale."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from centrode.analysis.graphic.board import round_scale as round_length
+from centrode.dynamics.force_polygons.polygon import PARTS, round_scale
+from centrode.locale import _
+from centrode.present.diagram_drawing import arrow, flat
+from centrode.present.forces.force_signs import force_name
+from centrode.present.forces.group_drawing import draw_group
+from centrode.present.forces.lever_drawing import lever_page
+from centrode.present.page import Array, Page, View, new_page
+from centrode.present.pictures import caption
+from centrode.present.reading import scene_of
+from centrode.present.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
+from centrode.present.shown import shown_as
+from centrode.present.style import INK, MUTED, Pen, house_style, pens
+from centrode.study.forces.force_polygons import force_text, group_title
+
+if TYPE_CHECKING:
+    from centrode.dynamics.force_polygons.polygon import Polygon, PolygonVector
+    from centrode.dynamics.force_polygons.result import ForcePolygons, GroupForces
+
+SHORT = 0.5
+"""Vectors shorter than this [mm] are told, not drawn."""
+AROUND = 38.0
+"""Room around a group for the arrows of its forces [mm]."""
+DASHED = (0, (4.0, 1.6))
+CHORD = (0, (6.0, 1.5, 1.2, 1.5))
+
+
+def polygon_figures(found: ForcePolygons) -> dict[str, Figure]:
+    """Pages of an instant: "group-1" and on in the order in which groups were solved, "lever" of each drive.
+
+    Parameters
+    ----------
+    found : ForcePolygons
+
+    Returns
+    -------
+    dict of name -> Figure
+        Scales are true on paper: a millimetre is what the page says.
+    """
+    with house_style():
+        text = caption(found.mechanism, found.exact, 0)
+        pages = {
+            f"group-{number}": group_page(found, group, text)
+            for number, group in enumerate(found.groups, start=1)
+        }
+        for lever in found.levers:
+            name = "lever" if len(found.levers) == 1 else f"lever-{lever.drive}"
+            pages[name] = lever_page(found, lever, text)
+        return pages
+
+
+def group_page(found: ForcePolygons, group: GroupForces, text: str) -> Figure:
+    """A group with its forces, its polygon, and what was done."""
+    page = new_page(sheet_size(found.paper))
+    wide, high = page.size
+    drawn, room = 0.30 * wide, 0.38 * wide
+    height = high - TOP - FOOT - GUTTER
+    factor, unit = shown_as("m", found.mechanism.display)
+    scene = scene_of(found.mechanism, found.exact)
+    places = flat([factor * place for place in shown_places(found, group)])
+    room_of_group = np.array([drawn, height]) - AROUND
+    extents = np.ptp(places, axis=0)
+    if not extents.any():  # sliders in one place
+        extents = np.ptp(flat([factor * place for place in found.places.values()]), axis=0)
+    length = round_length(float(np.max(extents / room_of_group)), 1.0)
+    view = View.about(np.array([LEFT, FOOT]), np.array([drawn, height]), places, length)
+    draw_group(page, view, found, group, scene)
+    corner, size = np.array([LEFT + drawn + GUTTER, FOOT]), np.array([room, height])
+    scale = draw_polygons(page, found, group, corner, size)
+    column = LEFT + drawn + room + 2 * GUTTER
+    heads = [text, f"$\\mu_l$ = {length:g} {unit} " + _("per mm")]
+    heads.append(f"$\\mu_F$ = {scale:g} N " + _("per mm"))
+    write_column(page, column, group_title(group), heads, told(group, scale))
+    write_title(page, column, _("Force polygon"), found.mechanism)
+    page.place_names(np.array([[1.0, 1.0], [column - 1.0, high - TOP + 2.0]]))
+    return page.figure
+
+
+def shown_places(found: ForcePolygons, group: GroupForces) -> list[complex]:
+    """Points of the group, its joints, and where forces act."""
+    links = found.mechanism.links
+    points = {point for body in group.bodies if body in links for point in links[body].coordinates}
+    acting = [one.place for one in (*group.actions, *group.reactions) if one.force != 0]
+    acting += [joint.place for joint in group.joints if joint.kind in ("hinge", "guide", "rolling")]
+    return [*(found.places[point] for point in points), *acting, *rims(found, group)]
+
+
+def rims(found: ForcePolygons, group: GroupForces) -> list[complex]:
+    """Corners around the rolling wheels of the group."""
+    wheels = [wheel for wheel in found.mechanism.rolling if wheel.link in group.bodies]
+    return [
+        found.places[wheel.centre] + wheel.radius * corner for wheel in wheels for corner in (1 + 1j, -1 - 1j)
+    ]
+
+
+def draw_polygons(page: Page, found: ForcePolygons, group: GroupForces, corner: Array, size: Array) -> float:
+    """The polygon of a group; of one solved together those of its links side by side. Returns the scale."""
+    colours = pens(found.mechanism.link_names)
+    if group.kind != "together" or len(group.bodies) == 1:
+        draw_polygon(page, group.polygon, corner, size, group.polygon.scale, colours)
+        return group.polygon.scale
+    shown = [polygon for polygon in group.link_polygons if polygon.vectors]
+    across = math.ceil(math.sqrt(len(shown)))
+    cell = size / np.array([across, max(1, math.ceil(len(shown) / across))])
+    scale = round_scale(max((polygon.scale * float(max(size / cell)) for polygon in shown), default=1.0))
+    for number, polygon in enumerate(shown):
+        place = np.array([number % across, number // across])
+        at = corner + place * cell
+        draw_polygon(page, polygon, at, cell, scale, colours)
+        body = found.names.index(polygon.bodies[0])
+        page.write(
+            at[0] + 2.0, at[1] + cell[1] - 4.0, _("link {link}").format(link=body), size=8.0, color=MUTED
+        )
+    return scale
+
+
+def draw_polygon(
+    page: Page,
+    polygon: Polygon,
+    corner: Array,
+    size: Array,
+    scale: float,
+    colours: Mapping[str, Pen],
+) -> None:
+    """The forces one behind the other, the sums of reactions found in parts, and the inner reactions."""
+    ends = [0j, *(vector.end for vector in polygon.vectors)]
+    view = View.about(corner, size, flat(ends), scale)
+
+    def draw(start: complex, end: complex, name: str, colour: str, dashes: object, width: float) -> None:
+        if abs(end - start) < SHORT * scale:
+            return
+        places = [view.mm(place) for place in flat([start, end])]
+        arrow(page, places[0], places[1], colour, dashes, width)
+        share = 0.5 if dashes != CHORD else 0.42
+        middle = places[0] + share * (places[1] - places[0])
+        page.name(middle, force_name(name), clear=0.8, size=8.5, colour=colour)
+
+    whole = {one.name for one in polygon.sums if not drawn_in_parts(polygon, one.name)}
+    for vector in polygon.vectors:
+        if vector.name[:-1] in whole and vector.name[-1] in PARTS:
+            continue
+        colour = colour_of(vector, colours)
+        part = vector.name[-1] in PARTS
+        draw(vector.start, vector.end, vector.name, colour, DASHED if part else "-", 0.8 if part else 1.3)
+    for one in polygon.sums:
+        draw(one.start, one.end, one.name, colour_of(one, colours), "-", 1.6)
+    for chord in polygon.chords:
+        draw(chord.start, chord.end, chord.name, colour_of(chord, colours), CHORD, 1.2)
+    start = view.mm(np.zeros(2))
+    page.overlay.plot([start[0]], [start[1]], marker="o", markersize=2.5, color=INK, zorder=6)
+
+
+def drawn_in_parts(polygon: Polygon, name: str) -> bool:
+    """Whether both parts of a reaction are long enough to be seen."""
+    return all(polygon.length(polygon.vector(name + mark)) > SHORT for mark in PARTS)
+
+
+def colour_of(vector: PolygonVector, colours: Mapping[str, Pen]) -> str:
+    """Reactions in the colour of the link they act on, the rest in black."""
+    known = vector.source == "reaction" and vector.body in colours
+    return colours[vector.body].colour if known else INK
+
+
+def told(group: GroupForces, scale: float) -> list[str]:
+    """Steps in words, then every force with its length on paper."""
+    shown = [*group.polygon.vectors, *group.polygon.sums, *group.polygon.chords]
+    if group.kind == "together":
+        shown = [vector for polygon in group.link_polygons for vector in polygon.vectors]
+    table = [
+        f"{vector.name} = {force_text(abs(vector.force))} N, {abs(vector.force) / scale:.1f} mm"
+        for vector in {vector.name: vector for vector in shown}.values()
+    ]
+    return [*group.steps, "", *table]

@@ -1,0 +1,174 @@
+"""A walking wheel in words: step, evenness of its travel, shoe, and the proof that it rolls level without slip."""
+
+from __future__ import annotations
+
+import math
+
+from centrode.cams.profiles.bodies import CamBody, cam_body
+from centrode.cams.profiles.tables import count_of, shoe_dataset, wheel_of
+from centrode.cams.wheel.rolling import Rolling, rolling
+from centrode.cams.wheel.walking import Mover
+from centrode.errors import MotionError
+from centrode.locale import _
+from centrode.model.cams.description import Cam
+from centrode.study.cams.said import Asked, CamPart, Rows, Units
+from centrode.study.scalars import Scalar
+
+LEAST_ANGLE = 1e-9
+"""Smaller angles [rad] are said to be zero."""
+DUG = 1e-9
+"""Share of the hub's height by which a shoe may seem to dig in by rounding."""
+
+
+def walking_part(cam: Cam, asked: Asked) -> CamPart | None:
+    """The walking wheel; nothing without a mover."""
+    if cam.mover is None:
+        return None
+    heading = _("Walking wheel")
+    try:
+        body = cam_body(cam)
+    except MotionError:  # told of the profile
+        return None
+    try:
+        wheel = wheel_of(cam, body)
+    except MotionError as refusal:
+        return CamPart(heading, [(_("shoe"), _("none"))], {}, failures=(f"{refusal.what}; {refusal.repair}",))
+    proof, units = rolling(wheel), Units(cam)
+    rows = [*_travel(wheel, units), *_shoe(wheel, units), *_proof(wheel, proof, units, uneven(body, wheel))]
+    dataset = shoe_dataset(wheel, count_of(cam, asked.samples))
+    return CamPart(
+        heading,
+        rows,
+        _scalars(wheel, proof),
+        {"shoe-profile": dataset},
+        (),
+        _failures(wheel, proof, units),
+        {"wheel": wheel},
+    )
+
+
+def uneven(body: CamBody, wheel: Mover) -> list[tuple[float, float]]:
+    """Stretches [rad] of a standing leg on which the profile is undercut: the roller leaves its path there."""
+    found = []
+    for one in body.undercuts:
+        for turn in (0.0, math.tau):
+            start, stop = max(one.start - turn, -wheel.half), min(one.stop - turn, wheel.half)
+            if stop - start > LEAST_ANGLE:
+                found.append((start, stop))
+    return sorted(found)
+
+
+def _failures(wheel: Mover, proof: Rolling, units: Units) -> tuple[str, ...]:
+    """What keeps the wheel from walking."""
+    failures = []
+    if proof.clearance < -DUG * wheel.height:
+        text = _(
+            "a returning shoe digs {depth} into the ground where its leg is at {at}; bound greatest_radius in [return]"
+        )
+        failures.append(text.format(depth=units.text(-proof.clearance), at=units.angle(proof.clearance_at)))
+    if proof.room < -DUG * wheel.height:
+        text = _(
+            "the rollers of neighbouring legs overlap by {depth} where one leg is at {at}; "
+            "take smaller rollers or fewer legs"
+        )
+        failures.append(text.format(depth=units.text(-proof.room), at=units.angle(proof.room_at)))
+    return tuple(failures)
+
+
+def _travel(wheel: Mover, units: Units) -> Rows:
+    half, rates = units.angle(wheel.half), wheel.rates
+    uneven = _("dX/dφ {least} at {least_at} to {greatest} at {greatest_at}, ratio {ratio:.6g}")
+    return [
+        (_("legs"), _("{count}, each stands over ±{half}").format(count=wheel.legs, half=half)),
+        (_("height of the hub"), units.text(wheel.height)),
+        (
+            _("step"),
+            _("{step}; a turn travels {turn}").format(
+                step=units.text(wheel.step), turn=units.text(wheel.step * wheel.legs)
+            ),
+        ),
+        (
+            _("unevenness of the travel"),
+            uneven.format(
+                least=units.text(rates.least, "m/rad"),
+                least_at=_both_sides(rates.at_least, units),
+                greatest=units.text(rates.greatest, "m/rad"),
+                greatest_at=_both_sides(rates.at_greatest, units),
+                ratio=wheel.unevenness,
+            ),
+        ),
+    ]
+
+
+def _shoe(wheel: Mover, units: Units) -> Rows:
+    bend, at = wheel.shoe.least_bend
+    gap = _("and {gap} between them") if wheel.print_gap >= 0 else _("overlapping by {gap}")
+    prints = _("{length} long").format(length=units.text(wheel.print_length))
+    return [
+        (_("footprints"), f"{prints}, {gap.format(gap=units.text(abs(wheel.print_gap)))}"),
+        (
+            _("shoe"),
+            _("radius of curvature from {bend} at {at}").format(
+                bend=units.text(bend), at=_both_sides(at, units)
+            ),
+        ),
+    ]
+
+
+def _proof(wheel: Mover, proof: Rolling, units: Units, cut: list[tuple[float, float]]) -> Rows:
+    level = _("the shoe put on the ground holds the hub level to {error}")
+    slip = _("the shoe's point at the contact moves at {slip:.1g} of the hub's speed")
+    arcs = _("arc of the shoe {arc}, ground travelled {ground}, apart by {apart}")
+    rows = [(_("level"), level.format(error=units.text(proof.level, digits=2)))]
+    if cut:
+        where = ", ".join(
+            _("{first} to {last}").format(first=units.angle(first), last=units.angle(last))
+            for first, last in cut
+        )
+        lost = _("but not from {where}: the profile is undercut there and the roller leaves its path")
+        rows.append(("", lost.format(where=where)))
+    rows += [
+        (_("no slip"), slip.format(slip=proof.slip)),
+        (
+            "",
+            arcs.format(
+                arc=units.text(proof.shoe_arc, digits=10),
+                ground=units.text(proof.ground, digits=10),
+                apart=units.text(abs(proof.shoe_arc - proof.ground), digits=2),
+            ),
+        ),
+    ]
+    if abs(proof.joint) > DUG * wheel.height:
+        jump = _("the hub's dX/dφ jumps by {jump} where the next leg takes over")
+        rows.append((_("change of legs"), jump.format(jump=units.text(proof.joint, "m/rad"))))
+    if proof.clearance >= -DUG * wheel.height:
+        rows.append((_("returning legs"), _("clear of the ground")))
+    if proof.room >= -DUG * wheel.height:
+        rows.append((_("neighbouring rollers"), _("{room} apart").format(room=units.text(proof.room))))
+    return rows
+
+
+def _scalars(wheel: Mover, proof: Rolling) -> dict[str, Scalar]:
+    return {
+        "walking_legs": Scalar(wheel.legs, "1"),
+        "walking_hub_height": Scalar(wheel.height, "m"),
+        "walking_step": Scalar(wheel.step, "m"),
+        "walking_turn": Scalar(wheel.step * wheel.legs, "m"),
+        "walking_least_rate": Scalar(wheel.rates.least, "m/rad"),
+        "walking_greatest_rate": Scalar(wheel.rates.greatest, "m/rad"),
+        "walking_unevenness": Scalar(wheel.unevenness, "1"),
+        "walking_footprint": Scalar(wheel.print_length, "m"),
+        "walking_footprint_gap": Scalar(wheel.print_gap, "m"),
+        "walking_level_error": Scalar(proof.level, "m"),
+        "walking_slip": Scalar(proof.slip, "1"),
+        "walking_arc_difference": Scalar(abs(proof.shoe_arc - proof.ground), "m"),
+        "walking_clearance": Scalar(proof.clearance, "m"),
+        "walking_roller_room": Scalar(proof.room, "m"),
+        "walking_half": Scalar(math.pi / wheel.legs, "rad"),
+    }
+
+
+def _both_sides(at: float, units: Units) -> str:
+    """An angle, on both sides where the law is the same there."""
+    at = at if abs(at) > LEAST_ANGLE else 0.0
+    return f"±{units.angle(abs(at))}" if units.cam.curvature.symmetric and at else units.angle(at)

@@ -1,0 +1,224 @@
+"""The worst of each reaction over a motion: extremes found between its samples, mean, and where and which way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.dynamics.kinetostatics.reactions import Speed
+from centrode.dynamics.kinetostatics.reactions import reactions as reactions_of
+from centrode.kinematics.several_drives.holding import unit_of_value
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.quantities import display_unit
+from centrode.study.forces.bearings import places_of
+from centrode.study.forces.reacting import each_reaction
+from centrode.study.scalars import Scalar
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Table: TypeAlias = tuple[list[str], list[list[str]]]
+PARTS = 12
+ROUNDS = 5
+"""A stretch about an extreme is cut into so many parts, so often."""
+BEND = 2.0
+"""How many times its second difference an extreme between samples may be above its sample."""
+TOPS = 6
+"""Most extremes of one curve that are looked at."""
+NOISE = 1e-12
+"""Values below this share of the greatest are zero."""
+
+
+@dataclass(frozen=True)
+class BearingLoad:
+    """One reaction over a motion: of forces the magnitude, of other reactions the signed value.
+
+    Attributes
+    ----------
+    key, name, unit : variable and side, guide or drive; the same in words; N or N m
+    greatest, at_greatest : its greatest value, and the value of the drive there [rad or m], or the time [s]
+    direction : direction of a planar force where it is greatest [rad], in the frame's axes; else None
+    least, at_least : its least value, and where
+    mean, rms : mean, and root of the mean square, over time
+    """
+
+    key: str
+    name: str
+    unit: str
+    greatest: float
+    at_greatest: float
+    direction: float | None
+    least: float
+    at_least: float
+    mean: float
+    rms: float
+
+
+@dataclass
+class _Top:
+    """An extreme that is being narrowed down: of which curve, greatest or least, and between what places."""
+
+    curve: int
+    sign: float
+    low: float
+    high: float
+    place: float
+    value: float
+    vector: Array
+
+
+def bearing_loads(mechanism: Mechanism, reactions: xr.Dataset) -> tuple[BearingLoad, ...]:
+    """Greatest, least, mean and direction of each reaction over a motion.
+
+    Parameters
+    ----------
+    reactions : Dataset
+        Of `reactions`, over a range. What nothing determines is left out.
+
+    Notes
+    -----
+    Extremes of the samples are narrowed down by computing reactions again in between: places to 1e-4 of the step
+    of samples, values of smooth curves to its square times their curvature, beside a jump to it times their slope. An
+    extreme that no sample is near is missed. Means are by the trapezoid rule over time, of what is reached.
+    """
+    places, time = places_of(mechanism, reactions), reactions["time"].to_numpy()
+    curves = [one for one in each_reaction(mechanism, reactions) if np.isfinite(one[3]).any()]
+    tops = [
+        top
+        for k, curve in enumerate(curves)
+        for sign in (1.0, -1.0)
+        for top in _tops(k, sign, places, curve[3])
+    ]
+    keys = [curve[0] for curve in curves]
+    for _round in range(ROUNDS if len(places) > 1 else 0):
+        _narrow(mechanism, reactions, keys, tops)
+    found = []
+    for k, (key, name, unit, values) in enumerate(curves):
+        high, low = (
+            _best([top for top in tops if (top.curve, top.sign) == (k, sign)]) for sign in (1.0, -1.0)
+        )
+        planar = values.ndim == 2 and values.shape[1] == 2 and high.value > 0.0
+        direction = float(np.arctan2(high.vector[1], high.vector[0])) if planar else None
+        mean, rms = mean_over_time(time, _size(values))
+        found.append(
+            BearingLoad(key, name, unit, high.value, high.place, direction, low.value, low.place, mean, rms)
+        )
+    return tuple(found)
+
+
+def bearing_load_rows(mechanism: Mechanism, loads: tuple[BearingLoad, ...]) -> Table:
+    """Header and rows of the worst cases, as the units of the display have them."""
+    header = [
+        _("reaction"), _("unit"), _("greatest"), _("at"), _("direction, deg"), _("least"), _("at"), _("mean"), _("rms"),
+    ]  # fmt: skip
+    rows = []
+    for one in loads:
+        noise = NOISE * max(abs(one.greatest), abs(one.least))
+        direction = "" if one.direction is None else f"{round(float(np.degrees(one.direction)), 2) + 0.0:.2f}"
+        still = one.greatest - one.least <= noise
+        at_greatest, at_least = (
+            "" if still else _place(mechanism, at) for at in (one.at_greatest, one.at_least)
+        )
+        numbers = [
+            f"{0.0 if abs(x) <= noise else x:.6g}" for x in (one.greatest, one.least, one.mean, one.rms)
+        ]
+        rows.append(
+            [one.name, one.unit, numbers[0], at_greatest, direction, numbers[1], at_least, *numbers[2:]]
+        )
+    return header, rows
+
+
+def bearing_load_scalars(mechanism: Mechanism, loads: tuple[BearingLoad, ...]) -> dict[str, Scalar]:
+    """The same as numbers of a summary, in SI."""
+    by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
+    unit = unit_of_value(mechanism, mechanism.drives[0]) if by_value else "s"
+    found: dict[str, Scalar] = {}
+    for one in loads:
+        found |= {
+            f"greatest_{one.key}": Scalar(one.greatest, one.unit),
+            f"greatest_{one.key}_at": Scalar(one.at_greatest, unit),
+            f"least_{one.key}": Scalar(one.least, one.unit),
+            f"mean_{one.key}": Scalar(one.mean, one.unit),
+        }
+    return found
+
+
+def _place(mechanism: Mechanism, at: float) -> str:
+    """The value of the drive at an extreme, or the time."""
+    if len(mechanism.drives) > 1 or mechanism.drives[0].speed is None:
+        return f"{at:.6g} s"
+    display = mechanism.display
+    unit = unit_of_value(mechanism, mechanism.drives[0])
+    factor, shown = display_unit(unit, str(display.length), str(display.angle))
+    return f"{factor * at:.6g} {shown}"
+
+
+def _size(values: Array) -> Array:
+    """Magnitudes of vectors (n, axes), the numbers themselves of numbers (n)."""
+    return np.asarray(np.sqrt((values**2).sum(axis=-1))) if values.ndim == 2 else values
+
+
+def _tops(curve: int, sign: float, places: Array, values: Array) -> list[_Top]:
+    """Samples that no neighbour exceeds, where the extreme of all may be, with their neighbours' places."""
+    size = sign * _size(values)
+    known = np.where(np.isfinite(size), size, -np.inf)
+    before, after = np.append(-np.inf, known[:-1]), np.append(known[1:], -np.inf)
+    # how far it falls on both sides; nothing where it or its neighbour is not known
+    falls = sum(np.nan_to_num(size - sign * _size(np.roll(values, k, axis=0))).clip(min=0.0) for k in (1, -1))
+    hoped = known + BEND * falls
+    near = np.flatnonzero((known >= before) & (known >= after) & (hoped >= known.max()))
+    near = near[np.argsort(-hoped[near], kind="stable")][:TOPS]
+    last = len(places) - 1
+    return [
+        _Top(
+            curve,
+            sign,
+            float(places[k - 1] if k > 0 and np.isfinite(known[k - 1]) else places[k]),
+            float(places[k + 1] if k < last and np.isfinite(known[k + 1]) else places[k]),
+            float(places[k]),
+            sign * float(known[k]),
+            values[k],
+        )
+        for k in near.tolist()
+    ]
+
+
+def _narrow(mechanism: Mechanism, reactions: xr.Dataset, keys: list[str], tops: list[_Top]) -> None:
+    """Compute reactions between the ends of every stretch, and go on with the part about the best of them."""
+    cuts = [np.linspace(top.low, top.high, PARTS + 1) for top in tops]
+    asked, back = np.unique(np.concatenate(cuts), return_inverse=True)
+    speed: Speed = "steady" if reactions.attrs.get("rate_from") == "steady" else "mean"
+    rubs = any(str(name).startswith("friction_") for name in reactions)
+    there = reactions_of(mechanism, at=asked, speed=speed, friction=rubs)
+    found = {key: values for key, _name, _unit, values in each_reaction(mechanism, there, reactions)}
+    for top, cut, where in zip(tops, cuts, back.reshape(len(tops), -1), strict=True):
+        values = found[keys[top.curve]][where]
+        size = top.sign * _size(values)
+        size = np.where(np.isfinite(size), size, -np.inf)
+        k = int(np.argmax(size))
+        if size[k] >= top.sign * top.value:
+            top.place, top.value, top.vector = float(cut[k]), top.sign * float(size[k]), values[k]
+        top.low, top.high = float(cut[max(k - 1, 0)]), float(cut[min(k + 1, PARTS)])
+
+
+def _best(tops: list[_Top]) -> _Top:
+    return max(tops, key=lambda top: top.sign * top.value)
+
+
+def mean_over_time(time: Array, size: Array) -> tuple[float, float]:
+    """Mean and root mean square of values (n) over the stretches between samples that are known."""
+    order = np.argsort(time, kind="stable")
+    time, size = time[order], size[order]
+    step = np.diff(time)
+    known = np.isfinite(size[:-1]) & np.isfinite(size[1:]) & (step > 0.0)
+    if not known.any():
+        value = float(size[np.isfinite(size)][0])
+        return value, abs(value)
+    whole = float(step[known].sum())
+    first, second = size[:-1][known], size[1:][known]
+    mean = float((step[known] * (first + second)).sum()) / (2.0 * whole)
+    square = float((step[known] * (first**2 + second**2)).sum()) / (2.0 * whole)
+    return mean, float(np.sqrt(square))
