@@ -93,7 +93,7 @@ def bearing_loads(mechanism: Mechanism, reactions: xr.Dataset) -> tuple[BearingL
         for top in _tops(k, sign, places, curve[3])
     ]
     keys = [curve[0] for curve in curves]
-    for _round in range(ROUNDS if len(places) > 1 else 0):
+    for _round in range(ROUNDS if tops and len(places) > 1 else 0):
         _narrow(mechanism, reactions, keys, tops)
     found = []
     for k, (key, name, unit, values) in enumerate(curves):
