@@ -197,3 +197,12 @@ def test_groups_that_are_not_written_are_refused() -> None:
     parts["assembly"]["sides"]["P"] = "left"
     with pytest.raises(ct.InputError, match="driven links and dyads"):
         ct.equations(ct.Mechanism.model_validate(parts))
+
+
+def test_other_axes_are_told() -> None:
+    parts = parts_of(0.3, 1.1, 1.0, 1.2, "left")
+    assert "Axes" not in ct.equations_text(ct.equations(ct.Mechanism.model_validate(parts)), ["C"])
+    parts["frame"]["points"] = {"A": [0.2, 0.1], "D": [1.4, 0.1]}
+    text = ct.equations_text(ct.equations(ct.Mechanism.model_validate(parts)), ["C"])
+    assert "x runs through A, D lies in the half-plane of x and y" in text
+    assert "cos BC = " in text and " cos AD" in text

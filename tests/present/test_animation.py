@@ -9,6 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
+import centrode as ct
 from centrode.present.animation import loop_places, write_animation
 
 
@@ -75,3 +76,20 @@ def test_colours_that_come_late_are_kept(tmp_path: Path) -> None:
     for colour, frame in zip(colours, frames(path), strict=True):
         wanted = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
         assert frame[5, 5].tolist() == wanted
+
+
+def test_a_motion_that_closes_runs_on_and_another_there_and_back(tmp_path: Path) -> None:
+    linkage = ct.example("spherical-four-bar")
+    for name, last, count in (("round", 2 * np.pi, 12), ("back", 3.0, 24)):
+        motion = ct.motion(linkage, at=np.linspace(0.0, last, 49))
+        ct.animate_motion(linkage, motion, tmp_path / f"{name}.gif", frames=12)
+        with Image.open(tmp_path / f"{name}.gif") as picture:
+            assert getattr(picture, "n_frames", 1) == count
+
+
+def test_a_motion_without_a_place_is_refused(tmp_path: Path) -> None:
+    linkage = ct.example("spherical-four-bar")
+    motion = ct.motion(linkage, at=np.linspace(0.0, 1.0, 3))
+    motion["position"][:] = np.nan
+    with pytest.raises(ct.InputError, match="no sample has every point in place"):
+        ct.animate_motion(linkage, motion, tmp_path / "nothing.gif")

@@ -36,6 +36,11 @@ class Lettering:
         seconds = {rate: Sum.letter(second) for rate, second in self.alphabet.seconds.items()}
         return {**self.moves, **seconds}
 
+    @property
+    def axes_through(self) -> tuple[str, str] | None:
+        """Points of the frame that give the axes of places, where these are not the description's own."""
+        return None
+
     def drive_value(self, drive: str) -> float:
         """Value of a drive in the initial position."""
         return float(self.ready.assembled.positions.drives[drive])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from centrode.equations.alphabet import BEARING, SIMPLE, TURN, quarters_of
+from centrode.equations.alphabet import BEARING, ROUNDING, SIMPLE, TURN, quarters_of
 from centrode.equations.draft import Draft
 from centrode.equations.lettering import Lettering
 from centrode.equations.letters import Angle
@@ -67,10 +67,10 @@ class SphereBoard(Lettering):
         raise unwritten()
 
     @property
-    def own_axes(self) -> bool:
-        """Whether the axes of the formulas are those of the description."""
+    def axes_through(self) -> tuple[str, str] | None:
         first, second = (self.inside[FRAME][name] for name in self.firsts[FRAME])
-        return bool(np.allclose(first, (1, 0, 0), atol=1e-15) and abs(second[2]) < 1e-15 and second[1] > 0)
+        own = abs(first[0] - 1.0) < ROUNDING and abs(second[2]) < ROUNDING and second[1] > 0
+        return None if own else self.firsts[FRAME]
 
     # numbers of the initial position
 

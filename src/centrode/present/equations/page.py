@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, TypeAlias
 from centrode.equations.formulas import Formula, formula_of
 from centrode.equations.letters import Letter
 from centrode.equations.spelling import Spelling, spelled, spelled_sum
-from centrode.equations.sphere_board import SphereBoard
 from centrode.equations.sums import Sum
 from centrode.locale import _
-from centrode.model.mechanism import FRAME
 from centrode.present.equations.velocities import velocity_lines
 from centrode.present.equations.words import meaning_text, value_text
 
@@ -95,10 +93,10 @@ def sections(equations: Equations, spelling: Spelling, points: Sequence[str]) ->
         found.append(Section(_("Cauchy normal form"), tuple(normal)))
         seconds = [line for group in equations.groups for line in _seconds(group, spelling)]
         found.append(Section(_("Accelerations"), tuple(seconds)))
-    if points and isinstance(equations.board, SphereBoard) and not equations.board.own_axes:
-        first, second = equations.board.firsts[FRAME]
+    through = equations.board.axes_through
+    if points and through is not None:
         words = _("x runs through {first}, {second} lies in the half-plane of x and y")
-        found.append(Section(_("Axes"), (Note(words.format(first=first, second=second)),)))
+        found.append(Section(_("Axes"), (Note(words.format(first=through[0], second=through[1])),)))
     for point in points:
         lines = velocity_lines(equations.velocity(point), spelling)
         entries: list[Entry] = [Relation(line) for line in lines]
