@@ -1,4 +1,4 @@
-"""A spherical linkage let run, against three rigid bodies in space with multipliers: no coordinate of its own in common."""
+"""A spherical linkage let run, against three rigid bodies in space with multipliers."""
 
 from __future__ import annotations
 
