@@ -88,11 +88,9 @@ def check(mechanism: ct.Mechanism, *, passed: bool = False) -> bool:
     return True
 
 
-@pytest.mark.parametrize("name", ct.example_names())
+@pytest.mark.parametrize("name", [name for name in ct.example_names() if ct.example(name).space == "sphere"])
 def test_examples_agree_with_motion(name: str) -> None:
     mechanism = ct.example(name)
-    if mechanism.space != "sphere":
-        pytest.skip("it is in the plane")
     try:
         assert check(mechanism)
     except ct.InputError as refused:

@@ -41,6 +41,14 @@ def test_the_bits_of_the_arrays(name: str, share: float) -> None:
     if not lengths:
         pytest.skip("no length to vary")
     found, expected = both(mechanism, f"links.{lengths[-1]}.length", share, 25)
+    if mechanism.space == "sphere" and mechanism.gears:
+        # residuals of bevel gears are differences of arc tangents, which kernels round their own way: 2 ULP of a turn
+        left, known = found.residual.to_numpy(), expected.residual.to_numpy()
+        assert np.array_equal(np.isnan(left), np.isnan(known))
+        assert np.nanmax(abs(left - known)) <= 2 * 2 * np.spacing(2.0 * np.pi)
+        found, expected = found.drop_vars("residual"), expected.drop_vars("residual")
+        for worst in ("worst_residual", "worst_residual_constraint"):
+            del found.attrs[worst], expected.attrs[worst]
     xr.testing.assert_identical(found, expected)
 
 

@@ -137,7 +137,8 @@ def _list(here: xarray.Dataset) -> list[str]:
         named += list(zip(words, here["guide_force"].transpose("guide", "axis").to_numpy(), strict=True))
     for name, (x, y) in named:
         text = f"{np.hypot(x, y):.5g} N, {np.degrees(np.arctan2(y, x)):.1f}°".replace("-", "−")
-        found.append(f"{plain(name)}: {text if np.isfinite(x) else _('not determined')}")
+        told = text if np.isfinite(x) else _("not determined")
+        found.append(f"{plain(name)}: {told}")
     units = str(here["balancing"].attrs["units"]).split(", ")
     for k, name in enumerate(here["drive"].to_numpy().tolist()):
         value = float(here["balancing"].to_numpy()[k])
