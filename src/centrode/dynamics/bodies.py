@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from centrode.model.bodies import Link
+
 Number: TypeAlias = Any
 Local: TypeAlias = Mapping[str, tuple[Number, Number]]
 Given: TypeAlias = Mapping[str, Number]
@@ -84,6 +86,24 @@ class Mass:
     def resists(self) -> bool:
         """Whether it has a moment of inertia."""
         return self.inertia != () if isinstance(self.inertia, tuple) else not is_none(self.inertia)
+
+
+@dataclass(frozen=True)
+class LinkNumbers:
+    """The numbers of one link, those of a batch (by their paths in `given`) where they vary."""
+
+    name: str
+    link: Link
+    given: Given
+
+    @property
+    def where(self) -> str:
+        """What messages call it."""
+        return f"[links.{self.name}]"
+
+    def number(self, key: str, own: float) -> Number:
+        """The number under a key, `own` where it does not vary."""
+        return self.given.get(f"links.{self.name}.{key}", float(own))
 
 
 def is_none(value: Number) -> bool:

@@ -8,12 +8,11 @@ from math import dist
 from typing import Any, TypeAlias
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.dynamics.bodies import Centre, Given, Local, Mass, Number, Radial, is_none
+from centrode.dynamics.bodies import Centre, Given, LinkNumbers, Local, Mass, Number, Radial, is_none
 from centrode.dynamics.solids import Reader as SolidReader
 from centrode.dynamics.solids import solids_of
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.bodies import Link
 from centrode.model.mechanism import FRAME, Mechanism, Vector
 
 __all__ = ["Centre", "Given", "Mass", "centre_of", "masses_of", "massless_links"]
@@ -54,7 +53,7 @@ def centre_of(
 ) -> Centre | Radial:
     """Centre of mass of a link: given, the only point, or by its shape; InputError where nothing tells it."""
     if mechanism.space == "sphere":
-        return SolidReader(link, mechanism.links[link], mechanism.sphere_radius, given or {}, m).centre()
+        return SolidReader(link, mechanism.links[link], given or {}, mechanism.sphere_radius, m).centre()
     return _Reader(link, mechanism.links[link], given or {}).centre()
 
 
@@ -77,19 +76,8 @@ def _links_that_do_not_turn(mechanism: Mechanism) -> set[str]:
 
 
 @dataclass(frozen=True)
-class _Reader:
-    """The numbers of one link, those of a batch where they vary."""
-
-    name: str
-    link: Link
-    given: Given
-
-    @property
-    def where(self) -> str:
-        return f"[links.{self.name}]"
-
-    def number(self, key: str, own: float) -> Number:
-        return self.given.get(f"links.{self.name}.{key}", float(own))
+class _Reader(LinkNumbers):
+    """Masses of one planar link."""
 
     @property
     def local(self) -> Local:

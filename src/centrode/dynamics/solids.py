@@ -10,12 +10,23 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, TypeAlias
 
-from centrode.dynamics.bodies import About, Given, Local, Mass, Number, Radial, Spread, Vector3, is_none
+from centrode.dynamics.bodies import (
+    About,
+    Given,
+    LinkNumbers,
+    Local,
+    Mass,
+    Number,
+    Radial,
+    Spread,
+    Vector3,
+    is_none,
+)
 from centrode.errors import InputError
 from centrode.geometry.sphere import add, basis, cross, dot, half_arc, subtract, times, unit_vector
 from centrode.locale import _
 from centrode.model import sphere
-from centrode.model.bodies import RING_AND_POINT, Link
+from centrode.model.bodies import RING_AND_POINT
 from centrode.model.mechanism import Mechanism
 from centrode.model.tensors import principal, tensor_of
 
@@ -29,7 +40,7 @@ def solids_of(mechanism: Mechanism, given: Given, m: Namespace) -> tuple[Mass, .
     """Links of a spherical mechanism that have mass or inertia; raises InputError for what is not complete."""
     found = []
     for name, link in mechanism.links.items():
-        reader = Reader(name, link, mechanism.sphere_radius, given, m)
+        reader = Reader(name, link, given, mechanism.sphere_radius, m)
         mass, inertia = reader.mass, reader.inertia()
         if is_none(mass) and not inertia:
             continue
@@ -39,21 +50,11 @@ def solids_of(mechanism: Mechanism, given: Given, m: Namespace) -> tuple[Mass, .
 
 
 @dataclass(frozen=True)
-class Reader:
-    """The numbers of one spherical link, those of a batch where they vary; `m` has the functions for them."""
+class Reader(LinkNumbers):
+    """Masses of one spherical link; `m` has the functions for its numbers."""
 
-    name: str
-    link: Link
     sphere_radius: float
-    given: Given
     m: Namespace
-
-    @property
-    def where(self) -> str:
-        return f"[links.{self.name}]"
-
-    def number(self, key: str, own: float) -> Number:
-        return self.given.get(f"links.{self.name}.{key}", float(own))
 
     @property
     def mass(self) -> Number:

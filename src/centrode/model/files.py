@@ -6,7 +6,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import tomli_w
 from pydantic import ValidationError
@@ -16,10 +16,13 @@ from centrode.locale import _
 from centrode.model import limits
 from centrode.model.document import document
 from centrode.model.mechanism import Mechanism
+from centrode.model.part import Part
 from centrode.model.problems import input_error
 from centrode.model.reading import read_file
 from centrode.model.toml_words import toml_reason
 from centrode.model.values import READING, Reading
+
+Described = TypeVar("Described", bound=Part)
 
 _KEY = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 # Dotted keys nest without a bracket, and cost the parser the square of their number.
@@ -49,9 +52,6 @@ def parse_mechanism(text: str, where: str = "", folder: Path | None = None) -> M
     ------
     InputError
     """
-    if len(text) > limits.FILE_SIZE:
-        what = _("the text has {size} characters, at most {most} are allowed")
-        raise InputError(where, what.format(size=len(text), most=limits.FILE_SIZE))
     return mechanism_from(toml_tables(text, where), where, folder)
 
 
@@ -60,9 +60,16 @@ def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | N
     if is_cam(mapping):
         repair = _("compute it with: centrode cam; in Python read it with read_cam")
         raise InputError(where, _("this describes a cam, not a linkage"), repair)
+    return described(Mechanism, mapping, where, folder)
+
+
+def described(
+    kind: type[Described], mapping: Mapping[str, Any], where: str, folder: Path | None
+) -> Described:
+    """What plain dicts and lists describe, files beside it in `folder`; raises InputError that starts with `where`."""
     token = READING.set(Reading(folder=folder or Path()))
     try:
-        return Mechanism.model_validate(dict(mapping))
+        return kind.model_validate(dict(mapping))
     except ValidationError as error:
         raise input_error(error, where) from None
     finally:
@@ -89,7 +96,10 @@ def _in_one_line(match: re.Match[str]) -> str:
 
 
 def toml_tables(text: str, where: str) -> dict[str, Any]:
-    """Tables of a text of TOML; raises InputError where it is none, or nests too deeply."""
+    """Tables of a text of TOML; raises InputError where it is none, is too long, or nests too deeply."""
+    if len(text) > limits.FILE_SIZE:
+        what = _("the text has {size} characters, at most {most} are allowed")
+        raise InputError(where, what.format(size=len(text), most=limits.FILE_SIZE))
     repair = _("tables and lists lie at most {most} inside each other").format(most=limits.NESTING)
     nested = InputError(where, _("the text nests too deeply"), repair)
     if _DOTTED.search(text):

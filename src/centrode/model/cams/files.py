@@ -7,17 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import tomli_w
-from pydantic import ValidationError
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model import limits
 from centrode.model.cams.description import Cam
 from centrode.model.document import part_tables
-from centrode.model.files import in_short_lines, is_cam, toml_tables
-from centrode.model.problems import input_error
+from centrode.model.files import described, in_short_lines, is_cam, toml_tables
 from centrode.model.reading import read_file
-from centrode.model.values import READING, Reading
 
 
 def read_cam(path: str | Path) -> Cam:
@@ -41,9 +37,6 @@ def parse_cam(text: str, where: str = "", folder: Path | None = None) -> Cam:
     ------
     InputError
     """
-    if len(text) > limits.FILE_SIZE:
-        what = _("the text has {size} characters, at most {most} are allowed")
-        raise InputError(where, what.format(size=len(text), most=limits.FILE_SIZE))
     return cam_from(toml_tables(text, where), where, folder)
 
 
@@ -54,13 +47,7 @@ def cam_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = 
         raise InputError(
             where, what, _("compute it with: centrode run; in Python read it with read_mechanism")
         )
-    token = READING.set(Reading(folder=folder or Path()))
-    try:
-        return Cam.model_validate(dict(mapping))
-    except ValidationError as error:
-        raise input_error(error, where) from None
-    finally:
-        READING.reset(token)
+    return described(Cam, mapping, where, folder)
 
 
 def cam_text(cam: Cam) -> str:

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.locale import _
+from centrode.model.names import FRAME
 
 if TYPE_CHECKING:
     from centrode.dynamics.force_polygons.lever import Lever
@@ -24,7 +25,8 @@ HEADS = (
 
 def polygon_about(found: ForcePolygons) -> list[tuple[str, str]]:
     """Numbers of the bodies, the speed, what F1 and M1 stand for."""
-    numbers = ", ".join(f"{number} {name}" for number, name in enumerate(found.names))
+    said = [_("frame") if name == FRAME else name for name in found.names]
+    numbers = ", ".join(f"{number} {name}" for number, name in enumerate(said))
     loads = {one.symbol.partition("(")[0]: one.label for one in found.outer if one.source != "inertia"}
     return [
         (_("bodies"), numbers),

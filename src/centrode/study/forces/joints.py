@@ -36,7 +36,8 @@ def _hinges(mechanism: Mechanism) -> list[Column]:
     found = []
     for point in points:
         first, *others = _bodies_at(mechanism, point)
-        names = [f"{point} {other}" for other in others] if len(others) > 1 else [point]
+        said = [_("frame") if other == FRAME else other for other in others]
+        names = [f"{point} {other}" for other in said] if len(others) > 1 else [point]
         found += [(name, first, other) for name, other in zip(names, others, strict=False)]
     return found
 
