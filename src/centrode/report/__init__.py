@@ -1,0 +1,1 @@
+"""Reports: chapters of blocks made from results, and the documents that show them."""
