@@ -1,0 +1,156 @@
+"""What a report is made of: plain data, which the renderers of pages and of PDF show alike.
+
+Text is in the reader's language. In a `Paragraph`, a `Check` and the cells of a `Table` every other part between
+dollar signs is mathematics as the formula printer spells it (typst's notation); a dollar sign of the text itself is
+written `\\$`. Names and titles that users chose go through `shown` first: they are shown as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Sentences."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Items:
+    """Sentences below each other, each with a mark; numbered where their order matters."""
+
+    texts: tuple[str, ...]
+    numbered: bool = False
+
+
+@dataclass(frozen=True)
+class Formula:
+    """Relations below each other, aligned at their first sign of equality.
+
+    Attributes
+    ----------
+    lines : each the parts of a = b = ..., the first the left side, as mathematics
+    """
+
+    lines: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class System:
+    """matrix unknowns = right, as mathematics."""
+
+    matrix: tuple[tuple[str, ...], ...]
+    unknowns: tuple[str, ...]
+    right: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under heads.
+
+    Attributes
+    ----------
+    head : names of the columns, with their units
+    rows : cells as text, in the language's spelling of numbers
+    caption : what the rows are
+    numbers : True for columns of numbers, which are set flush right
+    """
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    caption: str = ""
+    numbers: tuple[bool, ...] = ()
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure as SVG, with its caption and its natural width [inches]."""
+
+    svg: bytes
+    caption: str
+    width: float
+
+
+@dataclass(frozen=True)
+class Check:
+    """How something was verified: by what second route, how far it is off, and what was allowed."""
+
+    text: str
+    holds: bool
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A motion that a page plays, step by step and by dragging the drive; a PDF shows its first picture.
+
+    Attributes
+    ----------
+    places : name of a point -> its places (samples, 2) [m]; NaN where it has none
+    bodies : name of a link -> names of its points, drawn as lines between them
+    fixed : names of the points of the frame
+    guides : name of a guide -> two ends (2, 2) [m] of the line that is drawn
+    sliders : name of a point on a guide -> the guide
+    drive : values of the drive (samples), as text with unit in `drive_texts`
+    tracks : names of the points whose paths are drawn
+    still : the first picture, for paper
+    """
+
+    places: Mapping[str, np.ndarray]
+    bodies: Mapping[str, tuple[str, ...]]
+    fixed: tuple[str, ...]
+    guides: Mapping[str, np.ndarray]
+    sliders: Mapping[str, str]
+    drive: np.ndarray
+    drive_texts: tuple[str, ...]
+    tracks: tuple[str, ...]
+    still: Picture
+    caption: str
+
+
+Block: TypeAlias = Paragraph | Items | Formula | System | Table | Picture | Check | Moving
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading below a chapter's, and what stands under it."""
+
+    title: str
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """A chapter; where it could not be made, `missing` says why and what would help."""
+
+    name: str
+    title: str
+    sections: tuple[Section, ...] = ()
+    missing: str = ""
+
+
+@dataclass(frozen=True)
+class Report:
+    """A whole document.
+
+    Attributes
+    ----------
+    title, subtitle : shown on the first page; the subtitle says what was computed, by which version
+    language : "en", "ru" or "uk": hyphenation, and the word for contents
+    chapters : in the order of the document
+    """
+
+    title: str
+    subtitle: str
+    language: str
+    chapters: tuple[Chapter, ...] = field(default=())
+
+
+def shown(text: str) -> str:
+    """Text of a user's own, so that nothing in it is taken for mathematics."""
+    return text.replace("\\", "\\\\").replace("$", "\\$")
