@@ -1,8 +1,8 @@
-"""What a report is made of: plain data, which the renderers of pages and of PDF show alike.
+r"""What a report is made of: plain data, which the renderers of pages and of PDF show alike.
 
 Text is in the reader's language. In a `Paragraph`, a `Check` and the cells of a `Table` every other part between
 dollar signs is mathematics as the formula printer spells it (typst's notation); a dollar sign of the text itself is
-written `\\$`. Names and titles that users chose go through `shown` first: they are shown as they are.
+written `\$`. Names and titles that users chose go through `shown` first: they are shown as they are.
 """
 
 from __future__ import annotations
@@ -153,4 +153,4 @@ class Report:
 
 def shown(text: str) -> str:
     """Text of a user's own, so that nothing in it is taken for mathematics."""
-    return text.replace("\\", "\\\\").replace("$", "\\$")
+    return text.replace("\\", "\\\\").replace("$", r"\$")
