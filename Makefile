@@ -14,7 +14,8 @@ FOR_DEMO := $(VENV)/.stamp-demo
 FOR_TESTS := $(VENV)/.stamp-dev
 
 .DELETE_ON_ERROR:
-.PHONY: help demo test format lint types contracts catalogue-check tests tests-without-extras catalogues benchmarks clean
+.PHONY: help demo test format lint types contracts catalogue-check reference-check docs tests tests-without-extras catalogues reference \
+	benchmarks clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-22s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -22,7 +23,7 @@ help: ## this list
 demo: $(FOR_DEMO) ## compute a built-in mechanism into demo-output/
 	$(BIN)/centrode run $(DEMO) --out demo-output
 
-test: lint types contracts catalogue-check tests tests-without-extras ## everything that CI checks
+test: lint types contracts catalogue-check reference-check docs tests tests-without-extras ## everything that CI checks
 
 lint: $(FOR_TESTS) ## format and lint, without changing anything
 	$(BIN)/ruff format --check .
@@ -36,6 +37,12 @@ contracts: $(FOR_TESTS) ## which room may import which
 
 catalogue-check: $(FOR_TESTS) ## translations complete and compiled
 	$(BIN)/python tools/catalogues.py check
+
+reference-check: $(FOR_TESTS) ## pages made from the program are as it is
+	$(BIN)/python -m tools.reference check
+
+docs: $(FOR_TESTS) ## the documentation as a site in docs/_build, with warnings as errors
+	$(BIN)/sphinx-build --quiet --fail-on-warning --nitpicky --builder html docs docs/_build
 
 tests: $(FOR_TESTS) ## tests and the code blocks of the documentation
 	$(BIN)/pytest -q -n auto --dist loadfile  # the blocks of one document share their names
@@ -52,12 +59,15 @@ catalogues: $(FOR_TESTS) ## take new sentences into the catalogues and compile t
 	$(BIN)/python tools/catalogues.py update
 	$(BIN)/python tools/catalogues.py compile
 
+reference: $(FOR_TESTS) ## make the pages of the documentation that are made from the program
+	$(BIN)/python -m tools.reference
+
 benchmarks: $(FOR_TESTS) ## ratios against peers and against the machine
 	$(PIP) install --editable '.[dev,benchmarks]'
 	$(BIN)/python -m benchmarks
 
 clean: ## remove everything that make made
-	rm -rf $(VENV) demo-output build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) demo-output docs/_build build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	find src tests tools benchmarks docs -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(BASE):

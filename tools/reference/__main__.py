@@ -1,0 +1,36 @@
+"""`python -m tools.reference` writes the pages that are made from the program; `check` compares them."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from tools.reference import commands, grammar
+
+FOLDER = Path(__file__).parents[2] / "docs" / "reference"
+PAGES: dict[str, Callable[[], str]] = {
+    "commands.md": commands.page,
+    "grammar.md": grammar.mechanisms,
+    "cam-grammar.md": grammar.cams,
+}
+
+
+def main(check: bool) -> int:
+    """Write the pages, or tell which of them are not as the program has it."""
+    old = []
+    for name, page in PAGES.items():
+        file, text = FOLDER / name, page()
+        if not check:
+            file.write_text(text, encoding="utf-8")
+        elif not file.exists() or file.read_text(encoding="utf-8") != text:
+            old.append(name)
+    if old:
+        print(
+            f"docs/reference/{', '.join(old)}: not as the program has it; run make reference", file=sys.stderr
+        )
+    return 1 if old else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(check=sys.argv[1:] == ["check"]))

@@ -1,0 +1,146 @@
+"""The page of the grammar: every key of a description with what may stand there, from the JSON Schema."""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import centrode as ct
+
+Schema: TypeAlias = dict[str, Any]
+
+HEAD = """# Grammar of {things}
+
+Every key, and what may stand there; made from the schema that also reads the files (`centrode schema`).
+What the keys mean is told in {meaning}.
+Files are TOML. A number is in SI (m, kg, s, rad, N); a text has a unit: `"28.6 deg"`, `"0.5 mm"`. Keys that are not
+here are refused.
+"""
+NAME = 40
+"""Letters of the longest name."""
+WORDS = {
+    "number": "number", "integer": "whole number", "boolean": "`true` or `false`", "object": "table", "null": "nothing",
+}  # fmt: skip
+
+
+def mechanisms() -> str:
+    """The page of linkages as Markdown."""
+    head = HEAD.format(things="mechanisms", meaning="[The description](../description.md)")
+    return _page(head, ct.mechanism_schema())
+
+
+def cams() -> str:
+    """The page of cams as Markdown."""
+    head = HEAD.format(things="cams", meaning="[Cams from a curvature law](../cams.md)")
+    return _page(head, ct.cam_schema())
+
+
+def _page(head: str, schema: Schema) -> str:
+    parts = [_part(name, inner, schema) for name, inner in schema["$defs"].items()]
+    return "\n".join([head, "## The file\n", _table(schema), *parts])
+
+
+def _part(name: str, inner: Schema, whole: Schema) -> str:
+    places = ", ".join(f"`{place}`" for place in _places(name, whole))
+    return f"## {name}\n\nStands in {places}.\n\n{_table(inner)}"
+
+
+def _places(name: str, whole: Schema) -> list[str]:
+    """Keys below which a part stands, as TOML spells them."""
+    reference = f"#/$defs/{name}"
+    found = []
+    for owner, schema in (("", whole), *whole["$defs"].items()):
+        for key, value in schema.get("properties", {}).items():
+            spelled = {"array": f"[[{key}]]", "object": f"[{key}.NAME]"}.get(
+                value.get("type", ""), f"[{key}]"
+            )
+            if reference in _references(value):
+                found.append(spelled if not owner else f"{key} of {owner}")
+    return found
+
+
+def _references(schema: Any) -> set[str]:
+    if isinstance(schema, dict):
+        own = {schema["$ref"]} if "$ref" in schema else set()
+        return own.union(*(_references(value) for value in schema.values()))
+    if isinstance(schema, list):
+        return set().union(*(_references(value) for value in schema))
+    return set()
+
+
+def _table(schema: Schema) -> str:
+    required = set(schema.get("required", ()))
+    rows = ["| key | what may stand there |", "|---|---|"]
+    for key, value in schema.get("properties", {}).items():
+        must = " (needed)" if key in required else ""
+        rows.append(f"| `{key}`{must} | {_said(value)} |")
+    return "\n".join(rows) + "\n"
+
+
+def _said(schema: Schema) -> str:
+    """What a value may be, in words."""
+    if "$ref" in schema:
+        part = schema["$ref"].rpartition("/")[2]
+        return f"a table, [{part}](#{part.lower()})"
+    if "const" in schema:
+        return f"`{_spelled(schema['const'])}`"
+    if "enum" in schema:
+        return " or ".join(f"`{_spelled(word)}`" for word in schema["enum"])
+    if "description" in schema:
+        return f"{schema['description']}{_bounds(schema)}"
+    if "anyOf" in schema:
+        return "; or ".join(dict.fromkeys(_said(one) for one in schema["anyOf"]))
+    return _by_type(schema)
+
+
+def _spelled(word: Any) -> str:
+    return f'"{word}"' if isinstance(word, str) else str(word).lower()
+
+
+def _by_type(schema: Schema) -> str:
+    kind = schema.get("type", "")
+    if kind == "array":
+        return _list(schema)
+    if kind == "object" and isinstance(schema.get("additionalProperties"), dict):
+        most = f" (at most {schema['maxProperties']})" if "maxProperties" in schema else ""
+        return f"names{most}, each with {_said(schema['additionalProperties'])}"
+    if kind == "string":
+        letters = schema.get("maxLength")
+        if letters is None:
+            return "a text"
+        return "a name" if letters == NAME else f"a text of at most {letters} letters"
+    word = WORDS[kind]
+    return (word if kind in ("boolean", "null") else f"a {word}") + _bounds(schema)
+
+
+def _list(schema: Schema) -> str:
+    """A list: of tables, which TOML writes one by one, or of values."""
+    count, items = _count(schema, "minItems", "maxItems"), schema["items"]
+    if "$ref" in items:
+        part = items["$ref"].rpartition("/")[2]
+        return f"{count} tables, [{part}](#{part.lower()})"
+    if _said(items) in ("a name", "a number"):
+        return f"a list of {count} {_said(items).removeprefix('a ')}s"
+    return f"a list of {count}, each {_said(items)}"
+
+
+def _count(schema: Schema, least: str, most: str) -> str:
+    low, high = schema.get(least, 0), schema.get(most)
+    if low == high:
+        return str(low)
+    if high is None:
+        return f"{low} or more"
+    return f"{low} to {high}" if low else f"up to {high}"
+
+
+def _bounds(schema: Schema) -> str:
+    """Limits of a number, told behind it."""
+    numbers = [schema, *schema.get("anyOf", ())]
+    found = []
+    for one in numbers:
+        if "exclusiveMinimum" in one:
+            found.append(f"above {one['exclusiveMinimum']:g}")
+        if "minimum" in one:
+            found.append(f"at least {one['minimum']:g}")
+        if "maximum" in one:
+            found.append(f"at most {one['maximum']:g}")
+    return f"; {', '.join(dict.fromkeys(found))}" if found else ""
