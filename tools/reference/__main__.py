@@ -7,12 +7,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tools.reference import commands, grammar
+from tools.validation import page as validation
 
-FOLDER = Path(__file__).parents[2] / "docs" / "reference"
+FOLDER = Path(__file__).parents[2] / "docs"
 PAGES: dict[str, Callable[[], str]] = {
-    "commands.md": commands.page,
-    "grammar.md": grammar.mechanisms,
-    "cam-grammar.md": grammar.cams,
+    "reference/commands.md": commands.page,
+    "reference/grammar.md": grammar.mechanisms,
+    "reference/cam-grammar.md": grammar.cams,
+    "validation.md": validation.page,
 }
 
 
@@ -26,9 +28,7 @@ def main(check: bool) -> int:
         elif not file.exists() or file.read_text(encoding="utf-8") != text:
             old.append(name)
     if old:
-        print(
-            f"docs/reference/{', '.join(old)}: not as the program has it; run make reference", file=sys.stderr
-        )
+        print(f"docs: {', '.join(old)}: not as the program has it; run make reference", file=sys.stderr)
     return 1 if old else 0
 
 
