@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from tools import gallery
 from tools.reference import commands, grammar
 from tools.validation import page as validation
 
@@ -15,6 +16,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "reference/grammar.md": grammar.mechanisms,
     "reference/cam-grammar.md": grammar.cams,
     "validation.md": validation.page,
+    "gallery.md": gallery.page,
 }
 
 

@@ -24,7 +24,13 @@ RIM, SHADE = "#C8C8C8", "#FAFAFA"
 
 
 def draw_globe(
-    axes: Axes, globe: Globe, sample: int, *, faded: Iterable[int] = (), colour: str | None = None
+    axes: Axes,
+    globe: Globe,
+    sample: int,
+    *,
+    faded: Iterable[int] = (),
+    colour: str | None = None,
+    names: bool = True,
 ) -> None:
     """Draw a spherical mechanism at one sample of its motion, over fading pictures of others.
 
@@ -40,6 +46,8 @@ def draw_globe(
         Samples drawn faintly below.
     colour : str, optional
         One colour for all links; each link its own if left out.
+    names : bool
+        Write the points' names beside them.
     """
     links = pens(globe.mechanism.link_names)
     if colour is not None:
@@ -53,7 +61,8 @@ def draw_globe(
     draw_points(axes, globe, sample, links)
     if colour is None:
         draw_turns(axes, globe, sample)
-    draw_names(axes, globe, sample)
+    if names:
+        draw_names(axes, globe, sample)
 
 
 def frame_globe(axes: Axes, globe: Globe) -> None:

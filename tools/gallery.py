@@ -1,0 +1,86 @@
+"""Make the gallery: a small picture of every built-in mechanism with the paths of its points, and the page.
+
+    python -m tools.gallery [NAME ...]
+
+The pictures go to docs/images/gallery; `make reference` makes the page that shows them.
+"""
+
+from __future__ import annotations
+
+import io
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from PIL import Image
+
+import centrode as ct
+from centrode.present.figures import read_scene
+from centrode.present.pictures import draw, initial_sample
+from centrode.present.sphere.globe import Globe
+
+DOCS = Path(__file__).parents[1] / "docs"
+FOLDER = DOCS / "images" / "gallery"
+INCHES, DOTS, COLOURS = 3.0, 120, 48
+COLUMNS = 3
+PATH = "#9BB8D3"
+HEAD = """# Gallery
+
+All built-in mechanisms, each with the paths of its points; `centrode run NAME` computes it, `centrode examples NAME` prints its
+description. Made by `python -m tools.gallery`.
+"""
+
+
+def picture(name: str) -> bytes:
+    """A mechanism in its initial position as a small PNG."""
+    mechanism = ct.example(name)
+    assert isinstance(mechanism, ct.Mechanism)
+    motion = ct.motion(mechanism)
+    scene = read_scene(mechanism, motion)
+    figure = Figure(figsize=(INCHES, INCHES))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    draw(axes, scene, initial_sample(scene, motion), names=False)
+    axes.set_axis_off()
+    for point in mechanism.moving_points:
+        path = scene.tracks[point]
+        if isinstance(scene, Globe):
+            path = np.where(scene.in_front(path)[:, None], scene.flat(path), np.nan)
+        axes.plot(path[:, 0], path[:, 1], color=PATH, linewidth=1.0, zorder=1.5)
+    return _small(figure)
+
+
+def _small(figure: Figure) -> bytes:
+    """A figure as a PNG of few colours."""
+    drawn, kept = io.BytesIO(), io.BytesIO()
+    figure.savefig(drawn, format="png", dpi=DOTS)
+    drawn.seek(0)
+    Image.open(drawn).convert("RGB").quantize(COLOURS).save(kept, format="png", optimize=True)
+    return kept.getvalue()
+
+
+def page() -> str:
+    """The page: pictures side by side, each with its title and its name."""
+    names = ct.example_names("linkage")
+    rows = []
+    for start in range(0, len(names), COLUMNS):
+        cells = [_cell(name) for name in names[start : start + COLUMNS]]
+        rows.append("| " + " | ".join(cells + [""] * (COLUMNS - len(cells))) + " |")
+    heads = "|" + " |" * COLUMNS + "\n" + "|" + "---|" * COLUMNS
+    return f"{HEAD}\n{heads}\n" + "\n".join(rows) + "\n"
+
+
+def _cell(name: str) -> str:
+    title = ct.example(name).title
+    return f"![{title}](images/gallery/{name}.png)<br>{title}<br>`{name}`"
+
+
+def main(names: list[str]) -> None:
+    """Write the pictures."""
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for name in names or ct.example_names("linkage"):
+        (FOLDER / f"{name}.png").write_bytes(picture(name))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
