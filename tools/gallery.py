@@ -27,8 +27,8 @@ COLUMNS = 3
 PATH = "#9BB8D3"
 HEAD = """# Gallery
 
-All built-in mechanisms, each with the paths of its points; `centrode run NAME` computes it, `centrode examples NAME` prints its
-description. Made by `python -m tools.gallery`.
+All built-in mechanisms, each with the paths of its points; `centrode run NAME` computes it, `centrode examples NAME`
+prints its description. Made by `python -m tools.gallery`.
 """
 
 
