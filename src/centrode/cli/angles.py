@@ -17,6 +17,7 @@ from centrode.cli.arguments import (
     samples_option,
 )
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.locale import _, mark
 
 
@@ -25,6 +26,7 @@ from centrode.locale import _, mark
 @samples_option
 @dark_option
 @results_option
+@tables_options
 @no_figures_option
 def angles(mechanism: str, samples: int | None, dark: bool, out: Path | None, no_figures: bool) -> None:
     """Compute, write and draw."""
@@ -40,7 +42,7 @@ def angles(mechanism: str, samples: int | None, dark: bool, out: Path | None, no
             progress.say(_("drawing"))
             figure = ct.transmission_figure(description, found)
             ct.save_figures({"transmission": ct.darkened(figure) if dark else figure}, draft)
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.transmission_rows(found), right=(1, 2, 3)))

@@ -20,6 +20,7 @@ from centrode.cli.arguments import (
 )
 from centrode.cli.pairs import pairs
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import InputError
 from centrode.locale import _, mark
 
@@ -94,6 +95,7 @@ def with_options(command: Callable[..., None]) -> Callable[..., None]:
 @mechanism_argument
 @with_options
 @written_option
+@tables_options
 @samples_option
 @no_figures_option
 @dark_option
@@ -113,7 +115,7 @@ def balance(
             with naming(mechanism):
                 found = ct.balance(description, samples=samples, **asked)
             _write(found, draft, progress, figures=not no_figures, dark=dark)
-            names = sorted(path.name for path in draft.iterdir())
+            names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.balance_rows(found)))

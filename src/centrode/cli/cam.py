@@ -14,6 +14,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
 
@@ -29,6 +30,7 @@ _DXF = find_spec("ezdxf") is not None
     "cam", metavar=mark("FILE_OR_EXAMPLE"), help=mark("A TOML file, or the name of a built-in cam.")
 )
 @written_option
+@tables_options
 @samples_option
 @click.option(
     "--terms",
@@ -64,7 +66,7 @@ def cam(
                 _write(results, draft, progress, groove=groove, figures=not no_figures, dark=dark)
                 if animate and "wheel" in results.objects:
                     _animate(results, draft, progress, dark=dark)
-                names = sorted(path.name for path in draft.iterdir())
+                names = output.finished(draft)
     click.echo(_(description.title) or cam)
     for part in results.parts.values():
         click.echo("\n" + _text(part))

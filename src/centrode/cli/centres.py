@@ -14,6 +14,7 @@ from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, written_option
 from centrode.cli.progress import Progress
 from centrode.cli.reached import is_moving, tell_absent
+from centrode.cli.tables import tables_options
 from centrode.errors import InputError
 from centrode.locale import _, mark
 
@@ -45,6 +46,7 @@ MOST_ROWS = 300
     help=mark('Two links ("AC,frame"); all pairs if left out. As often as needed.'),
 )
 @written_option
+@tables_options
 @no_figures_option
 @dark_option
 def centres(
@@ -79,7 +81,7 @@ def centres(
                 if not no_figures:
                     progress.say(_("drawing"))
                     _draw(description, motion, made, asked, draft, dark)
-                files = sorted(path.name for path in draft.iterdir())
+                files = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo(f"\n{_numbered(names)}")
     for text in texts:

@@ -21,6 +21,7 @@ from centrode.cli.arguments import (
 )
 from centrode.cli.progress import Progress
 from centrode.cli.reached import is_moving, tell_absent
+from centrode.cli.tables import tables_options
 from centrode.errors import MotionError
 from centrode.locale import _, mark
 
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     help=mark("Also the curvature of the paths of the link's points there; as often as needed."),
 )
 @results_option
+@tables_options
 @click.option(
     "--animate", is_flag=True, help=mark("Also write an animation: one centrode rolls on the other.")
 )
@@ -95,7 +97,7 @@ def centrodes(
             progress.say(_("drawing {name}").format(name="centrodes.gif"))
             with about(mechanism):
                 ct.animate_centrodes(description, motion, found, draft / "centrodes.gif", dark)
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo(f"\n{output.table(ct.centrode_rows(description, found))}")
     for sample in range(len(at)):

@@ -12,6 +12,7 @@ from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, results_option
 from centrode.cli.pairs import pairs
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import InputError
 from centrode.locale import _, mark
 
@@ -49,6 +50,7 @@ SCALE = "length=0.02"
 )
 @dark_option
 @results_option
+@tables_options
 @no_figures_option
 def diagrams(
     mechanism: str,
@@ -85,7 +87,7 @@ def diagrams(
                 shown = {name: ct.darkened(figure) for name, figure in named.items()} if dark else named
                 ct.save_figures(shown, draft)
             texts += ["", _("at {value}").format(value=text), report(check)]
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     click.echo("\n".join(texts))
     click.echo("\n" + output.files_in(folder, names))
 

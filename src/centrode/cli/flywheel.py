@@ -13,6 +13,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
 )
 @samples_option
 @no_figures_option
+@tables_options
 def flywheel(
     mechanism: str, mean: str, method: str, out: Path | None, samples: int | None, no_figures: bool
 ) -> None:
@@ -75,7 +77,7 @@ def _written(
         scalars = {name: one.as_dict() for name, one in ct.flywheel_scalars(results.flywheel).items()}
         text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
         (draft / "summary.json").write_text(text, encoding="utf-8")
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     return results.flywheel, names
 
 

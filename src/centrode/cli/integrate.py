@@ -12,6 +12,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, results_option, stop_option
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
 
@@ -30,6 +31,7 @@ from centrode.locale import _, mark
 @click.option("--tolerance", type=float, metavar=mark("X"), help=mark("Tolerance of each adaptive step."))
 @stop_option
 @results_option
+@tables_options
 @no_figures_option
 def integrate(
     mechanism: str,
@@ -66,7 +68,7 @@ def integrate(
             progress.say(_("drawing"))
             drawn = ct.integration_figures(description, found, ct.closed_motion(description, found))
             ct.save_figures(drawn, draft)
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.integration_rows(description, found)))

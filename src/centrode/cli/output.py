@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from centrode.cli.tables import spell_tables
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
 
@@ -60,6 +61,12 @@ def files_in(folder: Path, names: Sequence[str]) -> str:
     """A paragraph that counts and names the files of a folder."""
     count = ngettext("{n} file in {folder}", "{n} files in {folder}", len(names))
     return paragraph(count.format(n=len(names), folder=folder) + ":", names)
+
+
+def finished(draft: Path) -> list[str]:
+    """Names of the files in a draft folder, after its tables have been spelled as the command was asked to."""
+    spell_tables(draft)
+    return sorted(path.name for path in draft.iterdir())
 
 
 @contextmanager

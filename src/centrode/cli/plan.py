@@ -42,7 +42,7 @@ def plan(
             progress.say(_("drawing"))
             figure = ct.plan_figure(description, found)
             ct.save_figures({"plan": ct.darkened(figure) if dark else figure}, draft)
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.plan_rows(description, found)))

@@ -11,6 +11,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, results_option
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import InputError
 from centrode.locale import _, mark
 
@@ -35,6 +36,7 @@ MOST_INSTANTS = 100
 )
 @dark_option
 @results_option
+@tables_options
 @no_figures_option
 def polygons(
     mechanism: str, instants: tuple[str, ...], paper: str, dark: bool, out: Path | None, no_figures: bool
@@ -63,7 +65,7 @@ def polygons(
                 shown = {name: ct.darkened(figure) for name, figure in named.items()} if dark else named
                 ct.save_figures(shown, draft)
             texts += ["", _("at {value}").format(value=text), report(found)]
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     click.echo("\n".join(texts))
     click.echo("\n" + output.files_in(folder, names))
 

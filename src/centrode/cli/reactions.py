@@ -19,6 +19,7 @@ from centrode.cli.arguments import (
     written_option,
 )
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import InputError, MotionError, Status
 from centrode.locale import _, mark, ngettext
 
@@ -45,6 +46,7 @@ MOST_INSTANTS = 100
 )
 @click.option("--frictionless", is_flag=True, help=mark("Leave out friction that is given by coefficients."))
 @written_option
+@tables_options
 @samples_option
 @start_option
 @stop_option
@@ -80,7 +82,7 @@ def reactions(
                 progress.say(_("solving"))
                 found = solved()
                 write(description, found, draft, progress, figures=not no_figures, over_range=not instants)
-                names = sorted(path.name for path in draft.iterdir())
+                names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo("\n" + report(description, found, instants))
     if out is not None:

@@ -19,6 +19,7 @@ from centrode.cli.arguments import (
     written_option,
 )
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import MotionError, Status
 from centrode.locale import _, mark, ngettext
 
@@ -31,6 +32,7 @@ MISSING = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 @click.command(help=mark("Reduce masses and loads to the drive, part by part."))
 @mechanism_argument
 @written_option
+@tables_options
 @samples_option
 @start_option
 @stop_option
@@ -55,7 +57,7 @@ def reduce(
             progress.say(_("solving"))
             found = _reduced(mechanism, description, samples, first, last)
             _write(description, found, draft, progress, figures=not no_figures)
-            names = sorted(path.name for path in draft.iterdir())
+            names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.reduction_rows(description, found)))

@@ -13,6 +13,7 @@ from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, results_option
 from centrode.cli.pairs import pairs, ranges
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import InputError
 from centrode.locale import _, mark
 
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
 )
 @click.option("--samples", type=int, metavar=mark("N"), help=mark("Grid lines of each drive."))
 @results_option
+@tables_options
 @no_figures_option
 def region(
     mechanism: str,
@@ -74,7 +76,7 @@ def region(
             progress.say(_("drawing"))
             picture = ct.region_figure(description, found, _motion(description))
             ct.save_figures({"region": picture}, draft)
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.region_rows(description, found)))

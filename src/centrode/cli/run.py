@@ -22,6 +22,7 @@ from centrode.cli.arguments import (
 from centrode.cli.flywheel import write as write_machine
 from centrode.cli.progress import Progress
 from centrode.cli.reactions import write as write_reactions
+from centrode.cli.tables import tables_options
 from centrode.errors import MotionError
 from centrode.locale import _, mark
 
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 @click.command(help=mark("Compute the motion of a mechanism: tables and pictures."))
 @mechanism_argument
 @results_option
+@tables_options
 @samples_option
 @start_option
 @stop_option
@@ -59,7 +61,7 @@ def run(
         if animate:
             with about(mechanism):
                 _animate(study, draft, progress)
-        names = sorted(path.name for path in draft.iterdir())
+        names = output.finished(draft)
     click.echo(summary_text(study, mechanism))
     click.echo("\n" + output.files_in(folder, names))
     if study.failure is not None:

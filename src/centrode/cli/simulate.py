@@ -13,6 +13,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option, written_option
 from centrode.cli.progress import Progress
+from centrode.cli.tables import tables_options
 from centrode.errors import CentrodeError, InputError, MotionError
 from centrode.locale import _, mark
 
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 @click.option("--steps", type=int, metavar=mark("N"), help=mark("Number of fixed steps."))
 @click.option("--motion", is_flag=True, help=mark("Write the motion of all points and links too."))
 @written_option
+@tables_options
 @samples_option
 @no_figures_option
 def simulate(
@@ -53,7 +55,7 @@ def simulate(
             with output.output_folder(out) as draft, Progress() as progress:
                 found = _simulated(description, settings, progress, motion=motion)
                 _write(description, found, draft, progress, motion=motion, figures=not no_figures)
-                names = sorted(path.name for path in draft.iterdir())
+                names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
     rows = [*ct.simulation_rows(description, found), *_regime(description, settings, found)]

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from centrode.present.coefficient_tables import write_coefficients_csv
     from centrode.present.curvature import curvature_figure
     from centrode.present.dark import darkened
+    from centrode.present.decimal_comma import spell_with_comma
     from centrode.present.drawing import draw_mechanism
     from centrode.present.equations.latex import equations_latex, equations_markdown
     from centrode.present.equations.text import equations_rows, equations_text
@@ -70,6 +71,7 @@ if TYPE_CHECKING:
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
     from centrode.present.variant_folders import write_variants
+    from centrode.present.workbooks import workbook_of_csv, write_motion_xlsx
 
 __all__ = [
     "animate_centrodes",
@@ -134,6 +136,9 @@ __all__ = [
     "write_reduction_csv",
     "write_region_csv",
     "write_variants",
+    "spell_with_comma",
+    "workbook_of_csv",
+    "write_motion_xlsx",
 ]
 
 _attached, __dir__, _names = lazy_loader.attach(
@@ -152,6 +157,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "centrodes": ["animate_centrodes", "centrodes_figure"],
         "curvature": ["curvature_figure"],
         "dark": ["darkened"],
+        "decimal_comma": ["spell_with_comma"],
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
         "equations.latex": ["equations_latex", "equations_markdown"],
@@ -184,6 +190,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],
         "variant_folders": ["write_variants"],
+        "workbooks": ["workbook_of_csv", "write_motion_xlsx"],
         "cams.walking_animation": ["animate_walking"],
         "cams.walking_drawing": ["walking_figure"],
     },
@@ -191,14 +198,17 @@ _attached, __dir__, _names = lazy_loader.attach(
 
 
 def __getattr__(name: str) -> Any:
-    """Load a presentation when it is first asked for; a missing matplotlib is told with its repair."""
+    """Load a presentation when it is first asked for; a missing library is told with its repair."""
     try:
         return _attached(name)
     except ModuleNotFoundError as missing:
-        if (missing.name or "").partition(".")[0] != "matplotlib":
+        library = (missing.name or "").partition(".")[0]
+        if library == "matplotlib":
+            what = _("figures need matplotlib, which is not installed")
+            repair = _('install it with pip install "centrode[figures]", or pass --no-figures')
+        elif library == "xlsxwriter":
+            what = _("workbooks need XlsxWriter, which is not installed")
+            repair = _('install it with pip install "centrode[tables]", or take the CSV files')
+        else:
             raise
-        raise InputError(
-            "",
-            _("figures need matplotlib, which is not installed"),
-            _('install it with pip install "centrode[figures]", or pass --no-figures'),
-        ) from missing
+        raise InputError("", what, repair) from missing

@@ -1,0 +1,48 @@
+"""How a command's tables are spelled besides plain CSV: with decimal commas, as workbooks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+import centrode as ct
+from centrode.locale import mark
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+COMMA, XLSX = "centrode.decimal-comma", "centrode.xlsx"
+
+
+def tables_options(command: Command) -> Command:
+    """The options of every command that writes a folder of tables; `spell_tables` reads them."""
+    for name, key, told in (
+        ("--xlsx", XLSX, mark("Also write each table as a workbook, a sheet for each quantity.")),
+        ("--decimal-comma", COMMA, mark("CSV with decimal commas, fields apart by semicolons.")),
+    ):
+        command = click.option(name, is_flag=True, expose_value=False, callback=_keep(key), help=told)(
+            command
+        )
+    return command
+
+
+def _keep(key: str) -> Callable[[click.Context, click.Parameter, bool], None]:
+    """Remember an option for the end of the command."""
+
+    def keep(context: click.Context, _parameter: click.Parameter, value: bool) -> None:
+        context.meta[key] = value
+
+    return keep
+
+
+def spell_tables(folder: Path) -> None:
+    """Add workbooks and put decimal commas into the tables of a folder, as the running command was asked to."""
+    context = click.get_current_context(silent=True)
+    asked = {} if context is None else context.meta
+    for table in sorted(folder.rglob("*.csv")):
+        if asked.get(XLSX):
+            ct.workbook_of_csv(table, table.with_suffix(".xlsx"))
+        if asked.get(COMMA):
+            ct.spell_with_comma(table)

@@ -1,0 +1,120 @@
+"""Tables as workbooks (XLSX): a sheet for each quantity, units in the headers; the same table gives the same bytes."""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+import xlsxwriter
+
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.present.tables import motion_table
+from centrode.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    import xarray
+    from xlsxwriter.worksheet import Worksheet
+
+    from centrode.model.mechanism import Display
+
+Column: TypeAlias = Sequence[float | str] | Sequence[float] | Sequence[str]
+
+MOST_ROWS, MOST_COLUMNS, MOST_LETTERS = 1_048_575, 16_384, 31
+"""Rows below the header, columns and letters of a sheet's name that the format holds."""
+ALONG = ("time", "drive", "turned", "carrier_angle", "cam_angle")
+"""Quantities that tell where a row is: each sheet begins with them."""
+BESIDE = ("status", "residual")
+"""Columns that end each sheet."""
+CREATED = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC)
+"""The workbook's time stamp: not that of the run."""
+WIDTH = 14
+
+
+def write_motion_xlsx(
+    dataset: xarray.Dataset,
+    path: str | Path,
+    display: Display | None = None,
+    points: Sequence[str] | None = None,
+) -> None:
+    """Write a motion's table as a workbook with a sheet for each quantity.
+
+    Parameters are those of `motion_table`. Numbers have 16 digits; one that does not exist is an empty cell. Raises
+    InputError for more rows or columns than a sheet holds. Needs the extra `tables`.
+    """
+    headers, columns = motion_table(dataset, display, points)
+    write_workbook(path, headers, columns)
+
+
+def workbook_of_csv(source: Path, path: Path) -> None:
+    """Write a CSV file of this project as a workbook."""
+    with source.open(encoding="utf-8", newline="") as file:
+        headers, *rows = csv.reader(file)
+    columns = list(zip(*rows, strict=True)) if rows else [() for _header in headers]
+    write_workbook(path, headers, [_numbers(column) for column in columns])
+
+
+def write_workbook(path: str | Path, headers: Sequence[str], columns: Sequence[Column]) -> None:
+    """Write columns as a workbook: those of one quantity on a sheet of their own.
+
+    Raises InputError for more rows or columns than a sheet holds.
+    """
+    rows = max((len(column) for column in columns), default=0)
+    if rows > MOST_ROWS or len(columns) > MOST_COLUMNS:
+        raise InputError(
+            str(path),
+            _("a sheet holds {rows} rows and {columns} columns").format(rows=MOST_ROWS, columns=MOST_COLUMNS),
+            _("ask for fewer samples, or take the CSV file"),
+        )
+    book = xlsxwriter.Workbook(str(path), {"nan_inf_to_errors": False})
+    book.set_properties({"created": CREATED})
+    bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top"})
+    for name, numbers in _sheets(headers).items():
+        sheet = book.add_worksheet(name)
+        for place, number in enumerate(numbers):
+            sheet.write_string(0, place, headers[number], bold)
+            _write_column(sheet, place, columns[number])
+        sheet.set_column(0, len(numbers) - 1, WIDTH)
+        sheet.freeze_panes(1, sum(_quantity(headers[n]) in ALONG for n in numbers))
+    book.close()
+
+
+def _write_column(sheet: Worksheet, place: int, column: Column) -> None:
+    for row, value in enumerate(column, start=1):
+        if isinstance(value, str):
+            sheet.write_string(row, place, value)
+        elif math.isfinite(value):
+            sheet.write_number(row, place, value)
+
+
+def _sheets(headers: Sequence[str]) -> dict[str, list[int]]:
+    """Name of a sheet -> numbers of its columns; one sheet alone where no column is of a known quantity."""
+    quantities = [_quantity(header) for header in headers]
+    along = [n for n, quantity in enumerate(quantities) if quantity in ALONG]
+    beside = [n for n, quantity in enumerate(quantities) if quantity in BESIDE]
+    found: dict[str, list[int]] = {}
+    for number, quantity in enumerate(quantities):
+        if quantity not in (*ALONG, *BESIDE):
+            found.setdefault(quantity[:MOST_LETTERS], []).append(number)
+    if set(found) <= {"table"}:
+        return {"table": list(range(len(headers)))}
+    return {name: [*along, *numbers, *beside] for name, numbers in found.items()}
+
+
+def _quantity(header: str) -> str:
+    """The quantity that a header such as "position_C_x [m]" begins with; "table" for none."""
+    name = header.partition(" [")[0]
+    fitting = [key for key in (*QUANTITIES, *ALONG, *BESIDE) if name == key or name.startswith(f"{key}_")]
+    return max(fitting, key=len, default="table")
+
+
+def _numbers(column: Sequence[str]) -> Column:
+    """Fields as numbers where all that are not empty are numbers."""
+    try:
+        return [float(field) if field else float("nan") for field in column]
+    except ValueError:
+        return column

@@ -1,0 +1,90 @@
+"""Workbooks hold the table's numbers to sixteen digits, a sheet for each quantity; decimal commas read back."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import openpyxl
+import pytest
+
+import centrode as ct
+from centrode import present
+from centrode.present.workbooks import MOST_COLUMNS, MOST_ROWS, write_workbook
+
+SIXTEEN_DIGITS = 5e-16 + 2.0**-53
+"""Half a unit of the sixteenth digit of a number that begins with 1, and the rounding of what is read, relatively."""
+
+
+def sheets(path: Path) -> dict[str, list[tuple[object, ...]]]:
+    book = openpyxl.load_workbook(path, read_only=True)
+    return {sheet.title: list(sheet.iter_rows(values_only=True)) for sheet in book}
+
+
+def test_every_number_of_the_table_is_on_its_sheet(make, tmp_path: Path) -> None:
+    mechanism, dataset = make("worked")
+    path = tmp_path / "motion.xlsx"
+    ct.write_motion_xlsx(dataset, path, mechanism.display, mechanism.moving_points)
+    headers, columns = present.motion_table(dataset, mechanism.display, mechanism.moving_points)
+    table = dict(zip(headers, columns, strict=True))
+    found = sheets(path)
+    assert {"angle", "velocity", "slide_acceleration", "velocity_coefficient"} <= found.keys()
+    seen = set()
+    for name, (head, *rows) in found.items():
+        assert [header for header in head if name in header]
+        assert (head[0], head[-2], head[-1]) == ("time [s]", "status", "residual")
+        for header, values in zip(head, zip(*rows, strict=True), strict=True):
+            seen.add(header)
+            for value, told in zip(values, table[str(header)], strict=True):
+                if isinstance(told, str):
+                    assert value == told
+                elif math.isnan(told):
+                    assert value is None
+                else:
+                    assert abs(float(value) - told) <= SIXTEEN_DIGITS * abs(told)
+    assert seen == set(headers)
+
+
+def test_samples_without_a_number_are_empty_cells(tmp_path: Path) -> None:
+    dataset = ct.motion(ct.example("slider-between-cranks-locked"), 37)
+    ct.write_motion_xlsx(dataset, tmp_path / "motion.xlsx")
+    head, *rows = sheets(tmp_path / "motion.xlsx")["angle"]
+    last = dict(zip(head, rows[18], strict=True))
+    assert last["angle_CB [rad]"] is None
+    assert last["status"] == "open"
+
+
+def test_the_same_table_gives_the_same_bytes(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        write_workbook(tmp_path / name, ["time [s]", "angle_A [rad]"], [[0.0, 1.0], [0.1, 0.2]])
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+
+
+def test_text_that_looks_like_a_formula_stays_text(tmp_path: Path) -> None:
+    write_workbook(tmp_path / "a.xlsx", ["=1+1", "link"], [["=SUM(A1)", "{=B1}"], ["http://x", "+1"]])
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    assert [cell.data_type for row in book["table"] for cell in row] == ["s"] * 6
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(MOST_ROWS + 1, 1), (1, MOST_COLUMNS + 1)])
+def test_what_no_sheet_holds_is_refused(rows: int, columns: int, tmp_path: Path) -> None:
+    with pytest.raises(ct.InputError, match="a sheet holds 1048575 rows"):
+        write_workbook(tmp_path / "a.xlsx", ["x"] * columns, [range(rows)] * columns)
+    assert not (tmp_path / "a.xlsx").exists()
+
+
+def test_decimal_commas(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text('name,x [m]\n"A, 1.5",0.25\nv1.2,-1e-09\n,3\n1.2.3,1.5e+20\n', encoding="utf-8")
+    ct.spell_with_comma(path)
+    assert path.read_bytes().startswith(b"\xef\xbb\xbf")
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.reader(file, delimiter=";"))
+    assert rows == [
+        ["name", "x [m]"],
+        ["A, 1.5", "0,25"],
+        ["v1.2", "-1e-09"],
+        ["", "3"],
+        ["1.2.3", "1,5e+20"],
+    ]
