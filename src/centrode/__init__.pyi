@@ -219,6 +219,7 @@ from .study.sweep_summary import sweep_rows as sweep_rows
 from .present import sweep_csv as sweep_csv
 from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
+from .present import mjcf_text as mjcf_text
 from .present import write_motion_xlsx as write_motion_xlsx
 from .present import workbook_of_csv as workbook_of_csv
 from .present import spell_with_comma as spell_with_comma

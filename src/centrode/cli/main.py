@@ -25,6 +25,7 @@ from centrode.cli.describe import describe
 from centrode.cli.diagrams import diagrams
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
+from centrode.cli.export import export
 from centrode.cli.flywheel import flywheel
 from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
@@ -66,6 +67,7 @@ COMMANDS: tuple[click.Command, ...] = (
     plan,
     angles,
     sweep,
+    export,
     examples,
     schema,
 )

@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from centrode.present.instant_drawing import diagram_figures
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
+    from centrode.present.mjcf.writing import mjcf_text
     from centrode.present.motion_animation import animate_motion
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
@@ -100,6 +101,7 @@ __all__ = [
     "machine_figures",
     "diagram_figures",
     "integration_figures",
+    "mjcf_text",
     "motion_figures",
     "motion_table",
     "bearing_figures",
@@ -183,6 +185,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "forces.reduction_tables": ["write_reduction_csv"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
+        "mjcf.writing": ["mjcf_text"],
         "motion_animation": ["animate_motion"],
         "saving": ["save_figures"],
         "forces.simulation_figures": ["simulation_figures"],
