@@ -41,8 +41,8 @@ catalogue-check: $(FOR_TESTS) ## translations complete and compiled
 reference-check: $(FOR_TESTS) ## pages made from the program are as it is
 	$(BIN)/python -m tools.reference check
 
-docs: $(FOR_TESTS) ## the documentation as a site in docs/_build, with warnings as errors
-	$(BIN)/sphinx-build --quiet --fail-on-warning --nitpicky --builder html docs docs/_build
+docs: $(FOR_TESTS) ## the documentation as a site in docs/_build/html, with warnings as errors
+	$(BIN)/sphinx-build --quiet --fail-on-warning --nitpicky --builder html docs docs/_build/html
 
 tests: $(FOR_TESTS) ## tests and the code blocks of the documentation
 	$(BIN)/pytest -q -n auto --dist loadfile  # the blocks of one document share their names

@@ -14,7 +14,8 @@ author = "centrode contributors"
 copyright = "centrode contributors"
 version = release = centrode.__version__
 
-extensions = ["myst_parser"]
+extensions = ["myst_nb"]
+nb_execution_mode = "off"  # tools/notebook.py runs it
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4  # links to headings work as on code hosts
 exclude_patterns = ["_build"]

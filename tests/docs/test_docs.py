@@ -60,6 +60,7 @@ def links() -> list[tuple[Path, str]]:
         for page, text in TEXTS.items()
         for tree in TREE.findall(text)
         for entry in tree.split()
+        if not (page.parent / f"{entry}.ipynb").exists()
     ]
     return [(page, target) for page, target in found if "://" not in target]
 

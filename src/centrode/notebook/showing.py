@@ -1,0 +1,93 @@
+"""What a notebook shows of a mechanism, its structure, its motion and its equations."""
+
+from __future__ import annotations
+
+import html
+import io
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+from centrode.errors import CentrodeError
+from centrode.kinematics.motion import motion as motion_of
+from centrode.locale import _
+from centrode.model.files import parse_mechanism
+from centrode.present.equations.latex import equations_markdown
+from centrode.present.figures import read_scene
+from centrode.present.pictures import mechanism_figure
+from centrode.present.saving import METADATA
+from centrode.present.shown import shown_as
+from centrode.present.style import house_style
+from centrode.study.summary import check_rows
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+    from centrode.study.checking import Check
+
+__all__ = ["check_html", "equations_markdown", "mechanism_html", "motion_html"]
+
+SAMPLES = 73
+
+
+def mechanism_html(mechanism: Mechanism) -> str:
+    """A mechanism as a drawing of its motion over a table of its links; the reason where it does not move."""
+    try:
+        drawing = _drawing(mechanism, motion_of(mechanism, SAMPLES))
+    except CentrodeError as failure:
+        drawing = f"<p>{html.escape(str(failure))}</p>"
+    rows = [(name, *_link(mechanism, name)) for name in mechanism.links]
+    return f"{drawing}{_table((_('link'), _('points'), _('length')), rows)}"
+
+
+def check_html(checked: Check) -> str:
+    """A structure as a table: mobility, redundant constraints, loops, groups, initial position."""
+    title = f"<h4>{html.escape(_(checked.title))}</h4>" if checked.title else ""
+    return title + _table((), check_rows(checked))
+
+
+def motion_html(dataset: xarray.Dataset) -> str:
+    """A motion as a drawing over xarray's own view of it; any other dataset as xarray shows it."""
+    own: str = dataset._repr_html_()
+    if (
+        "mechanism" not in dataset.attrs
+        or "position" not in dataset
+        or set(dataset["status"].dims) != {"sample"}
+    ):
+        return own
+    try:
+        mechanism = parse_mechanism(dataset.attrs["mechanism"])
+        return _drawing(mechanism, dataset) + own
+    except CentrodeError:
+        return own
+
+
+def _drawing(mechanism: Mechanism, dataset: xarray.Dataset) -> str:
+    """The mechanism over fading pictures of its motion, as SVG within a page."""
+    with house_style():
+        canvas: Any = FigureCanvasSVG(mechanism_figure(read_scene(mechanism, dataset), dataset, []))
+        drawn = io.BytesIO()
+        canvas.print_svg(drawn, metadata=METADATA["svg"])
+    text = drawn.getvalue().decode()
+    return f"<div style='max-width: 36em'>{text[text.index('<svg') :]}</div>"
+
+
+def _link(mechanism: Mechanism, name: str) -> tuple[str, str]:
+    """Points of a link, and its length in the unit of the display."""
+    link = mechanism.links[name]
+    if link.length is None:
+        return ", ".join(link.coordinates), ""
+    factor, unit = shown_as("m" if mechanism.space == "plane" else "rad", mechanism.display)
+    return ", ".join(link.coordinates), f"{factor * link.length:.6g} {unit}"
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Rows as a table, whatever stands in them shown as it is."""
+    heads = "".join(f"<th style='text-align: left'>{html.escape(cell)}</th>" for cell in head)
+    lines = [
+        "<tr>" + "".join(f"<td style='text-align: left'>{html.escape(cell)}</td>" for cell in row) + "</tr>"
+        for row in rows
+    ]
+    return f"<table>{f'<tr>{heads}</tr>' if heads else ''}{''.join(lines)}</table>"
