@@ -9,7 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
+from centrode.model.mechanism import FRAME
 from centrode.present import signs
+from centrode.present.gears import pitch_circles
 from centrode.present.labels import label_places
 from centrode.present.obstacles import drive_arcs, ground_line, lines, unit
 from centrode.present.scene import Array, Scene, corners
@@ -78,6 +80,9 @@ def draw_links(axes: Axes, scene: Scene, sample: int, links: Mapping[str, Pen], 
     """Links as lines and filled polygons, their slots, and the sliders."""
     places = scene.at(sample)
     draw_wheels(axes, scene, sample, links, alpha)
+    for name, disc in pitch_circles(scene, sample):
+        colour = GROUND if name == FRAME else links[name].colour
+        signs.pitch_circle(axes, disc.centre, disc.radius, disc.angle, colour, alpha)
     for _drive, foot, mouth, end in cylinders(scene, sample):
         signs.cylinder(axes, foot, mouth, end, scene.sign, alpha)
     slotted = {guide.on for guide in scene.mechanism.guides}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.present.gears import pitch_circles
 from centrode.present.scene import Scene, box, span
 from centrode.present.shown import shown_as
 from centrode.present.wheels import reaches
@@ -46,5 +47,6 @@ def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene:
     )
     lines = [scene.guide_line(guide, slice(None)) for guide in mechanism.guides if guide.on != "frame"]
     ends = [end for line in lines if line is not None for end in line]
-    low, high = box([*tracks.values(), *ends, *reaches(scene)])
+    rims = [disc.outline for sample in range(samples) for _link, disc in pitch_circles(scene, sample)]
+    low, high = box([*tracks.values(), *ends, *reaches(scene), *rims])
     return replace(scene, low=low, high=high)

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from centrode.present.style import GROUND, INK
 
 Array = NDArray[np.float64]
+CHAIN = (0.0, (9.0, 2.5, 1.5, 2.5))
+"""Dashes of pitch circles."""
 
 
 def hinge(axes: Axes, place: Array, size: float, colour: str = INK, alpha: float = 1.0) -> None:
@@ -167,6 +169,30 @@ def circle(axes: Axes, centre: Array, radius: float, colour: str, alpha: float =
     )
     rim.set_alpha(alpha)
     axes.add_patch(rim)
+
+
+def pitch_circle(
+    axes: Axes, centre: Array, radius: float, angle: float, colour: str, alpha: float = 1.0
+) -> None:
+    """A chain-dotted circle with a short mark that turns with the wheel."""
+    rim = Circle(
+        (centre[0], centre[1]),
+        radius,
+        facecolor="none",
+        edgecolor=colour,
+        linewidth=1.0,
+        linestyle=CHAIN,
+        zorder=2.4,
+    )
+    rim.set_alpha(alpha)
+    axes.add_patch(rim)
+    way = radius * np.array([np.cos(angle), np.sin(angle)])
+    axes.add_collection(
+        LineCollection(
+            [[centre + 0.88 * way, centre + way]], colors=colour, linewidths=1.6, alpha=alpha, zorder=2.4
+        ),
+        autolim=False,
+    )
 
 
 def cylinder(axes: Axes, foot: Array, mouth: Array, end: Array, size: float, alpha: float = 1.0) -> None:
