@@ -219,6 +219,10 @@ from .study.sweep_summary import sweep_rows as sweep_rows
 from .present import sweep_csv as sweep_csv
 from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
+from .present import mechanism_drawing as mechanism_drawing
+from .present import drawing_svg as drawing_svg
+from .present import write_drawing_svg as write_drawing_svg
+from .present import write_drawing_dxf as write_drawing_dxf
 from .present import mjcf_text as mjcf_text
 from .present import write_motion_xlsx as write_motion_xlsx
 from .present import workbook_of_csv as workbook_of_csv

@@ -23,6 +23,7 @@ from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
 from centrode.cli.describe import describe
 from centrode.cli.diagrams import diagrams
+from centrode.cli.draw import draw
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
@@ -67,6 +68,7 @@ COMMANDS: tuple[click.Command, ...] = (
     plan,
     angles,
     sweep,
+    draw,
     export,
     examples,
     schema,

@@ -43,6 +43,9 @@ if TYPE_CHECKING:
     from centrode.present.curvature import curvature_figure
     from centrode.present.dark import darkened
     from centrode.present.decimal_comma import spell_with_comma
+    from centrode.present.drafting.dxf import write_drawing_dxf
+    from centrode.present.drafting.sheet import mechanism_drawing
+    from centrode.present.drafting.svg import drawing_svg, write_drawing_svg
     from centrode.present.drawing import draw_mechanism
     from centrode.present.equations.latex import equations_latex, equations_markdown
     from centrode.present.equations.text import equations_rows, equations_text
@@ -101,7 +104,11 @@ __all__ = [
     "machine_figures",
     "diagram_figures",
     "integration_figures",
+    "drawing_svg",
+    "mechanism_drawing",
     "mjcf_text",
+    "write_drawing_dxf",
+    "write_drawing_svg",
     "motion_figures",
     "motion_table",
     "bearing_figures",
@@ -160,6 +167,9 @@ _attached, __dir__, _names = lazy_loader.attach(
         "curvature": ["curvature_figure"],
         "dark": ["darkened"],
         "decimal_comma": ["spell_with_comma"],
+        "drafting.dxf": ["write_drawing_dxf"],
+        "drafting.sheet": ["mechanism_drawing"],
+        "drafting.svg": ["drawing_svg", "write_drawing_svg"],
         "drawing": ["draw_mechanism"],
         "coefficient_tables": ["write_coefficients_csv"],
         "equations.latex": ["equations_latex", "equations_markdown"],

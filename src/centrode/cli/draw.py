@@ -1,0 +1,102 @@
+"""`centrode draw`: a mechanism at full size in conventional signs, for the shop."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+import numpy as np
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import mechanism_argument, samples_option, start_option, stop_option
+from centrode.errors import InputError
+from centrode.locale import _, mark
+from centrode.model.problems import nearest, shown
+
+if TYPE_CHECKING:
+    import xarray
+
+KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
+
+
+@click.command(help=mark("Draw a mechanism at full size in conventional signs."))
+@mechanism_argument
+@click.option(
+    "--at",
+    "instant",
+    metavar=mark("VALUE"),
+    help=mark("The drive's value that is drawn; the initial one if left out."),
+)
+@click.option(
+    "--path",
+    "paths",
+    multiple=True,
+    metavar=mark("NAME"),
+    help=mark("A point whose path is drawn, as often as needed, or all."),
+)
+@click.option(
+    "--centrodes",
+    "links",
+    multiple=True,
+    metavar=mark("LINK"),
+    help=mark("A link whose centrodes are drawn, as often as needed."),
+)
+@click.option("--no-names", is_flag=True, help=mark("Leave out the points' names."))
+@samples_option
+@start_option
+@stop_option
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar=mark("FILE"),
+    help=mark("FILE.dxf or FILE.svg, in millimetres."),
+)
+@click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
+def draw(
+    mechanism: str, instant: str | None, paths: tuple[str, ...], links: tuple[str, ...], no_names: bool,
+    samples: int | None, start: str | None, stop: str | None, out: Path, force: bool,
+) -> None:  # fmt: skip
+    """Write one drawing, whole or not at all."""
+    kind = out.suffix.lower()
+    if kind not in KINDS:
+        what = _("{ending} is no kind of file for drawings").format(ending=f'"{out.suffix}"')
+        raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
+    description = ct.load(mechanism)
+    place = ct.initial_place(description) if instant is None else ct.range_value(description, instant, "--at")
+    first = None if start is None else ct.range_value(description, start, "--from")
+    last = None if stop is None else ct.range_value(description, stop, "--to")
+    with about(mechanism):
+        motion, sample = _motion(description, place, samples, first, last)
+        rolled = [ct.centrodes(motion, link) for link in links]
+        drawing = ct.mechanism_drawing(
+            description, motion, sample, _points(description, paths), rolled, not no_names
+        )
+    with output.output_file(out, force=force) as draft:
+        getattr(ct, KINDS[kind])(drawing, draft)
+    click.echo(_("wrote {file}").format(file=out))
+
+
+def _motion(
+    mechanism: ct.Mechanism, place: float, samples: int | None, first: float | None, last: float | None
+) -> tuple[xarray.Dataset, int]:
+    """The motion with the instant asked for among its samples, and its number."""
+    whole = ct.motion(mechanism, samples, first, last)
+    by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
+    values = whole["drive_value"].to_numpy()[:, 0] if by_value else whole["time"].to_numpy()
+    places = np.unique(np.append(values, place))
+    return ct.motion(mechanism, at=places), int(np.searchsorted(places, place))
+
+
+def _points(mechanism: ct.Mechanism, paths: tuple[str, ...]) -> tuple[str, ...]:
+    """The points whose paths are asked for."""
+    if "all" in paths:
+        return mechanism.moving_points
+    for name in paths:
+        if name not in mechanism.moving_points:
+            what = _("there is no moving point {name}").format(name=shown(name))
+            raise InputError("--path", what, nearest(name, mechanism.moving_points))
+    return paths

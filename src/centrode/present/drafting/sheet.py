@@ -1,0 +1,115 @@
+"""A mechanism at one instant as a drawing at full size: links, frame, guides, wheels, paths, centrodes, a title."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from centrode.errors import NotComputedYet
+from centrode.locale import _
+from centrode.present.drafting.board import Board, on_paper
+from centrode.present.drafting.strokes import Drawing, Stroke, Words
+from centrode.present.drawing import (
+    draw_drive,
+    draw_frame,
+    draw_hinges,
+    draw_links,
+    draw_names,
+)
+from centrode.present.reading import scene_of
+from centrode.present.style import pens
+from centrode.present.window import carried_by
+from centrode.study.centres import place_words
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+    from centrode.present.scene import Scene
+
+METRE = 1000.0
+"""Millimetres."""
+FARTHEST = 1.0
+"""How far from the middle of the drawing centrodes are drawn, in its sizes."""
+LINE = 1.8
+"""Height of a line of the title, in heights of its letters."""
+
+
+def mechanism_drawing(
+    mechanism: Mechanism,
+    motion: xarray.Dataset,
+    sample: int = 0,
+    paths: Sequence[str] = (),
+    centrodes: Sequence[xarray.Dataset] = (),
+    names: bool = True,
+) -> Drawing:
+    """A mechanism at a sample of its motion, at full size in millimetres.
+
+    Parameters
+    ----------
+    mechanism, motion : as elsewhere
+        In the plane.
+    sample : int
+        The instant that is drawn.
+    paths : points whose paths over the motion are drawn
+    centrodes : results of `centrodes` that are drawn, the moving one where its link is at the instant
+    names : write the points' names
+
+    Raises
+    ------
+    NotComputedYet
+        Spherical linkages.
+    """
+    if mechanism.space == "sphere":
+        what = _("drawings at full size are made of planar mechanisms")
+        raise NotComputedYet("space", what, _("take the pictures of centrode run"))
+    scene = scene_of(mechanism, motion)
+    board: Any = Board(METRE / scene.factor)
+    board.letters = on_paper(scene.extent, scene.inches, board.scale)
+    links = pens(mechanism.link_names)
+    with board.on("frame"):
+        draw_frame(board, scene, sample)
+    with board.on("links"):
+        draw_links(board, scene, sample, links)
+    with board.on("hinges"):
+        draw_hinges(board, scene, sample, links)
+    with board.on("drive"):
+        draw_drive(board, scene, sample)
+    if names:
+        with board.on("names"):
+            draw_names(board, scene, sample)
+    drawing: Drawing = board.drawing
+    drawing.strokes += [Stroke("paths", board.scale * scene.tracks[name]) for name in paths]
+    for pair in centrodes:
+        drawing.strokes += _centrode(scene, pair, sample, board.scale)
+    _title(drawing, scene, motion, sample, 10.0 * board.letters)
+    return drawing
+
+
+def _centrode(scene: Scene, pair: xarray.Dataset, sample: int, scale: float) -> list[Stroke]:
+    """Both curves where they are at the instant, each piece a stroke; what runs off to infinity is cut."""
+    reach = FARTHEST * scene.extent
+    found = []
+    for name, body in (("fixed_centrode", "against"), ("moving_centrode", "link")):
+        places = carried_by(scene, str(pair.attrs[body]), pair[name].to_numpy(), sample)
+        number = pair["centrode_piece"].to_numpy()
+        near = (np.abs(places - 0.5 * (scene.low + scene.high)) <= reach).all(axis=1)
+        for piece in np.unique(number[number >= 0]):
+            kept = np.where(((number == piece) & near)[:, None], places, np.nan)
+            found.append(Stroke("centrodes", scale * kept))
+    return found
+
+
+def _title(drawing: Drawing, scene: Scene, motion: xarray.Dataset, sample: int, height: float) -> None:
+    """The title below the drawing: what it is, where the drive is, scale and unit."""
+    low, _high = drawing.box()
+    lines = [
+        _(scene.mechanism.title),
+        place_words(scene.mechanism, motion, sample),
+        _("scale 1:1, millimetres"),
+    ]
+    for number, text in enumerate(line for line in lines if line):
+        place = float(low[0]), float(low[1]) - LINE * height * (number + 1.5)
+        drawing.words.append(Words("title", text, place, height, left=True))

@@ -1,0 +1,55 @@
+"""DXF files (AutoCAD 2010, millimetres) whose bytes depend on nothing but what is drawn."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import lazy_loader
+
+from centrode.errors import InputError
+from centrode.locale import _
+
+VERSION = "R2010"
+MILLIMETRES = 4
+
+_ezdxf = functools.partial(lazy_loader.load, "ezdxf")  # an extra, and slow to import
+
+
+@contextmanager
+def dxf_document(path: Path) -> Iterator[tuple[Any, Any]]:
+    """The library and a new document of it, which is written to the path when the block ends.
+
+    Raises
+    ------
+    InputError
+        The extra `drawings` is not installed.
+    """
+    if find_spec("ezdxf") is None:
+        raise InputError(
+            str(path),
+            _("DXF needs ezdxf, which is not installed"),
+            _('install it with pip install "centrode[drawings]"'),
+        )
+    library = _ezdxf()
+    with _fixed(library):
+        document = library.new(VERSION, units=MILLIMETRES)
+        document.header["$MEASUREMENT"] = 1
+        yield library, document
+        document.saveas(path, encoding="utf-8")
+
+
+@contextmanager
+def _fixed(library: Any) -> Iterator[None]:
+    """Context in which files carry no time and no chance identity."""
+    options = library.options
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before

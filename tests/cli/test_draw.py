@@ -1,0 +1,41 @@
+"""`centrode draw`: drawings in files, and what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import ezdxf
+
+Centrode = Callable[..., Any]
+
+
+def test_drawings_are_written(centrode: Centrode, tmp_path: Path) -> None:
+    svg, dxf = tmp_path / "a.svg", tmp_path / "a.dxf"
+    words = ("draw", "six-bar-press", "--at", "120 deg", "--path", "all", "--centrodes", "AB")
+    assert centrode(*words, "--out", svg).code == 0
+    groups = [group.attrib["id"] for group in ET.parse(svg).getroot()]
+    assert {"frame", "links", "hinges", "drive", "names", "paths", "centrodes", "title"} == set(groups)
+    assert "OA 120 deg" in svg.read_text(encoding="utf-8")
+    assert centrode(*words, "--out", dxf).code == 0
+    assert not ezdxf.readfile(dxf).audit().errors
+    again = centrode(*words, "--out", dxf)
+    assert (again.code, "exists already" in again.err) == (2, True)
+    assert centrode(*words, "--out", dxf, "--force", "--no-names").code == 0
+    assert "names" not in {entity.dxf.layer for entity in ezdxf.readfile(dxf).modelspace()}
+
+
+def test_what_cannot_be_drawn_is_told(centrode: Centrode, tmp_path: Path) -> None:
+    for words, told in (
+        (("six-bar-press", "--out", tmp_path / "a.pdf"), "no kind of file for drawings"),
+        (("six-bar-press", "--path", "Z", "--out", tmp_path / "a.svg"), "no moving point"),
+        (("six-bar-press", "--centrodes", "Z", "--out", tmp_path / "a.svg"), "no link"),
+        (("six-bar-press", "--at", "1 kg", "--out", tmp_path / "a.svg"), "--at"),
+        (("hookes-joint", "--out", tmp_path / "a.svg"), "planar"),
+        (("six-bar-press", "--out", tmp_path), "no kind of file"),
+    ):
+        done = centrode("draw", *words)
+        assert (done.code, told in done.err) == (2, True), done.err
+    assert list(tmp_path.iterdir()) == []

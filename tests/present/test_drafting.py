@@ -1,0 +1,158 @@
+"""Drawings at full size: dimensions in the file, what covers what, layers, a clean audit, the same bytes."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import ezdxf
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.present.drafting.hiding import visible
+from centrode.present.drafting.strokes import Cover, Drawing, Ring, Stroke
+
+SVG = "{http://www.w3.org/2000/svg}"
+RINGS = 1e-9
+"""Places are in millimetres; a micrometre's millionth is rounding of the largest drawings."""
+
+
+def drawing_of(name: str, **how: object) -> tuple[ct.Mechanism, object, Drawing]:
+    mechanism = ct.example(name)
+    motion = ct.motion(mechanism)
+    return mechanism, motion, ct.mechanism_drawing(mechanism, motion, 0, **how)
+
+
+EVERY_SIGN = (
+    "cardan-gear", "excavator-arm", "hookes-joint", "inverted-slider-crank", "planetary-gear-train",
+    "planetary-hypocycloid", "rack-and-pinion", "rolling-wheel-rod", "scissor-lift-cylinder", "scotch-yoke",
+    "six-bar-press", "slider-between-cranks-locked", "three-crank-parallelogram",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", EVERY_SIGN)
+def test_every_planar_mechanism_is_drawn_clean(name: str, tmp_path: Path) -> None:
+    mechanism = ct.example(name)
+    if mechanism.space == "sphere":
+        with pytest.raises(ct.NotComputedYet):
+            ct.mechanism_drawing(mechanism, ct.motion(mechanism, 3))
+        return
+    motion = ct.motion(mechanism, 13)
+    drawing = ct.mechanism_drawing(mechanism, motion, 0, mechanism.moving_points)
+    file = tmp_path / "a.dxf"
+    ct.write_drawing_dxf(drawing, file)
+    document = ezdxf.readfile(file)
+    audit = document.audit()
+    assert not audit.errors
+    assert not audit.fixes
+    assert document.units == 4
+    layers = {entity.dxf.layer for entity in document.modelspace()}
+    assert {"frame", "links", "title"} <= layers
+    ET.fromstring(ct.drawing_svg(drawing))
+
+
+@pytest.mark.parametrize("name", ["six-bar-press", "andrews-squeezer", "jansen-leg"])
+def test_hinges_are_as_far_apart_as_the_links_are_long(name: str, tmp_path: Path) -> None:
+    mechanism, _motion, drawing = drawing_of(name)
+    ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
+    circles = [
+        np.array([*one.dxf.center][:2])
+        for one in ezdxf.readfile(tmp_path / "a.dxf").modelspace().query("CIRCLE")
+    ]
+    assert circles
+    for link in mechanism.links.values():
+        if link.length is not None:
+            apart = [math.dist(a, b) for a in circles for b in circles]
+            assert min(abs(one - 1e3 * link.length) for one in apart) <= RINGS * 1e3 * link.length
+
+
+def test_lines_end_at_the_circles_of_hinges() -> None:
+    _mechanism, _motion, drawing = drawing_of("crank-rocker")
+    strokes, rings = visible(drawing)
+    hinges = [ring for ring in rings if ring.layer == "hinges"]
+    assert len(hinges) == 4
+    inradius = math.cos(math.pi / 48)  # of the polygon that stands for a circle
+    for stroke in strokes:
+        if stroke.layer == "links":
+            for ring in hinges:
+                away = np.hypot(*(stroke.places - ring.centre).T)
+                assert away.min() >= ring.radius * inradius * (1 - 1e-9)
+
+
+def test_what_lies_under_a_square_is_hidden() -> None:
+    square = Cover(np.array([[1.0, -1.0], [3.0, -1.0], [3.0, 1.0], [1.0, 1.0]]), 2.0)
+    line = np.array([[0.0, 0.0], [2.0, 0.0], [4.0, 0.0]])
+    strokes = [
+        Stroke("links", line, 1.0),
+        Stroke("links", line + np.array([0.0, 0.5]), 3.0),
+        Stroke("links", line + np.array([0.0, 2.0])),
+    ]
+    found, rings = visible(Drawing(strokes, [Ring("links", (2.0, 0.0), 5.0, 1.0)], [], [square]))
+    assert [part.places.tolist() for part in found] == [
+        [[0.0, 0.0], [1.0, 0.0]],
+        [[3.0, 0.0], [4.0, 0.0]],
+        (line + np.array([0.0, 0.5])).tolist(),
+        (line + np.array([0.0, 2.0])).tolist(),
+    ]
+    assert len(rings) == 1
+
+
+def test_a_circle_that_is_partly_hidden_becomes_an_arc() -> None:
+    left = Cover(np.array([[-9.0, -9.0], [0.0, -9.0], [0.0, 9.0], [-9.0, 9.0]]), 2.0)
+    found, rings = visible(Drawing([], [Ring("links", (0.0, 0.0), 5.0, 1.0)], [], [left]))
+    assert not rings
+    places = np.concatenate([part.places for part in found])
+    assert places[:, 0].min() >= -1e-12
+    assert np.hypot(*places.T).max() <= 5.0 * (1 + 1e-12)
+
+
+def test_places_without_a_number_break_a_line() -> None:
+    line = np.array([[0.0, 0.0], [1.0, 0.0], [np.nan, np.nan], [2.0, 0.0], [3.0, 0.0]])
+    found, _rings = visible(Drawing([Stroke("paths", line)]))
+    assert [part.places.tolist() for part in found] == [[[0.0, 0.0], [1.0, 0.0]], [[2.0, 0.0], [3.0, 0.0]]]
+
+
+def test_paths_and_centrodes_are_those_of_the_motion() -> None:
+    mechanism = ct.example("elliptic-trammel")
+    motion = ct.motion(mechanism, 91)
+    link = mechanism.link_names[0]
+    pair = ct.centrodes(motion, link)
+    drawing = ct.mechanism_drawing(mechanism, motion, 10, ["P"], [pair])
+    (path,) = [stroke for stroke in drawing.strokes if stroke.layer == "paths"]
+    assert (
+        np.abs(path.places - 1e3 * motion.position.sel(point="P")).max() <= 1e-12 * np.abs(path.places).max()
+    )
+    fixed, moving = (stroke.places for stroke in drawing.strokes if stroke.layer == "centrodes")
+    length = 1e3 * math.dist(*list(mechanism.links[link].coordinates.values())[:2])
+    # Cardan's circles: the moving one, of half the size, touches the fixed one at the instant centre
+    assert np.nanmax(np.abs(np.hypot(*fixed.T) - length)) <= 1e-9 * length
+    assert np.nanmin(np.hypot(*(fixed - moving[10]).T)) <= 1e-9 * length
+
+
+def test_pitch_circles_touch() -> None:
+    _mechanism, _motion, drawing = drawing_of("geared-five-bar")
+    first, second = (ring for ring in drawing.rings if ring.layer == "pitch-circles")
+    apart = math.dist(first.centre, second.centre)
+    assert first.radius + second.radius == pytest.approx(apart, rel=1e-12)
+    assert first.radius / second.radius == pytest.approx(2.0, rel=1e-12)  # the second turns twice as fast
+
+
+def test_the_same_drawing_gives_the_same_bytes(tmp_path: Path) -> None:
+    _mechanism, _motion, drawing = drawing_of("six-bar-press")
+    for name in ("a", "b"):
+        ct.write_drawing_dxf(drawing, tmp_path / f"{name}.dxf")
+        ct.write_drawing_svg(drawing, tmp_path / f"{name}.svg")
+    for kind in ("dxf", "svg"):
+        assert (tmp_path / f"a.{kind}").read_bytes() == (tmp_path / f"b.{kind}").read_bytes()
+
+
+def test_hostile_text_is_text(tmp_path: Path) -> None:
+    mechanism = ct.example("crank-rocker").model_copy(update={"title": "</text><script>x</script>%%c\\P{"})
+    drawing = ct.mechanism_drawing(mechanism, ct.motion(mechanism, 3))
+    root = ET.fromstring(ct.drawing_svg(drawing))
+    assert not list(root.iter(f"{SVG}script"))
+    assert mechanism.title in ["".join(one.itertext()) for one in root.iter(f"{SVG}text")]
+    ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
+    assert not ezdxf.readfile(tmp_path / "a.dxf").audit().errors
