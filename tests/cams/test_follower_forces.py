@@ -21,11 +21,11 @@ class Harmonic:
 
     def __init__(self, high, rise, dwell, fall):
         self.high = high
-        self.joints = tuple(np.cumsum([0.0, rise, dwell, fall, 2 * math.pi - rise - dwell - fall]))
+        self.edges = tuple(np.cumsum([0.0, rise, dwell, fall, 2 * math.pi - rise - dwell - fall]))
 
     def lift(self, phi, order=0):
         phi = np.mod(phi, 2 * math.pi)
-        first, top, down, rest, _end = self.joints
+        first, top, down, rest, _end = self.edges
         rows = np.zeros((order + 1, phi.size))
         for start, stop, sign in ((first, top, 1.0), (down, rest, -1.0)):
             wave, inside = math.pi / (stop - start), (phi >= start) & (phi < stop)
@@ -42,10 +42,10 @@ class Straight(Harmonic):
     def lift(self, phi, order=0):
         phi = np.mod(phi, 2 * math.pi)
         rows = np.zeros((order + 1, phi.size))
-        rows[0] = self.high * np.interp(phi, self.joints, (0, 1, 1, 0, 0))
+        rows[0] = self.high * np.interp(phi, self.edges, (0, 1, 1, 0, 0))
         if order:
-            slopes = self.high * np.diff((0, 1, 1, 0, 0)) / np.diff(self.joints)
-            rows[1] = slopes[np.clip(np.searchsorted(self.joints, phi, side="right") - 1, 0, 3)]
+            slopes = self.high * np.diff((0, 1, 1, 0, 0)) / np.diff(self.edges)
+            rows[1] = slopes[np.clip(np.searchsorted(self.edges, phi, side="right") - 1, 0, 3)]
         return rows
 
 
@@ -64,7 +64,7 @@ def test_least_force_of_harmonic_motion():
     found = keeping.least_push(MOTION, BURDEN, SPEED)
     expected = 36.0 + 4e3 * HIGH - 0.6 * SPEED**2 * BOW
     assert abs(found.value - expected) <= INSET * 0.6 * SPEED**2 * BOW
-    assert abs(found.angle - MOTION.joints[2]) <= INSET
+    assert abs(found.angle - MOTION.edges[2]) <= INSET
 
 
 def test_jump_speed_of_harmonic_motion():
@@ -94,7 +94,7 @@ def test_springs_leave_what_was_asked(seed):
     motion = Harmonic(high, rise, dwell, fall)
     speed, push = draw.uniform(20, 90), draw.uniform(0, 40)
     burden = Burden(draw.uniform(0.1, 2), draw.uniform(0, 3e3), draw.uniform(60, 200), draw.uniform(-10, 10))
-    scale = max(abs(burden.needed(motion.lift(np.array(motion.joints), 2), speed)))
+    scale = max(abs(burden.needed(motion.lift(np.array(motion.edges), 2), speed)))
     for name, found in (
         ("preload", keeping.preload_needed(motion, burden, speed, push)),
         ("stiffness", keeping.stiffness_needed(motion, burden, speed, push)),
@@ -130,18 +130,22 @@ def test_extremes_count_both_sides_of_joints():
     assert not keeping.slope_drops(MOTION)
 
 
-PHI = np.concatenate([np.linspace(a, b, 23, endpoint=False) + 1e-3 for a, b in pairwise(MOTION.joints)])
+PHI = np.concatenate([np.linspace(a, b, 23, endpoint=False) + 1e-3 for a, b in pairwise(MOTION.edges)])
 ROWS = MOTION.lift(PHI, 2)
 PUSH = BURDEN.needed(ROWS, 25.0)
 ARM, DISTANCE, ANGLES = 0.08, 0.1, ROWS * (0.3 / HIGH)
 START = math.acos((DISTANCE**2 + ARM**2 - 0.045**2) / (2 * DISTANCE * ARM))
 MEETINGS = {
-    "roller": (meeting.on_centre(ROWS, 0.008, 0.05, rolling=True), ROWS),
-    "edge": (meeting.on_centre(ROWS, -0.008, 0.05, rolling=False), ROWS),
-    "face": (meeting.on_face(ROWS, 0.05), ROWS),
-    "arm": (meeting.on_arm(ANGLES, ARM, DISTANCE, START, rolling=True), ANGLES),
-    "arm-edge": (meeting.on_arm(ANGLES, ARM, DISTANCE, START, rolling=False), ANGLES),
-    "turning-face": (meeting.on_turning_face(ANGLES, DISTANCE, 0.45, 0.006), ANGLES),
+    f"{name}{sense:+.0f}": (met, rows)
+    for sense in (1.0, -1.0)
+    for name, met, rows in (
+        ("roller", meeting.on_centre(ROWS, 0.008, 0.05, sense, rolling=True), ROWS),
+        ("edge", meeting.on_centre(ROWS, -0.008, 0.05, sense, rolling=False), ROWS),
+        ("face", meeting.on_face(ROWS, 0.05, sense), ROWS),
+        ("arm", meeting.on_arm(ANGLES, ARM, DISTANCE, START, sense, rolling=True), ANGLES),
+        ("arm-edge", meeting.on_arm(ANGLES, ARM, DISTANCE, START, sense, rolling=False), ANGLES),
+        ("turning-face", meeting.on_turning_face(ANGLES, DISTANCE, 0.45, 0.006, sense), ANGLES),
+    )
 }
 
 
@@ -163,8 +167,8 @@ def test_friction_costs_what_slips(name):
     friction = 0.12
     force = met.normal_force(PUSH, friction)
     torque = met.torque(force, friction)
-    cam = np.stack([-met.place[:, 1], met.place[:, 0]], axis=1)
-    if name in ("arm", "arm-edge", "turning-face"):
+    cam = met.sense * np.stack([-met.place[:, 1], met.place[:, 0]], axis=1)
+    if name[:-2] in ("arm", "arm-edge", "turning-face"):
         reach = met.place - np.array([DISTANCE, 0.0])
         follower = rows[1][:, None] * np.stack([reach[:, 1], -reach[:, 0]], axis=1)
     else:
@@ -172,7 +176,7 @@ def test_friction_costs_what_slips(name):
     slip = cam - follower
     # Of the edge the place is the follower's own point; of a face that of the cam: both meet along the normal.
     along = np.sum(slip * met.slip, axis=1)
-    rolling = name in ("roller", "arm")
+    rolling = name[:-2] in ("roller", "arm")
     assert np.all(along == 0) if rolling else np.all(along > 0)
     across = np.abs(np.sum(slip * met.normal, axis=1))
     assert np.all(across <= 16 * EPS * np.linalg.norm(slip, axis=1))
@@ -182,7 +186,7 @@ def test_friction_costs_what_slips(name):
 
 def test_normal_force_by_the_pressure_angle():
     # tan alpha = (s' - e)/(rise + s): the textbook's formula for a translating roller.
-    met, _rows = MEETINGS["roller"]
+    met, _rows = MEETINGS["roller+1"]
     tangent = (ROWS[1] - 0.008) / (0.05 + ROWS[0])
     expected = PUSH * np.hypot(1.0, tangent)
     assert np.all(np.abs(met.normal_force(PUSH) - expected) <= 8 * EPS * np.abs(expected))
@@ -191,6 +195,6 @@ def test_normal_force_by_the_pressure_angle():
 def test_friction_that_locks():
     # An edge on a slope steeper than the angle of friction leaves: tan alpha = 1/mu.
     rows = np.array([[0.0, 0.0], [0.0, 0.2], [0.0, 0.0]])
-    met = meeting.on_centre(rows, 0.0, 0.05, rolling=False)
+    met = meeting.on_centre(rows, 0.0, 0.05, 1.0, rolling=False)
     assert np.isfinite(met.normal_force(np.array([1.0, 1.0]), 0.2499)).all()
     assert np.isinf(met.normal_force(np.array([1.0, 1.0]), 0.2501)).tolist() == [False, True]

@@ -1,4 +1,4 @@
-"""Extremes over a turn of a cam of what a follower's motion decides, with both sides of every joint."""
+"""Extremes over a turn of a cam of what a follower's motion decides, with both sides of every edge."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ OfRows = Callable[[Array], Array]
 """From lift and derivatives (3, n) to values (n)."""
 
 NODES = 97
-"""Nodes of a segment among which an extreme is looked for before it is refined."""
+"""Nodes of a stretch among which an extreme is looked for before it is refined."""
 
 ASIDE = 1e-13
-"""A segment's end is looked at from inside: by this share of the segment before it."""
+"""A stretch's end is looked at from inside: by this share of the stretch before it."""
 
 FINE = 1e-11
-"""An angle is refined to this share of its segment; a flat top is known to some 1e-8 of it."""
+"""An angle is refined to this share of its stretch; a flat top is known to some 1e-8 of it."""
 
 STEP = 1e-9
-"""Slopes at a joint that differ by less, over the greatest slope, are taken for equal."""
+"""Slopes at an edge that differ by less, over the greatest slope, are taken for equal."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,10 @@ class Extreme:
 def greatest(motion: Lifting, value: OfRows) -> Extreme:
     """The greatest value over a turn; values that are NaN do not count.
 
-    Every segment is looked at by itself, its end from inside, so that what jumps at a joint counts on both sides.
+    Every stretch is looked at by itself, its end from inside, so that what jumps at an edge counts on both sides.
     """
     best = Extreme(-math.inf, math.nan)
-    for start, stop in pairwise(motion.joints):
+    for start, stop in pairwise(motion.edges):
         best = max(best, _within(motion, value, start, stop), key=lambda one: one.value)
     return best
 
@@ -56,9 +56,9 @@ def least(motion: Lifting, value: OfRows) -> Extreme:
 
 
 def slope_drops(motion: Lifting) -> list[float]:
-    """Joints [rad] at which the slope of the lift falls by a step: no spring keeps the contact there."""
-    starts = np.array(motion.joints[:-1])
-    ends = np.array([_inside(start, stop) for start, stop in pairwise(motion.joints)])
+    """Edges [rad] at which the slope of the lift falls by a step: no spring keeps the contact there."""
+    starts = np.array(motion.edges[:-1])
+    ends = np.array([_inside(start, stop) for start, stop in pairwise(motion.edges)])
     after = motion.lift(starts, 1)[1]
     before = np.roll(motion.lift(ends, 1)[1], 1)
     scale = greatest(motion, lambda rows: np.abs(rows[1])).value
@@ -66,7 +66,7 @@ def slope_drops(motion: Lifting) -> list[float]:
 
 
 def _inside(start: float, stop: float) -> float:
-    """The end of a segment, seen from inside."""
+    """The end of a stretch, seen from inside."""
     return stop - max(ASIDE * (stop - start), 2 * np.spacing(stop))
 
 

@@ -19,11 +19,11 @@ class Lifting(Protocol):
     """A follower's motion over a turn of its cam."""
 
     @property
-    def joints(self) -> tuple[float, ...]:
-        """Angles [rad] at which segments begin, from 0, and the end of the last."""
+    def edges(self) -> tuple[float, ...]:
+        """Angles [rad] from 0 to 2 pi between which the motion is smooth."""
 
     def lift(self, phi: Array, order: int = 0) -> Array:
-        """Lift and its derivatives by the cam's angle (order + 1, n); at a joint those of the segment that begins."""
+        """Lift and its derivatives by the cam's angle (order + 1, n); at an edge those of what begins."""
 
 
 @dataclass(frozen=True)
