@@ -11,9 +11,10 @@ import tomli_w
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
-from centrode.model.document import part_tables
-from centrode.model.files import described, in_short_lines, is_cam, toml_tables
+from centrode.model.files import in_short_lines
 from centrode.model.reading import read_file
+from centrode.model.tabled import part_tables
+from centrode.model.toml_text import described, is_cam, toml_tables
 
 
 def read_cam(path: str | Path) -> Cam:
