@@ -55,8 +55,8 @@ BURDEN = Burden(inertia=0.6, stiffness=4e3, preload=30.0, load=6.0)
 SPEED = 60.0
 BOW = 0.5 * HIGH * (math.pi / FALL) ** 2
 """The greatest deceleration by angle, in the quicker fall: h/2 (pi/beta)^2."""
-INSET = 1e-12
-"""Segments are looked at from inside by less than this share."""
+INSET = 64 * EPS
+"""Rounding of a sum of a few terms, over its greatest one; an end that is seen from inside is off by less."""
 
 
 def test_least_force_of_harmonic_motion():

@@ -3,6 +3,7 @@
 from centrode.laws.curves import CURVES, Curve
 from centrode.laws.law import Law
 from centrode.laws.segments import DWELL, POLYNOMIAL, SEGMENT_CURVES, Segment, SegmentedLaw
+from centrode.laws.shaft import ShaftLaw
 from centrode.laws.table import TableLaw
 from centrode.laws.text import TextLaw
 from centrode.laws.uniform import Uniform
@@ -16,6 +17,7 @@ __all__ = [
     "Law",
     "Segment",
     "SegmentedLaw",
+    "ShaftLaw",
     "TableLaw",
     "TextLaw",
     "Uniform",

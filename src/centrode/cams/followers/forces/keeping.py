@@ -48,7 +48,7 @@ def jump_speed(motion: Lifting, burden: Burden) -> Extreme:
             return np.asarray(-burden.inertia * rows[2] / burden.at_rest(rows[0]))
 
     worst = greatest(motion, inverse_square)
-    if worst.value <= 0:
+    if not worst.value > 0:
         return Extreme(math.inf, math.nan)
     return Extreme(1 / math.sqrt(worst.value), worst.angle)
 
