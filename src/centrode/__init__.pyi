@@ -19,6 +19,7 @@ from .model.schema import mechanism_schema as mechanism_schema
 
 # The description of a cam
 from .model.cams.description import Cam as Cam
+from .model.cams.plate import PlateCam as PlateCam
 from .model.cams.description import varied as varied
 from .model.cams.files import read_cam as read_cam
 from .model.cams.files import parse_cam as parse_cam
@@ -136,6 +137,7 @@ from .cams.labelled import cam as cam
 from .cams.comparison import cam_routes as cam_routes
 from .cams.described import path_of as path_of
 from .study.cams.results import cam_results as cam_results
+from .cams.followers.motion import follower_motion as follower_motion
 from .present import write_cam_csv as write_cam_csv
 from .present import write_cam_routes_csv as write_cam_routes_csv
 from .present import write_cam_tables as write_cam_tables

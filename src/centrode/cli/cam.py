@@ -76,9 +76,9 @@ def cam(
         raise MotionError(cam, "; ".join(results.failures))
 
 
-def _check_animation(cam: ct.Cam, out: Path | None, animate: bool) -> None:
+def _check_animation(cam: ct.Cam | ct.PlateCam, out: Path | None, animate: bool) -> None:
     """An animation needs a wheel that walks and a folder."""
-    if animate and cam.mover is None:
+    if animate and getattr(cam, "mover", None) is None:
         raise InputError("--animate", _("nothing walks: the cam has no [mover]"), _("leave it out"))
     if animate and out is None:
         raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))

@@ -2,16 +2,28 @@
 
 from centrode.laws.curves import CURVES, Curve
 from centrode.laws.law import Law
-from centrode.laws.segments import DWELL, POLYNOMIAL, SEGMENT_CURVES, Segment, SegmentedLaw
+from centrode.laws.segments import (
+    B_SPLINE,
+    DWELL,
+    MOST_DEGREE,
+    POLYNOMIAL,
+    SEGMENT_CURVES,
+    THROUGH_POINTS,
+    Segment,
+    SegmentedLaw,
+)
 from centrode.laws.table import TableLaw
 from centrode.laws.text import TextLaw
 from centrode.laws.uniform import Uniform
 
 __all__ = [
+    "B_SPLINE",
     "CURVES",
     "DWELL",
+    "MOST_DEGREE",
     "POLYNOMIAL",
     "SEGMENT_CURVES",
+    "THROUGH_POINTS",
     "Curve",
     "Law",
     "Segment",

@@ -12,14 +12,14 @@ from centrode.present.cams.outline_dxf import write_outlines_dxf
 from centrode.present.cams.outline_svg import write_outlines_svg
 
 if TYPE_CHECKING:
-    from centrode.model.cams.description import Cam
+    from centrode.model.cams.files import AnyCam
 
 SAMPLES = 720
 """Spaces between the points of an outline over a turn."""
 
 
 def write_cam_outlines(
-    cam: Cam, objects: Mapping[str, Any], folder: Path, *, groove: bool = False, dxf: bool = True
+    cam: AnyCam, objects: Mapping[str, Any], folder: Path, *, groove: bool = False, dxf: bool = True
 ) -> None:
     """Write the profiles of a cam and of its shoe as SVG and DXF into a folder.
 

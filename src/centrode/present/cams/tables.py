@@ -12,7 +12,7 @@ from centrode.present.tables import columns_of, unit_of, write_columns
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.cams.description import Cam
+    from centrode.model.cams.files import AnyCam
 
 Column = tuple[str, str, "xarray.DataArray"]
 
@@ -42,12 +42,12 @@ ROUTES = (
 )
 
 
-def write_cam_csv(cam: Cam, dataset: xarray.Dataset, path: str | Path) -> None:
+def write_cam_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
     """Write a cam's path (`ct.cam`) as CSV in the units of its display, one row a sample."""
     write_columns(path, _columns(dataset, PATH), dataset["status"], cam.display)
 
 
-def write_cam_routes_csv(cam: Cam, dataset: xarray.Dataset, path: str | Path) -> None:
+def write_cam_routes_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
     """Write the three routes to a cam's path (`ct.cam_routes`) as CSV in the units of its display."""
     write_columns(path, _columns(dataset, ROUTES), dataset["status"], cam.display)
 
@@ -69,12 +69,12 @@ CONTACT = (
 )
 
 
-def write_cam_contact_csv(cam: Cam, dataset: xarray.Dataset, path: str | Path) -> None:
+def write_cam_contact_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
     """Write the contact of roller and cam (`ct.cam_contact`) as CSV, stresses in Pa, one row a sample."""
     write_columns(path, _columns(dataset, CONTACT), dataset["status"], cam.display)
 
 
-CAM_TABLES: Mapping[str, Callable[[Cam, xarray.Dataset, Path], None]] = {
+CAM_TABLES: Mapping[str, Callable[[AnyCam, xarray.Dataset, Path], None]] = {
     "cam-path": write_cam_csv,
     "cam-routes": write_cam_routes_csv,
     "cam-contact": write_cam_contact_csv,
@@ -84,7 +84,7 @@ CAM_TABLES: Mapping[str, Callable[[Cam, xarray.Dataset, Path], None]] = {
 """How each dataset of a cam's results is written, by the name of its file."""
 
 
-def write_cam_tables(cam: Cam, datasets: Mapping[str, xarray.Dataset], folder: Path) -> None:
+def write_cam_tables(cam: AnyCam, datasets: Mapping[str, xarray.Dataset], folder: Path) -> None:
     """Write a CSV of each of a cam's datasets (`CamPart.datasets`) into a folder."""
     for name, data in datasets.items():
         if name in CAM_TABLES:

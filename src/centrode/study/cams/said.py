@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import xarray as xr
 
-from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam
 from centrode.quantities import display_unit
 from centrode.study.scalars import Scalar
 
@@ -69,7 +69,7 @@ class CamPart:
 class Units:
     """Numbers with their units as a cam's description shows them."""
 
-    cam: Cam
+    cam: AnyCam
 
     def text(self, value: float, unit: str = "m", digits: int = 6) -> str:
         """A number in SI as it is shown, with its unit."""

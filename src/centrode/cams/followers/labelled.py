@@ -1,0 +1,56 @@
+"""The motion of a follower as a labelled result."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode import __version__
+from centrode.cams.followers.motion import FollowerMotion
+from centrode.errors import Status
+from centrode.kinematics.dataset import Variable, named
+from centrode.model.cams.files import cam_text
+from centrode.model.cams.plate import PlateCam
+
+Array = npt.NDArray[np.float64]
+
+BY_ANGLE = ("", "_slope", "_second", "_third", "_fourth")
+IN_TIME = ("_velocity", "_acceleration", "_jerk")
+
+
+def motion_names(swings: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of the lift with its derivatives by the cam's angle, and of those by time."""
+    front = "swing" if swings else "lift"
+    return tuple(front + end for end in BY_ANGLE), tuple(front + end for end in IN_TIME)
+
+
+def dataset_of_motion(cam: PlateCam, motion: FollowerMotion, phi: Array) -> xr.Dataset:
+    """The labelled motion of a follower at angles of its cam [rad].
+
+    Along `sample`, over `cam_angle`: the lift with four derivatives by the cam's angle; with a speed of the cam also
+    velocity, acceleration and jerk in time.
+    """
+    by_angle, in_time = motion_names(motion.swings)
+    values = motion.lift(phi, len(by_angle) - 1)
+    data: dict[str, Variable] = {
+        name: named(name, ("sample",), one) for name, one in zip(by_angle, values, strict=True)
+    }
+    if motion.speed is not None:
+        for order, name in enumerate(in_time, 1):
+            data[name] = named(name, ("sample",), values[order] * motion.speed**order)
+    data["status"] = _all_right(len(phi))
+    return xr.Dataset(data, coords={"cam_angle": named("cam_angle", ("sample",), phi)}, attrs=_facts(cam))
+
+
+def _all_right(count: int) -> Variable:
+    dimensions, values, attributes = named("status", ("sample",), np.full(count, Status.OK, dtype=np.int8))
+    attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
+    return dimensions, values, attributes
+
+
+def _facts(cam: PlateCam) -> dict[str, Any]:
+    return {"title": cam.title, "cam": cam_text(cam), "version": __version__}

@@ -1,0 +1,209 @@
+"""Segments of a follower's lift over a turn of its cam, as a file gives them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Annotated, Any
+
+from pydantic import Field, PlainValidator, ValidationInfo, field_validator
+
+from centrode import laws
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.cams.values import whole
+from centrode.model.part import Part, missing_key
+from centrode.model.problems import Problem, shown
+from centrode.model.segments import DRIVEN
+from centrode.model.values import choice, entries, numbers, positive, si
+
+MOST = 200
+"""Segments of a turn."""
+MOST_THROUGH = {laws.POLYNOMIAL: 10, laws.B_SPLINE: 200}
+"""Points on the way: the degree of a polynomial grows with them, that of a B-spline does not."""
+MOST_RATES = 8
+"""Derivatives that may be given at an end."""
+
+CLOSED = 1e-9
+"""Segments whose angles miss a turn by no more [rad] are taken to fill it: so far angles are written out."""
+
+_TURN = {"angle": "rad", "length": "m"}
+_NOTHING: tuple[object, ...] = (None, (), [])
+
+
+def read_rates(value: object) -> tuple[float, ...]:
+    """Derivatives of the lift by the cam's angle, of first and higher order, in SI."""
+    return tuple(
+        _rate(entry, DRIVEN.get(), order) for order, entry in enumerate(entries(value, MOST_RATES), 1)
+    )
+
+
+def _rate(value: object, kind: str, order: int) -> float:
+    """One of them: a number, or a text such as "5 mm/rad^2"."""
+    if not isinstance(value, str):
+        return si(value, "ratio")
+    try:
+        # A second derivative times the square of an angle is a lift: units of every order are read by that.
+        return si(value.strip() + order * "*rad", kind)
+    except Problem:
+        return _plain_rate(value, f"{_TURN[kind]}/rad" + (f"^{order}" if order > 1 else ""))
+
+
+def _plain_rate(text: str, unit: str) -> float:
+    """A text without a unit, which counts as SI."""
+    try:
+        return si(text, "ratio")
+    except Problem:
+        what = _("expected a rate ({unit}), got {value}").format(unit=unit, value=shown(text))
+        repair = _('write a number in {unit}, or a text with a unit such as "{example}"')
+        raise Problem(what, repair.format(unit=unit, example=f"5 {unit}")) from None
+
+
+class LiftSegment(Part):
+    """A stretch of a turn, over which the follower rises, falls or dwells.
+
+    Attributes
+    ----------
+    angle : float [rad], positive
+        How far the cam turns meanwhile.
+    start : float [rad] or None
+        "from" in a file: the angle at which it begins, where the one before has to end.
+    to : float [m or rad]
+        Lift at its end; a dwell has none.
+    curve : str
+        A curve by its name, "dwell", "polynomial" or "b-spline".
+    at_start, at_end : tuple of float [m/rad or rad/rad, then by rad^2, ...]
+        Of a polynomial or a B-spline: first, second, ... derivative of the lift there, as far as they are given.
+    through : tuple of (angle [rad], lift [m or rad])
+        Of these: lifts on the way, at angles from the segment's start.
+    degree : int
+        Of a B-spline.
+    """
+
+    angle: Annotated[float, PlainValidator(lambda value: positive(value, "angle"))]
+    start: Annotated[float | None, Field(alias="from")] = None
+    to: float | None = None
+    curve: Annotated[str, choice(*laws.SEGMENT_CURVES)]
+    at_start: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
+    at_end: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
+    through: tuple[tuple[float, float], ...] = ()
+    degree: Annotated[int, whole(1, laws.MOST_DEGREE)] | None = None
+
+    @classmethod
+    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
+        """What is wrong with the keys that are given, by the rules of this part."""
+        wrong = super().key_problems(given)
+        curve = given.get("curve")
+        if curve == laws.DWELL and given.get("to") is not None:
+            wrong.append(Problem(_("a dwell stays where it is and has no `to`"), _("take it out")))
+        if curve != laws.DWELL and given.get("to") is None:
+            wrong.append(missing_key("to"))
+        if curve not in laws.THROUGH_POINTS:
+            repair = _('take it out, or write curve = "polynomial" or "b-spline"')
+            what = _("{key} belongs to a polynomial or a B-spline")
+            foreign = [key for key in ("at_start", "at_end", "through") if given.get(key) not in _NOTHING]
+            wrong += [Problem(what.format(key=key), repair) for key in foreign]
+        if curve != laws.B_SPLINE and given.get("degree") is not None:
+            repair = _("take it out; that of a polynomial follows from what is asked of it")
+            wrong.append(Problem(_("degree belongs to a B-spline"), repair))
+        return wrong
+
+    @field_validator("start", mode="plain")
+    @classmethod
+    def _angle(cls, value: object) -> float | None:
+        return None if value is None else si(value, "angle")
+
+    @field_validator("to", mode="plain")
+    @classmethod
+    def _lift(cls, value: object) -> float | None:
+        return None if value is None else _lift_of(value)
+
+    @field_validator("through", mode="plain")
+    @classmethod
+    def _through(cls, value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...]:
+        most = MOST_THROUGH.get(str(info.data.get("curve")), max(MOST_THROUGH.values()))
+        rows = [numbers(row, ("angle", DRIVEN.get()), "[angle, lift]") for row in entries(value, most)]
+        return tuple((angle, lift) for angle, lift in rows)
+
+    @property
+    def law(self) -> laws.Segment:
+        """The segment of the law, over angles instead of times; raises InputError where it makes none."""
+        degree = {} if self.degree is None else {"degree": self.degree}
+        return laws.Segment(
+            self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, **degree
+        )
+
+
+def _lift_of(value: object) -> float:
+    lift = si(value, DRIVEN.get())
+    if lift < 0:
+        what = _("the lift is counted from its lowest place and not negative, got {value}")
+        raise Problem(what.format(value=shown(value)), _("let the base circle be that of the lowest place"))
+    return lift
+
+
+def lift_law(segments: Sequence[LiftSegment]) -> laws.SegmentedLaw:
+    """The lift over the angle of the cam [rad], turn after turn; raises InputError where segments make no law."""
+    parts = [segment.law for segment in segments]
+    rest = math.tau - math.fsum(part.time for part in parts[:-1])
+    if abs(rest - parts[-1].time) <= CLOSED:
+        parts[-1] = replace(parts[-1], time=rest)
+    return laws.SegmentedLaw(tuple(parts), repeat=True)
+
+
+def segment_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
+    """What is wrong with segments as the lift of a turn: gaps, overlaps, a lift that does not return."""
+    if not segments:
+        return [Problem(_("no segments are given"), _("write [[segments]] that fill a turn"), ("segments",))]
+    found = _misplaced(segments)
+    end = math.fsum(segment.angle for segment in segments)
+    if not found and end > math.tau + CLOSED:
+        what = _("the segments overlap: together they take {angle:.9g} deg, a turn has 360 deg")
+        repair = _("shorten one by {excess:.6g} deg").format(excess=math.degrees(end - math.tau))
+        found.append(Problem(what.format(angle=math.degrees(end)), repair, ("segments",)))
+    if not found and end < math.tau - CLOSED:
+        what = _("the segments leave a gap: together they take {angle:.9g} deg, a turn has 360 deg")
+        repair = _("add a dwell of {missing:.6g} deg").format(missing=math.degrees(math.tau - end))
+        found.append(Problem(what.format(angle=math.degrees(end)), repair, ("segments",)))
+    lifts = [segment.to for segment in segments if segment.to is not None]
+    if lifts and lifts[-1] != 0:
+        what = _("the lift does not return: a turn begins at 0 and ends at {lift:.9g} {unit}")
+        told = what.format(lift=lifts[-1], unit=_TURN[DRIVEN.get()])
+        found.append(Problem(told, _("let the last segment that moves go to 0"), ("segments",)))
+    if not lifts or not any(lifts):
+        found.append(Problem(_("nothing moves: no segment lifts the follower"), at=("segments",)))
+    return found or _lawless(segments)
+
+
+def _misplaced(segments: Sequence[LiftSegment]) -> list[Problem]:
+    """Segments that say they begin where the one before does not end."""
+    found, end = [], 0.0
+    for number, segment in enumerate(segments):
+        if segment.start is not None and abs(segment.start - end) > CLOSED:
+            what = _("it begins at {start:.9g} deg, but the one before ends at {end:.9g} deg: they overlap")
+            if segment.start > end:
+                what = _("it begins at {start:.9g} deg, but the one before ends at {end:.9g} deg: a gap")
+            if number == 0:
+                what = _("the first segment begins at 0, not at {start:.9g} deg")
+            told = what.format(start=math.degrees(segment.start), end=math.degrees(end))
+            found.append(Problem(told, _("correct its angles, or add a dwell"), ("segments", number)))
+        end += segment.angle
+    return found
+
+
+def _lawless(segments: Sequence[LiftSegment]) -> list[Problem]:
+    """What formulas refuse: points out of order, numbers beyond reach, segments that are lost beside others."""
+    found, before = [], 0.0
+    for number, segment in enumerate(segments):
+        try:
+            segment.law.pieces(0.0, before)
+        except InputError as error:
+            found.append(Problem(error.what, error.repair, ("segments", number)))
+        before = before if segment.to is None else segment.to
+    if not found:
+        try:
+            lift_law(segments)
+        except InputError as error:
+            found.append(Problem(error.what, error.repair, ("segments",)))
+    return found
