@@ -81,6 +81,8 @@ class Follower(Part):
         Of a translating follower: of its line from the cam's centre.
     arm, pivot_distance : float [m]
         Of an oscillating follower: its length to the roller's centre or the edge; of its pivot from the cam's centre.
+    face_offset : float [m]
+        Of an oscillating follower with a flat face: by how much the face passes the pivot, on the cam's side.
     mass : float [kg], inertia : float [kg*m^2]
         Of a translating, of an oscillating follower, with all that moves with it.
     spring : Spring or None
@@ -97,6 +99,7 @@ class Follower(Part):
     offset: Annotated[float, quantity("length")] = 0.0
     arm: Size | None = None
     pivot_distance: Size | None = None
+    face_offset: Annotated[float, quantity("length")] = 0.0
     mass: Annotated[float, quantity("mass", not_negative)] | None = None
     inertia: Annotated[float, quantity("inertia", not_negative)] | None = None
     spring: Spring | None = None
@@ -117,6 +120,7 @@ class Follower(Part):
         for key in ("offset", "mass"):
             problems += _belongs(given, key, not swings, straight)
         problems += _belongs(given, "inertia", swings, turning)
+        problems += _belongs(given, "face_offset", swings and contact == "flat", _("a swinging flat face"))
         problems += _belongs(given, "pivot_distance", swings, turning, needed=True)
         # The face of a flat follower may go through its pivot: it needs no arm.
         return problems + _belongs(given, "arm", swings, turning, needed=contact != "flat")
