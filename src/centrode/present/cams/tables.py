@@ -74,10 +74,33 @@ def write_cam_contact_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path
     write_columns(path, _columns(dataset, CONTACT), dataset["status"], cam.display)
 
 
+FORCES = (
+    "follower_push",
+    "follower_moment",
+    "contact_force",
+    "cam_torque",
+    "contact_stress",
+    "contact_shear",
+    "contact_depth",
+    "contact_half_width",
+)
+
+
+def write_cam_forces_csv(cam: PlateCam, dataset: xarray.Dataset, path: str | Path) -> None:
+    """Write the forces on cam and follower (`ct.cam_forces`) as CSV, forces and stresses in SI, one row a sample."""
+    angle = dataset["cam_angle"]
+    columns = [("cam_angle", unit_of(angle), angle)]
+    for variable in FORCES:
+        if variable in dataset:
+            columns += columns_of(dataset[variable], variable)
+    write_columns(path, iter(columns), dataset["status"], cam.display)
+
+
 CAM_TABLES: Mapping[str, Callable[[AnyCam, xarray.Dataset, Path], None]] = {
     "cam-path": write_cam_csv,
     "cam-routes": write_cam_routes_csv,
     "cam-contact": write_cam_contact_csv,
+    "cam-forces": write_cam_forces_csv,
     "cam-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "shoe-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
 }
