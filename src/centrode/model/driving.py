@@ -20,7 +20,7 @@ from centrode.model.tables import Columns, read_rows
 from centrode.model.values import READING, Angle, Name, listed, positive, quantity, read_text, si
 
 _LAWS = ("speed", "law", "table", "segments", "cam")
-_OF_CAM = ("cam_speed", "cam_angle", "lowers")
+_OF_CAM = ("cam_speed", "cam_angle", "cam_point", "lowers")
 
 
 def _read_law(value: object) -> str:
@@ -52,6 +52,9 @@ class Drive(Part):
         Of the cam; its description's own if left out.
     cam_angle : float [rad]
         Of the cam at t = 0.
+    cam_point : str
+        The driven link's point that touches the cam, or the roller's centre; the link's own axis is the arm if left
+        out.
     lowers : bool
         Whether the cam's lift lowers the value instead of raising it.
     """
@@ -69,6 +72,7 @@ class Drive(Part):
     cam: Annotated[PlateCam, PlainValidator(read_plate_cam)] | None = None
     cam_speed: Annotated[float, quantity("angular speed", positive)] | None = None
     cam_angle: Angle = 0.0
+    cam_point: Name | None = None
     lowers: Annotated[bool, PlainValidator(read_repeat)] = False
 
     @classmethod
@@ -167,9 +171,14 @@ def _check_cam(drive: Drive, cam: PlateCam) -> None:
     if drive.distance is not None:
         what = _("a cam drives the angle of a link, or a displacement along a guide")
         raise Problem(what, _("name a link or a guide"), ("cam",))
+    if drive.cam_point is not None and not cam.swings:
+        what = _("cam_point belongs to a follower that oscillates; a guide leads its own point")
+        raise Problem(what, _("take it out"), ("cam_point",))
     if cam.swings and drive.link is None:
         what = _("the cam's follower oscillates, but a displacement is driven")
         raise Problem(what, _("drive a link's angle, or take a translating follower"), ("cam",))
     if not cam.swings and drive.guide is None:
         what = _("the cam's follower translates, but an angle is driven")
-        raise Problem(what, _("drive a displacement along a guide, or take an oscillating follower"), ("cam",))
+        raise Problem(
+            what, _("drive a displacement along a guide, or take an oscillating follower"), ("cam",)
+        )

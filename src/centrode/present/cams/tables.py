@@ -86,7 +86,7 @@ FORCES = (
 )
 
 
-def write_cam_forces_csv(cam: PlateCam, dataset: xarray.Dataset, path: str | Path) -> None:
+def write_cam_forces_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
     """Write the forces on cam and follower (`ct.cam_forces`) as CSV, forces and stresses in SI, one row a sample."""
     angle = dataset["cam_angle"]
     columns = [("cam_angle", unit_of(angle), angle)]

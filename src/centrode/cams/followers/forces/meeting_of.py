@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 def meeting_of(body: FollowerCam, rows: Array) -> Meeting:
     """Where the cam touches the follower and which way they push, for a lift with its slope (2 or more, n)."""
     guide, roller, sense = body.guide, body.touch.roller, body.sense
-    flat, rolling = math.isinf(roller), 0.0 < roller
+    flat, rolling = math.isinf(roller), roller > 0.0
     if isinstance(guide, Oscillating):
         if flat:
             return meeting.on_turning_face(rows, guide.distance, guide.start, guide.face_offset, sense)
