@@ -135,13 +135,12 @@ class FollowerCam:
 
     def _backwards(self) -> Iterator[tuple[float, float]]:
         """Stretches between cusps and edges on which the profile runs back."""
-        values, slopes = self._watched("stretch")
+        values, _slopes = self._watched("stretch")
+        lowest = self.turns("stretch")
         for start, stop in pairwise(self.edges):
             first, last = inside(start, stop)
             # cusps lie on both sides of the lowest places, however near
-            turns = np.array(roots(slopes, (first, last)))
-            lowest = turns[slopes(turns - BESIDE) * slopes(turns + BESIDE) < 0.0]
-            cusps = roots(values, sorted({first, *np.clip(lowest, first, last).tolist(), last}))
+            cusps = roots(values, sorted({first, *(one for one in lowest if first < one < last), last}))
             for low, high in pairwise((start, *cusps, stop)):
                 inner = np.linspace(low, high, 9)[1:-1]
                 if high > low and float(np.median(self.contact(inner).stretch)) <= 0.0:
@@ -173,6 +172,15 @@ class FollowerCam:
         found = [extremes(values, slopes, inside(*ends)) for ends in pairwise(self.edges)]
         low, high = min(found, key=lambda one: one.least), max(found, key=lambda one: one.greatest)
         return Extremes(low.least, low.at_least, high.greatest, high.at_greatest)
+
+    def turns(self, name: str) -> list[float]:
+        """Angles [rad] between edges at which a value of `WATCHED` is least or greatest, growing."""
+        _values, slopes = self._watched(name)
+        found = np.array([one for ends in pairwise(self.edges) for one in roots(slopes, inside(*ends))])
+        if not found.size:
+            return []
+        # on a dwell the slope is zero all along: nothing turns there
+        return list(found[slopes(found - BESIDE) * slopes(found + BESIDE) < 0.0].tolist())
 
     def _watched(self, name: str) -> tuple[Function, Function]:
         """A value of the contact and its slope as functions of the angle."""
