@@ -17,7 +17,14 @@ from centrode.cams.profiles.equidistants import Side, equidistant, signed
 from centrode.cams.wheel.shoe import Shoe
 
 Layer: TypeAlias = Literal[
-    "profile-working", "profile-return", "groove-working", "groove-return", "path", "shoe"
+    "profile-working",
+    "profile-return",
+    "groove-working",
+    "groove-return",
+    "path",
+    "shoe",
+    "profile",
+    "cutter",
 ]
 LEAST_PIECE = 8
 """Least number of spaces between points of a piece."""
