@@ -138,6 +138,8 @@ from .cams.comparison import cam_routes as cam_routes
 from .cams.described import path_of as path_of
 from .study.cams.results import cam_results as cam_results
 from .cams.followers.motion import follower_motion as follower_motion
+from .cams.followers.comparing import cam_laws as cam_laws
+from .cams.followers.comparing import compare_laws as compare_laws
 from .present import write_cam_csv as write_cam_csv
 from .present import write_cam_routes_csv as write_cam_routes_csv
 from .present import write_cam_tables as write_cam_tables
@@ -145,6 +147,10 @@ from .present import cam_path_figure as cam_path_figure
 from .present import cam_curves_figure as cam_curves_figure
 from .present import cam_routes_figure as cam_routes_figure
 from .present import cam_figures as cam_figures
+from .present import write_cam_motion_csv as write_cam_motion_csv
+from .present import write_cam_laws_csv as write_cam_laws_csv
+from .present import cam_motion_figure as cam_motion_figure
+from .present import laws_figure as laws_figure
 
 # Profiles of cams, walking wheels
 from .cams.profiles.tables import cam_profile as cam_profile

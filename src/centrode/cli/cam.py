@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
 _DXF = find_spec("ezdxf") is not None
 
 
-@click.command(help=mark("Compute a cam from the curvature of its roller's path."))
+@click.command(
+    help=mark("Compute a cam from the curvature of its roller's path, or from its follower's lift.")
+)
 @click.argument(
     "cam", metavar=mark("FILE_OR_EXAMPLE"), help=mark("A TOML file, or the name of a built-in cam.")
 )
@@ -37,6 +40,9 @@ _DXF = find_spec("ezdxf") is not None
     help=mark("Cut the power series after a_N; the description's own number, else 20."),
 )
 @click.option("--groove", is_flag=True, help=mark("Also the outer wall of a groove that the roller runs in."))
+@click.option(
+    "--laws", is_flag=True, help=mark("Also other laws of motion for the first rise of the follower.")
+)
 @click.option("--animate", is_flag=True, help=mark("Also write an animation: the wheel walks a step."))
 @no_figures_option
 @dark_option
@@ -46,6 +52,7 @@ def cam(
     samples: int | None,
     terms: int | None,
     groove: bool,
+    laws: bool,
     animate: bool,
     no_figures: bool,
     dark: bool,
@@ -53,14 +60,15 @@ def cam(
     """Print what is known of a cam, and write it where asked."""
     description = ct.load_cam(cam)
     names: list[str] = []
+    _check_options(description, {"--terms": terms is not None, "--groove": groove}, {"--laws": laws})
     _check_animation(description, out, animate)
     with about(cam), Progress() as progress:
         progress.say(_("solving"))
         if out is None:
-            results = ct.cam_results(description, samples, terms, groove=groove)
+            results = ct.cam_results(description, samples, terms, groove=groove, laws=laws)
         else:
             with output.output_folder(out) as draft:
-                results = ct.cam_results(description, samples, terms, groove=groove, front=True)
+                results = ct.cam_results(description, samples, terms, groove=groove, front=True, laws=laws)
                 _write(results, draft, progress, groove=groove, figures=not no_figures, dark=dark)
                 if animate and "wheel" in results.objects:
                     _animate(results, draft, progress, dark=dark)
@@ -74,6 +82,19 @@ def cam(
             click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
     if results.failures:
         raise MotionError(cam, "; ".join(results.failures))
+
+
+def _check_options(
+    cam: ct.Cam | ct.PlateCam, of_curvature: Mapping[str, bool], of_lift: Mapping[str, bool]
+) -> None:
+    """Options that mean nothing for this cam."""
+    plate = isinstance(cam, ct.PlateCam)
+    what = _("this cam is given by a curvature law and has no follower's lift")
+    if plate:
+        what = _("this cam is given by its follower's lift and has no curvature law")
+    for name, given in (of_curvature if plate else of_lift).items():
+        if given:
+            raise InputError(name, what, _("leave it out"))
 
 
 def _check_animation(cam: ct.Cam | ct.PlateCam, out: Path | None, animate: bool) -> None:

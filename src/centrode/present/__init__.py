@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         cam_path_figure,
         cam_routes_figure,
     )
+    from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
     from centrode.present.cams.outline_dxf import write_outlines_dxf
     from centrode.present.cams.outline_files import write_cam_outlines
     from centrode.present.cams.outline_svg import write_outlines_svg
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from centrode.present.cams.tables import (
         write_cam_contact_csv,
         write_cam_csv,
+        write_cam_laws_csv,
+        write_cam_motion_csv,
         write_cam_routes_csv,
         write_cam_tables,
     )
@@ -84,6 +87,10 @@ __all__ = [
     "cam_body_figures",
     "cam_curves_figure",
     "cam_figures",
+    "cam_motion_figure",
+    "laws_figure",
+    "write_cam_laws_csv",
+    "write_cam_motion_csv",
     "cam_path_figure",
     "cam_routes_figure",
     "centres_figure",
@@ -143,10 +150,18 @@ _attached, __dir__, _names = lazy_loader.attach(
         "forces.balance_tables": ["write_balance_csv", "write_harmonics_csv"],
         "cams.bodies": ["cam_body_figures"],
         "cams.drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
+        "cams.motion_drawing": ["cam_motion_figure", "laws_figure"],
         "cams.choice": ["choice_figures", "trade_off_figure"],
         "cams.choice_tables": ["write_choice"],
         "cams.contact": ["contact_figure"],
-        "cams.tables": ["write_cam_contact_csv", "write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
+        "cams.tables": [
+            "write_cam_contact_csv",
+            "write_cam_csv",
+            "write_cam_laws_csv",
+            "write_cam_motion_csv",
+            "write_cam_routes_csv",
+            "write_cam_tables",
+        ],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "centrodes": ["animate_centrodes", "centrodes_figure"],

@@ -9,11 +9,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode import __version__
+from centrode.cams.followers.joints import ORDER, joints_of
 from centrode.cams.followers.motion import FollowerMotion
 from centrode.errors import Status
 from centrode.kinematics.dataset import Variable, named
 from centrode.model.cams.files import cam_text
 from centrode.model.cams.plate import PlateCam
+from centrode.quantities import QUANTITIES
 
 Array = npt.NDArray[np.float64]
 
@@ -31,7 +33,7 @@ def dataset_of_motion(cam: PlateCam, motion: FollowerMotion, phi: Array) -> xr.D
     """The labelled motion of a follower at angles of its cam [rad].
 
     Along `sample`, over `cam_angle`: the lift with four derivatives by the cam's angle; with a speed of the cam also
-    velocity, acceleration and jerk in time.
+    velocity, acceleration and jerk in time. Along `joint`, at `joint_angle`: lift and derivatives before and after it.
     """
     by_angle, in_time = motion_names(motion.swings)
     values = motion.lift(phi, len(by_angle) - 1)
@@ -42,7 +44,20 @@ def dataset_of_motion(cam: PlateCam, motion: FollowerMotion, phi: Array) -> xr.D
         for order, name in enumerate(in_time, 1):
             data[name] = named(name, ("sample",), values[order] * motion.speed**order)
     data["status"] = _all_right(len(phi))
-    return xr.Dataset(data, coords={"cam_angle": named("cam_angle", ("sample",), phi)}, attrs=_facts(cam))
+    coordinates = {"cam_angle": named("cam_angle", ("sample",), phi), "derivative": list(range(ORDER + 1))}
+    return xr.Dataset(data | _joints(motion), coords=coordinates, attrs=_facts(cam, motion))
+
+
+def _joints(motion: FollowerMotion) -> dict[str, Variable]:
+    """Both sides of every joint, those of 0 deg at the end of the turn; each derivative in its own unit."""
+    joints = joints_of(motion)
+    units = {"units": ", ".join(QUANTITIES[name].unit for name in motion_names(motion.swings)[0])}
+    sides = {"joint_before": [one.before for one in joints], "joint_after": [one.after for one in joints]}
+    data = {
+        name: (("joint", "derivative"), np.array(values), {**named(name, (), None)[2], **units})
+        for name, values in sides.items()
+    }
+    return {"joint_angle": named("joint_angle", ("joint",), [one.angle for one in joints]), **data}
 
 
 def _all_right(count: int) -> Variable:
@@ -52,5 +67,7 @@ def _all_right(count: int) -> Variable:
     return dimensions, values, attributes
 
 
-def _facts(cam: PlateCam) -> dict[str, Any]:
-    return {"title": cam.title, "cam": cam_text(cam), "version": __version__}
+def _facts(cam: PlateCam, motion: FollowerMotion) -> dict[str, Any]:
+    facts = {"title": cam.title, "cam": cam_text(cam), "version": __version__}
+    curves = {"curves": ", ".join(segment.curve for segment in cam.segments)}
+    return facts | curves | ({} if motion.speed is None else {"speed": motion.speed})

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from centrode.locale import _
 from centrode.present.abscissa import Abscissa, angle_ticks
 from centrode.present.cams.contact import contact_figure
+from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
@@ -192,6 +193,8 @@ CAM_FIGURES: Mapping[str, tuple[str, Callable[[AnyCam, xarray.Dataset], Figure]]
     "cam-curves": ("cam-path", cam_curves_figure),
     "cam-routes": ("cam-routes", cam_routes_figure),
     "cam-contact": ("cam-contact", contact_figure),
+    "cam-motion": ("cam-motion", cam_motion_figure),
+    "cam-laws": ("cam-laws", lambda cam, dataset: laws_figure(dataset, _(cam.title))),
 }
 """Figures of a cam's results: name of the file -> name of the dataset, and what draws it."""
 

@@ -15,6 +15,7 @@ from centrode.model.cams.files import AnyCam
 from centrode.model.cams.plate import PlateCam
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
+from centrode.study.cams.laws import laws_part
 from centrode.study.cams.motion import motion_part
 from centrode.study.cams.path import path_part
 from centrode.study.cams.profile import profile_part
@@ -48,6 +49,7 @@ PARTS: Mapping[str, MakesPart] = {
 
 FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
     "motion": motion_part,
+    "laws": laws_part,
 }
 """The same of a cam that is given by its follower's lift."""
 
@@ -82,6 +84,7 @@ def cam_results(
     *,
     groove: bool = False,
     front: bool = False,
+    laws: bool = False,
 ) -> CamResults:
     """Everything about the cam of a description.
 
@@ -96,13 +99,15 @@ def cam_results(
         Also the outer wall of a groove that the roller runs in.
     front : bool
         Also the front of best designs where `[choose] trade_off` names a measure; it takes some seconds.
+    laws : bool
+        Also other laws of motion for the first rise of a follower.
 
     Raises
     ------
     InputError
         What `ct.cam` and `ct.cam_routes` refuse.
     """
-    asked = Asked(samples, terms, groove, front)
+    asked = Asked(samples, terms, groove, front, laws)
     found: dict[str, CamPart | None]
     if isinstance(cam, PlateCam):
         found = {name: make(cam, asked) for name, make in FOLLOWER_PARTS.items()}

@@ -18,12 +18,16 @@ Rows: TypeAlias = list[tuple[str, str]]
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked for besides the description: numbers of samples and of terms of the series, a groove, a front."""
+    """What is asked for besides the description.
+
+    Numbers of samples and of terms of the series, a groove, a front, other laws of motion.
+    """
 
     samples: int | None = None
     terms: int | None = None
     groove: bool = False
     front: bool = False
+    laws: bool = False
 
 
 @dataclass(frozen=True)
