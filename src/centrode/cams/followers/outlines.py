@@ -61,7 +61,7 @@ def follower_outlines(
             contact = cam.contact(phi)
             places = contact.place + layer.away * contact.normal
             speed = cutter_speed(cam, contact, layer.away)
-            found.append(Outline(layer.name, phi, places, speed[:, None] * contact.tangent))
+            found.append(Outline(layer.name, phi, places, speed[:, None] * contact.tangent, contact.normal))
     return found
 
 
@@ -72,12 +72,10 @@ def _corner(cam: FollowerCam, corner: Corner, layer: _Layer, tolerance: float) -
         start = before.place[0] + layer.away * before.normal[0]
         along = np.linspace(0.0, corner.step, LEAST_SPACES + 1)
         slopes = np.broadcast_to(before.tangent[0], (len(along), 2))
-        yield Outline(
-            layer.name,
-            corner.at + along / cam.base_radius,
-            start + along[:, None] * slopes,
-            slopes * cam.base_radius,
-        )
+        places = start + along[:, None] * slopes
+        normals = np.broadcast_to(before.normal[0], slopes.shape)
+        size = cam.base_radius
+        yield Outline(layer.name, corner.at + along / size, places, size * slopes, normals)
     # seen from the roller's centre, about which the normal turns
     distance = layer.away - (0.0 if isinstance(cam.touch, Face) else cam.touch.roller)
     if distance * corner.turn > 0.0:
@@ -88,9 +86,8 @@ def _corner(cam: FollowerCam, corner: Corner, layer: _Layer, tolerance: float) -
         normal = before.normal_angle[0] + sense * turned
         outwards = np.stack([np.sin(normal), np.cos(normal)], axis=-1)
         along = np.stack([np.cos(normal), -np.sin(normal)], axis=-1)
-        yield Outline(
-            layer.name, corner.at + turned, before.centre[0] + distance * outwards, sense * distance * along
-        )
+        places = before.centre[0] + distance * outwards
+        yield Outline(layer.name, corner.at + turned, places, sense * distance * along, outwards)
 
 
 def _before(cam: FollowerCam, at: float) -> Contact:
