@@ -102,7 +102,7 @@ class FollowerCam:
         return tuple(one for one in found if one is not None)
 
     def _corner(self, at: float) -> Corner | None:
-        before = self.edges[-1] if at == self.edges[0] else np.nextafter(at, -math.inf)
+        before = inside(0.0, self.edges[-1] if at == self.edges[0] else at)[1]
         sides = self.contact(np.array([before, at]))
         if isinstance(self.touch, Face):
             step = float(np.sum((sides.place[1] - sides.place[0]) * sides.tangent[1]))

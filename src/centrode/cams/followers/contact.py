@@ -52,8 +52,10 @@ class Contact:
         Of the normal, from y towards x.
     speed : (n) [m/rad]
         ds/dphi along the tangent; negative where the profile runs back.
+    pace : (n)
+        ds/dphi [m/rad] of the roller's centre; dangle/dphi [1] of a flat face against the cam, positive if it is led.
     stretch, stretch_slope : (n)
-        What has the sign of `speed`: 1 - r K of a roller [1], the radius of curvature of a flat face [m]; by phi.
+        `speed` over `pace`: 1 - r K of a roller [1], the radius of curvature under a flat face [m]; by phi.
     bend : (n) [m]
         Radius of curvature of the profile: positive where it bulges, infinite where it is straight.
     curvature : (n) [1/m]
@@ -74,6 +76,7 @@ class Contact:
     tangent: Array
     normal_angle: Array
     speed: Array
+    pace: Array
     stretch: Array
     stretch_slope: Array
     bend: Array
@@ -136,6 +139,7 @@ class Point:
             sense * _ahead(omega.value),
             omega.value,
             length.value * stretch.value,
+            length.value,
             stretch.value,
             stretch.derivative(1) + 0.0 * phi,
             bend,
@@ -172,6 +176,7 @@ class Face:
             sense * ahead,
             omega.value,
             bend.value * turning.value * sense,
+            turning.value * sense + 0.0 * phi,
             bend.value,
             bend.derivative(1),
             bend.value,

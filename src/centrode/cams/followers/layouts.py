@@ -83,7 +83,7 @@ def _check_led(cam: FollowerCam) -> None:
     ends = zip(cam.edges[:-1], cam.edges[1:], strict=True)
     phi = np.concatenate([mesh(*inside(start, stop)) for start, stop in ends])
     found = cam.contact(phi)
-    turning = found.speed / found.stretch if isinstance(cam.touch, Face) else np.ones_like(phi)
+    turning = found.pace
     bad = np.flatnonzero(~((np.cos(found.pressure_angle) > 0.0) & (turning > 0.0)))
     if not bad.size:
         return

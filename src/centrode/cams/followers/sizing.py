@@ -92,9 +92,8 @@ def margin(contact: Contact, slope: Array, layout: Layout, kept: Admissible) -> 
         np.where(slope <= still, kept.return_angle - steepness, math.inf),
     )
     if layout.flat:
-        turning = contact.speed / contact.stretch
         size = float(np.abs(contact.place).max())
-        bent = np.where(turning > 0.0, (contact.bend - kept.bend) / size, -math.inf)
+        bent = np.where(contact.pace > 0.0, (contact.bend - kept.bend) / size, -math.inf)
     else:
         bent = 1.0 - (layout.touch.roller + kept.bend) * contact.path_curvature
     bent = np.where(np.isfinite(bent), bent, -math.inf)

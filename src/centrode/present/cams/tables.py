@@ -107,6 +107,7 @@ CAM_TABLES: Mapping[str, Callable[[AnyCam, xarray.Dataset, Path], None]] = {
     "cam-motion": write_cam_motion_csv,
     "cam-laws": lambda cam, dataset, path: write_cam_laws_csv(dataset, path),
     "cam-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
+    "cam-points": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "shoe-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
 }
 """How each dataset of a cam's results is written, by the name of its file."""

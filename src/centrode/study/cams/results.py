@@ -19,6 +19,7 @@ from centrode.study.cams.forces import forces_part
 from centrode.study.cams.laws import laws_part
 from centrode.study.cams.motion import motion_part
 from centrode.study.cams.path import path_part
+from centrode.study.cams.plate import plate_part
 from centrode.study.cams.profile import profile_part
 from centrode.study.cams.routes import routes_part
 from centrode.study.cams.said import Asked, CamPart
@@ -50,6 +51,7 @@ PARTS: Mapping[str, MakesPart] = {
 
 FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
     "motion": motion_part,
+    "profile": plate_part,
     "forces": forces_part,
     "laws": laws_part,
 }
