@@ -151,8 +151,14 @@ def test_what_no_cam_can_keep_is_told() -> None:
     with pytest.raises(MotionError, match=r"the pressure angle is broken at .* deg at least"):
         least_base_radius(layout, motion, Admissible(0.1, 0.1))
     uniform = lift_of((90, 0.01, "uniform"), (90, None, "dwell"), (90, 0.0, "uniform"), (90, None, "dwell"))
-    with pytest.raises(MotionError, match="at 90 deg the speed of the lift jumps: a corner is undercut"):
+    with pytest.raises(
+        MotionError, match="at 90 deg the speed of the lift jumps: every radius leaves a sharp"
+    ):
         least_base_radius(Layout("translating", Point(0.008)), uniform, Admissible())
+    edge = Layout("translating", Point(0.0))
+    assert least_base_radius(edge, uniform, Admissible(0.5, 0.5)).by == "pressure angle"
+    with pytest.raises(MotionError, match="sharp corner"):
+        least_base_radius(edge, uniform, Admissible(0.5, 0.5, 0.001))
     with pytest.raises(InputError, match="only a translating follower"):
         best_offset(layout, motion, Admissible())
     with pytest.raises(InputError, match="turn faster than the cam"):
