@@ -106,16 +106,8 @@ def _joints(axes: Axes, body: FollowerCam, factor: float) -> Line2D:
     for at, place, normal in zip(joints, found.place, found.normal, strict=True):
         axes.plot(*(factor * place), marker="o", color=INK, markersize=3.5, zorder=6)
         x, y = factor * (place - away * normal)
-        axes.text(
-            inwards[0],
-            inwards[1],
-            f"{math.degrees(at):.4g}°",
-            fontsize=8,
-            color=INK,
-            ha="center",
-            va="center",
-            zorder=6,
-        )
+        name = f"{math.degrees(at):.4g}°"
+        axes.text(x, y, name, fontsize=8, color=INK, ha="center", va="center", zorder=6)
     return Line2D([], [], color=INK, marker="o", linestyle="none", markersize=3.5)
 
 

@@ -20,17 +20,20 @@ if TYPE_CHECKING:
     from centrode.cams.followers.bodies import FollowerCam
     from centrode.present.scene import Array
 
-STEM = 1.1
-"""How far a translating follower reaches above its place, over the base radius."""
+GUIDE = 11.0
+"""Length of the guide of a translating follower, over the size of a hinge."""
 OVER = 0.12
 """How far a face goes on beyond the contact, over the base radius."""
+SIZE = 0.016
+"""Radius of a hinge's circle over the size of the cam."""
 PEN: dict[str, Any] = {"color": PALETTE[2], "linewidth": 2.0, "zorder": 4, "solid_capstyle": "round"}
 
 
 def draw_follower(axes: Axes, body: FollowerCam, factor: float) -> list[tuple[Artist, str]]:
     """Draw the follower at phi = 0; returns entries of a legend."""
     start = body.contact(np.zeros(1))
-    size = 0.035 * factor * body.base_radius
+    reach = body.contact(np.linspace(0.0, body.edges[-1], 73)).place
+    size = SIZE * factor * float(np.ptp(reach, axis=0).max())
     flat = math.isinf(body.touch.roller)
     touching = factor * start.centre[0]
     if isinstance(body.guide, Translating):
@@ -53,12 +56,11 @@ def draw_follower(axes: Axes, body: FollowerCam, factor: float) -> list[tuple[Ar
 
 def _stem(axes: Axes, body: FollowerCam, factor: float, foot: Array, size: float) -> None:
     """The axis, the stem and the walls of its guide."""
-    long = STEM * factor * body.base_radius
     # the guide stands above the highest place
     lift = factor * float(np.max(body.motion.lift(np.linspace(0.0, body.edges[-1], 721))[0]))
     roller = 0.0 if math.isinf(body.touch.roller) else factor * body.touch.roller
     low = foot + np.array([0.0, lift + roller + 2.0 * size])
-    top = low + np.array([0.0, 0.35 * long])
+    top = low + np.array([0.0, GUIDE * size])
     axes.plot(*np.stack([foot, top + np.array([0.0, 4.0 * size])]).T, **PEN)
     axes.plot(
         [foot[0]] * 2, [0.0, foot[1]], color=MUTED, linewidth=0.8, linestyle=(0, (6, 2, 1.5, 2)), zorder=1
