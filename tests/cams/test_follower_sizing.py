@@ -81,7 +81,7 @@ def test_the_best_offset_by_straight_lines(sense: float) -> None:
     """
     layout = Layout("translating", Point(0.008), sense=sense)
     found = best_offset(layout, MOTION, Admissible(RISE, FALL))
-    s, v = MOTION.lift(MANY[::50], 1)
+    s, v = MOTION.lift(MANY[::400], 1)
     rows, rights = [], []
     for here, most in ((v >= 0, RISE), (v <= 0, FALL)):
         for sign in (1.0, -1.0):
@@ -90,13 +90,13 @@ def test_the_best_offset_by_straight_lines(sense: float) -> None:
             rights.append(math.tan(most) * s[here] - sign * v[here])
     a, b = np.concatenate(rows), np.concatenate(rights)
     lowest = linprog([0.0, 1.0], A_ub=a, b_ub=b, bounds=[(None, None), (0, None)]).x
-    offsets = np.linspace(-0.02, 0.02, 4001)
+    offsets = np.linspace(-0.01, 0.01, 1001)
     heights = np.max((b[:, None] - a[:, :1] * offsets) / a[:, 1:], axis=0, where=True, initial=0.0)
     brute = float(np.hypot(offsets, heights).min())
     # what a line may lose between two samples, and an offset between two that were tried, of slope 1/tan at most
     lost = float(np.abs(np.diff(v, 2)).max()) / math.tan(RISE)
     assert math.hypot(*lowest) - 1e-9 <= found.base_radius + 0.008 <= math.hypot(*lowest) + lost + 1e-9
-    assert brute - 1e-5 / math.tan(RISE) <= found.base_radius + 0.008 <= brute + lost + 1e-9
+    assert brute - 2e-5 / math.tan(RISE) <= found.base_radius + 0.008 <= brute + lost + 1e-9
     assert found.base_radius < least_base_radius(layout, MOTION, Admissible(RISE, FALL)).base_radius
     assert math.copysign(1.0, found.offset) == sense  # towards the rise
 
@@ -133,8 +133,8 @@ def test_oscillating_followers(sense: float) -> None:
         found = least_base_radius(layout, motion, kept)
         cam = layout.cam(motion, found.base_radius)
         assert abs(exact_margin(cam, layout, kept).least) < 64 * EPS / 0.004
-        # none of a hundred smaller cams keeps what is admissible
-        for share in np.linspace(0.3, 0.9999, 100):
+        # none of thirty smaller cams keeps what is admissible
+        for share in np.linspace(0.3, 0.9999, 30):
             try:
                 smaller = layout.cam(motion, share * found.base_radius)
             except InputError:
@@ -151,8 +151,14 @@ def test_what_no_cam_can_keep_is_told() -> None:
     with pytest.raises(MotionError, match=r"the pressure angle is broken at .* deg at least"):
         least_base_radius(layout, motion, Admissible(0.1, 0.1))
     uniform = lift_of((90, 0.01, "uniform"), (90, None, "dwell"), (90, 0.0, "uniform"), (90, None, "dwell"))
-    with pytest.raises(MotionError, match="at 90 deg the speed of the lift jumps: a corner is undercut"):
+    with pytest.raises(
+        MotionError, match="at 90 deg the speed of the lift jumps: every radius leaves a sharp"
+    ):
         least_base_radius(Layout("translating", Point(0.008)), uniform, Admissible())
+    edge = Layout("translating", Point(0.0))
+    assert least_base_radius(edge, uniform, Admissible(0.5, 0.5)).by == "pressure angle"
+    with pytest.raises(MotionError, match="sharp corner"):
+        least_base_radius(edge, uniform, Admissible(0.5, 0.5, 0.001))
     with pytest.raises(InputError, match="only a translating follower"):
         best_offset(layout, motion, Admissible())
     with pytest.raises(InputError, match="turn faster than the cam"):

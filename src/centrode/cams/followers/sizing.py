@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from centrode.cams.followers.bodies import FollowerCam, inside
+from centrode.cams.followers.bodies import Corner, FollowerCam, inside
 from centrode.cams.followers.contact import ORDER, Array, Contact, Motion
 from centrode.cams.followers.layouts import Layout
 from centrode.cams.searching import mesh, roots
@@ -111,7 +111,23 @@ def exact_margin(cam: FollowerCam, layout: Layout, kept: Admissible) -> Margin:
         for one in cam.turns(name)
     ]
     phi = np.append(_mesh(cam.motion), turns)
-    return margin(cam.contact(phi), cam.motion.lift(phi, 1)[1], layout, kept)
+    found = margin(cam.contact(phi), cam.motion.lift(phi, 1)[1], layout, kept)
+    sharp = [one.at for one in cam.corners if _breaks(one, layout, kept)]
+    return Margin(-math.inf, sharp[0], "curvature") if sharp else found
+
+
+def _breaks(corner: Corner, layout: Layout, kept: Admissible) -> bool:
+    """Whether a corner leaves the profile undercut, or with a sharp edge where a radius of curvature is asked for."""
+    return corner.undercuts(layout.touch.roller) or (corner.turn > 0.0 and kept.bend > 0.0)
+
+
+def _check_corners(cam: FollowerCam, layout: Layout, kept: Admissible) -> None:
+    """Raise MotionError where the speed of the lift jumps so that every cam has a sharp corner."""
+    for corner in cam.corners:
+        if _breaks(corner, layout, kept):
+            what = _("at {angle:.6g} deg the speed of the lift jumps: every radius leaves a sharp corner")
+            told = what.format(angle=math.degrees(corner.at))
+            raise MotionError("[[segments]]", told, _("join the segments there with equal slopes"))
 
 
 def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least:
@@ -125,8 +141,8 @@ def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least
         None does; what comes nearest is told.
     """
     tried = _Tried(layout, motion, kept)
-    tried.check_corners()
     found = tried.first()
+    _check_corners(tried.cam(found), layout, kept)
 
     def exact(base: float) -> float:
         return exact_margin(tried.cam(base), layout, kept).least
@@ -217,17 +233,6 @@ class _Tried:
 
     def reaches(self, base: float) -> bool:
         return self.margin(base).least > -math.inf
-
-    def check_corners(self) -> None:
-        """Raise MotionError where the speed of the lift jumps so that every cam is undercut."""
-        base = next((one for one in self._radii(SMALLEST) if self.reaches(one)), self.size)
-        for corner in self.cam(base).corners:
-            if corner.undercuts(self.layout.touch.roller):
-                what = _(
-                    "at {angle:.6g} deg the speed of the lift jumps: a corner is undercut with every radius"
-                )
-                told = what.format(angle=math.degrees(corner.at))
-                raise MotionError("[[segments]]", told, _("join the segments there with equal slopes"))
 
     def first(self) -> float:
         """The first base radius, from below, that keeps the bounds on the mesh."""

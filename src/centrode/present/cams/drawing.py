@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
@@ -19,6 +19,7 @@ from centrode.present.abscissa import Abscissa, angle_ticks
 from centrode.present.cams.contact import contact_figure
 from centrode.present.cams.forces import cam_forces_figure
 from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
+from centrode.present.cams.plate_curves import plate_curves_figure
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
@@ -189,13 +190,14 @@ def _mark_circle(axes: Axes, cam: AnyCam, dataset: xarray.Dataset) -> None:
             )  # fmt: skip
 
 
-CAM_FIGURES: Mapping[str, tuple[str, Callable[[AnyCam, xarray.Dataset], Figure]]] = {
+CAM_FIGURES: Mapping[str, tuple[str, Callable[[Any, xarray.Dataset], Figure]]] = {
     "cam-path": ("cam-path", cam_path_figure),
     "cam-curves": ("cam-path", cam_curves_figure),
     "cam-routes": ("cam-routes", cam_routes_figure),
     "cam-contact": ("cam-contact", contact_figure),
     "cam-forces": ("cam-forces", cam_forces_figure),
     "cam-motion": ("cam-motion", cam_motion_figure),
+    "cam-curvature": ("cam-profile", plate_curves_figure),
     "cam-laws": ("cam-laws", lambda cam, dataset: laws_figure(dataset, _(cam.title))),
 }
 """Figures of a cam's results: name of the file -> name of the dataset, and what draws it."""
@@ -206,5 +208,5 @@ def cam_figures(cam: AnyCam, datasets: Mapping[str, xarray.Dataset]) -> dict[str
     return {
         name: draw(cam, datasets[source])
         for name, (source, draw) in CAM_FIGURES.items()
-        if source in datasets
+        if source in datasets and (name != "cam-curvature" or "segments" in type(cam).model_fields)
     }
