@@ -13,6 +13,7 @@ from centrode.laws.segments import (
     Segment,
     SegmentedLaw,
 )
+from centrode.laws.shaft import ShaftLaw
 from centrode.laws.table import TableLaw
 from centrode.laws.text import TextLaw
 from centrode.laws.uniform import Uniform
@@ -30,6 +31,7 @@ __all__ = [
     "Law",
     "Segment",
     "SegmentedLaw",
+    "ShaftLaw",
     "TableLaw",
     "TextLaw",
     "Uniform",

@@ -130,6 +130,14 @@ PROPERTIES: dict[type[Part], Schema] = {
         "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 2), 2, limits.TABLE_ROWS)]},
         "segments": list_of(reference_to(Segment), 1, segments.MOST),
         "repeat": {"type": "boolean"},
+        "cam": {
+            "anyOf": [TEXT, {"type": "object"}],
+            "description": "a cam's file, a built-in cam, or its tables",
+        },
+        "cam_speed": above_zero("angular speed"),
+        "cam_angle": quantity_schema("angle"),
+        "cam_point": NAME,
+        "lowers": {"type": "boolean"},
     },
     Segment: {
         "to": AMOUNT,

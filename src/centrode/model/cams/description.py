@@ -22,9 +22,9 @@ from centrode.model.cams.parts import (
     Start,
 )
 from centrode.model.cams.values import CONSTANT, POINT
-from centrode.model.document import part_tables
 from centrode.model.part import Part
 from centrode.model.problems import Problem, Problems, nearest, shown
+from centrode.model.tabled import part_tables
 from centrode.model.values import Text, choice
 
 SomeCam = TypeVar("SomeCam", bound=Part)

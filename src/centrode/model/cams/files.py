@@ -12,9 +12,10 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
 from centrode.model.cams.plate import PlateCam
-from centrode.model.document import part_tables
-from centrode.model.files import described, in_short_lines, is_cam, toml_tables
+from centrode.model.files import in_short_lines
 from centrode.model.reading import read_file
+from centrode.model.tabled import part_tables
+from centrode.model.toml_text import described, is_cam, toml_tables
 
 AnyCam: TypeAlias = Cam | PlateCam
 """A cam by the curvature of its roller's path, or by the lift of its follower."""

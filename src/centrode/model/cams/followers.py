@@ -11,7 +11,7 @@ from centrode.locale import _
 from centrode.model import limits
 from centrode.model.asked import read_samples
 from centrode.model.cams.parts import Material
-from centrode.model.cams.values import Size, Steepness, Stress
+from centrode.model.cams.values import Flag, Size, Steepness, Stress
 from centrode.model.part import Part, missing_key
 from centrode.model.problems import Problem, shown
 from centrode.model.segments import DRIVEN
@@ -81,6 +81,8 @@ class Follower(Part):
         Of a translating follower: of its line from the cam's centre.
     arm, pivot_distance : float [m]
         Of an oscillating follower: its length to the roller's centre or the edge; of its pivot from the cam's centre.
+    face_offset : float [m]
+        Of an oscillating flat face: by how much its line passes the pivot, on the cam's side.
     mass : float [kg], inertia : float [kg*m^2]
         Of a translating, of an oscillating follower, with all that moves with it.
     spring : Spring or None
@@ -97,6 +99,7 @@ class Follower(Part):
     offset: Annotated[float, quantity("length")] = 0.0
     arm: Size | None = None
     pivot_distance: Size | None = None
+    face_offset: Annotated[float, quantity("length")] = 0.0
     mass: Annotated[float, quantity("mass", not_negative)] | None = None
     inertia: Annotated[float, quantity("inertia", not_negative)] | None = None
     spring: Spring | None = None
@@ -118,8 +121,10 @@ class Follower(Part):
             problems += _belongs(given, key, not swings, straight)
         problems += _belongs(given, "inertia", swings, turning)
         problems += _belongs(given, "pivot_distance", swings, turning, needed=True)
-        # The face of a flat follower may go through its pivot: it needs no arm.
-        return problems + _belongs(given, "arm", swings, turning, needed=contact != "flat")
+        # A flat face is long enough wherever the cam touches it: it has no arm.
+        flat, arm = swings and contact == "flat", _("an oscillating follower with a roller or a knife edge")
+        problems += _belongs(given, "arm", swings and not flat, arm, needed=True)
+        return problems + _belongs(given, "face_offset", flat, _("an oscillating flat face"))
 
     @field_validator("load", mode="plain")
     @classmethod
@@ -146,6 +151,8 @@ class Bounds(Part):
     ----------
     pressure_angle : float [rad]
         Greatest one.
+    return_pressure_angle : float [rad]
+        Greatest one where the follower falls; that of the rise if left out.
     curvature_radius : float [m]
         Least radius of curvature of the profile where it is convex.
     stress : float [Pa]
@@ -153,6 +160,7 @@ class Bounds(Part):
     """
 
     pressure_angle: Steepness | None = None
+    return_pressure_angle: Steepness | None = None
     curvature_radius: Size | None = None
     stress: Stress | None = None
 
@@ -164,7 +172,21 @@ class Tool(Part):
 
 
 class FollowerStudy(Part):
-    """What is to be computed: `samples` over a turn, both ends included; `instants` [rad] that are shown."""
+    """What is to be computed.
+
+    Attributes
+    ----------
+    samples : int
+        Over a turn, both ends included.
+    instants : tuple of float [rad]
+        Angles that are shown.
+    chord_tolerance : float [m]
+        By how much the chords between points for a machine may depart from the profile.
+    show_undercut : bool
+        Whether a profile that the follower cuts away is shown, instead of being refused.
+    """
 
     samples: Annotated[int, PlainValidator(read_samples)] | None = None
     instants: Annotated[tuple[Angle, ...], listed(limits.INSTANTS)] = ()
+    chord_tolerance: Size = 1e-6
+    show_undercut: Flag = False

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from centrode.locale import _
 from centrode.present.abscissa import Abscissa, angle_ticks
 from centrode.present.cams.contact import contact_figure
+from centrode.present.cams.forces import cam_forces_figure
 from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.shown import formula, labelled, shown_as
@@ -193,6 +194,7 @@ CAM_FIGURES: Mapping[str, tuple[str, Callable[[AnyCam, xarray.Dataset], Figure]]
     "cam-curves": ("cam-path", cam_curves_figure),
     "cam-routes": ("cam-routes", cam_routes_figure),
     "cam-contact": ("cam-contact", contact_figure),
+    "cam-forces": ("cam-forces", cam_forces_figure),
     "cam-motion": ("cam-motion", cam_motion_figure),
     "cam-laws": ("cam-laws", lambda cam, dataset: laws_figure(dataset, _(cam.title))),
 }

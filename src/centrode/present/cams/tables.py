@@ -82,6 +82,11 @@ def write_cam_motion_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path)
     write_columns(path, columns, dataset["status"], cam.display)
 
 
+def write_cam_forces_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
+    """Write the forces on cam and follower (`ct.cam_forces`) as CSV, forces and stresses in SI, one row a sample."""
+    write_cam_motion_csv(cam, dataset, path)
+
+
 def write_cam_laws_csv(dataset: xarray.Dataset, path: str | Path) -> None:
     """Write laws of motion beside each other (`ct.cam_laws`, `ct.compare_laws`) as CSV, in shares of the rise."""
     shares = dataset["rise_share"]
@@ -98,9 +103,11 @@ CAM_TABLES: Mapping[str, Callable[[AnyCam, xarray.Dataset, Path], None]] = {
     "cam-path": write_cam_csv,
     "cam-routes": write_cam_routes_csv,
     "cam-contact": write_cam_contact_csv,
+    "cam-forces": write_cam_forces_csv,
     "cam-motion": write_cam_motion_csv,
     "cam-laws": lambda cam, dataset, path: write_cam_laws_csv(dataset, path),
     "cam-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
+    "cam-points": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "shoe-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
 }
 """How each dataset of a cam's results is written, by the name of its file."""

@@ -15,9 +15,11 @@ from centrode.model.cams.files import AnyCam
 from centrode.model.cams.plate import PlateCam
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
+from centrode.study.cams.forces import forces_part
 from centrode.study.cams.laws import laws_part
 from centrode.study.cams.motion import motion_part
 from centrode.study.cams.path import path_part
+from centrode.study.cams.plate import plate_part
 from centrode.study.cams.profile import profile_part
 from centrode.study.cams.routes import routes_part
 from centrode.study.cams.said import Asked, CamPart
@@ -49,6 +51,8 @@ PARTS: Mapping[str, MakesPart] = {
 
 FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
     "motion": motion_part,
+    "profile": plate_part,
+    "forces": forces_part,
     "laws": laws_part,
 }
 """The same of a cam that is given by its follower's lift."""

@@ -1,0 +1,64 @@
+"""Extremes over a turn of a cam of what a follower's motion decides, with both sides of every edge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from centrode.cams.contacts.along import greatest_along
+from centrode.cams.followers.forces.demand import Lifting
+
+Array = NDArray[np.float64]
+OfRows = Callable[[Array], Array]
+"""From lift and derivatives (3, n) to values (n)."""
+
+STEP = 1e-9
+"""Slopes at an edge that differ by less, over the greatest slope, are taken for equal."""
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """A greatest or least value and the angle of the cam [rad] where it is; NaN where nothing is known."""
+
+    value: float
+    angle: float
+
+
+def greatest(motion: Lifting, value: OfRows) -> Extreme:
+    """The greatest value over a turn; values that are NaN do not count, NaN where there are no others.
+
+    Every stretch is looked at by itself, its end from inside, so that what jumps at an edge counts on both sides.
+    """
+    found = [
+        greatest_along((start, inside(start, stop)), lambda phi: value(motion.lift(phi, 2)))
+        for start, stop in pairwise(motion.edges)
+    ]
+    known = [one for one in found if not math.isnan(one.value)]
+    best = max(known, key=lambda one: one.value, default=found[0])
+    return Extreme(best.value, best.angle)
+
+
+def least(motion: Lifting, value: OfRows) -> Extreme:
+    """The least value over a turn, as `greatest`."""
+    found = greatest(motion, lambda rows: -value(rows))
+    return Extreme(-found.value, found.angle)
+
+
+def slope_drops(motion: Lifting) -> list[float]:
+    """Edges [rad] at which the slope of the lift falls by a step: no spring keeps the contact there."""
+    starts = np.array(motion.edges[:-1])
+    ends = np.array([inside(start, stop) for start, stop in pairwise(motion.edges)])
+    after = motion.lift(starts, 1)[1]
+    before = np.roll(motion.lift(ends, 1)[1], 1)
+    scale = greatest(motion, lambda rows: np.abs(rows[1])).value
+    return [float(at) for at, step in zip(starts, after - before, strict=True) if step < -STEP * scale]
+
+
+def inside(start: float, stop: float) -> float:
+    """The end of a stretch, seen from inside: at the edge itself holds what begins there."""
+    return float(np.nextafter(stop, start))

@@ -1,0 +1,285 @@
+"""The least cam that keeps a pressure angle and a radius of curvature, and the offset that makes it least."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from centrode.cams.followers.bodies import FollowerCam, inside
+from centrode.cams.followers.contact import ORDER, Array, Contact, Motion
+from centrode.cams.followers.layouts import Layout
+from centrode.cams.searching import mesh, roots
+from centrode.errors import InputError, MotionError
+from centrode.locale import _
+
+STEP = 1.05
+"""Neighbouring base radii among which the first that keeps the bounds is looked for."""
+SMALLEST, GREATEST = 1e-4, 1e4
+"""Ends of the search over the size of the lift."""
+NEAR = 1e-3
+"""By how much of itself a radius found on the mesh may differ from the exact one."""
+STEEPEST = 1e6
+"""Tangents of pressure angles from which on a bound is none."""
+MOST = 24
+"""Places of a stretch at which a bound may decide; on a dwell every node is one."""
+STILL = 1e-12
+"""Slopes of the lift below this share of the greatest are those of a dwell."""
+OFFSET = 1e-9
+"""A best offset is looked for to this share of the speed of the lift."""
+
+
+@dataclass(frozen=True)
+class Admissible:
+    """What a cam has to keep.
+
+    Attributes
+    ----------
+    pressure_angle, return_angle : float [rad]
+        Greatest pressure angles where the follower rises, where it falls; where it dwells both.
+    bend : float [m]
+        Least radius of curvature of the profile where it bulges; at 0 it must not be undercut.
+    """
+
+    pressure_angle: float = math.pi / 2
+    return_angle: float = math.pi / 2
+    bend: float = 0.0
+
+
+@dataclass(frozen=True)
+class Least:
+    """The least cam.
+
+    Attributes
+    ----------
+    base_radius : float [m]
+    at : float [rad]
+        The angle that decides it.
+    by : "pressure angle" or "curvature"
+        What decides it there.
+    offset : float [m]
+        Of a translating follower.
+    """
+
+    base_radius: float
+    at: float
+    by: str
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Margin:
+    """By how much bounds are kept at worst, where, and which; negative where they are not."""
+
+    least: float
+    at: float
+    by: str
+
+
+def margin(contact: Contact, slope: Array, layout: Layout, kept: Admissible) -> Margin:
+    """What is left at the worst of some contacts, `slope` (n) the lift's there.
+
+    Of pressure angles in radians; of curvature 1 - (r + bend) K of a roller, (R - bend)/r0 of a flat face.
+    """
+    still = STILL * float(np.abs(slope).max())
+    steepness = np.abs(contact.pressure_angle)
+    pressure = np.minimum(
+        np.where(slope >= -still, kept.pressure_angle - steepness, math.inf),
+        np.where(slope <= still, kept.return_angle - steepness, math.inf),
+    )
+    if layout.flat:
+        size = float(np.abs(contact.place).max())
+        bent = np.where(contact.pace > 0.0, (contact.bend - kept.bend) / size, -math.inf)
+    else:
+        bent = 1.0 - (layout.touch.roller + kept.bend) * contact.path_curvature
+    bent = np.where(np.isfinite(bent), bent, -math.inf)
+    first, second = int(np.argmin(pressure)), int(np.argmin(bent))
+    if pressure[first] <= bent[second]:
+        return Margin(float(pressure[first]), float(contact.phi[first]), "pressure angle")
+    return Margin(float(bent[second]), float(contact.phi[second]), "curvature")
+
+
+def exact_margin(cam: FollowerCam, layout: Layout, kept: Admissible) -> Margin:
+    """`margin` over the whole turn, extremes found to rounding."""
+    turns = [
+        one
+        for name in ("pressure", "stretch" if layout.flat else "path_curvature")
+        for one in cam.turns(name)
+    ]
+    phi = np.append(_mesh(cam.motion), turns)
+    return margin(cam.contact(phi), cam.motion.lift(phi, 1)[1], layout, kept)
+
+
+def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least:
+    """The least base radius [m] with which a cam keeps what is admissible.
+
+    Radii are tried upwards, each a twentieth greater, the first that keeps the bounds is refined to rounding.
+
+    Raises
+    ------
+    MotionError
+        None does; what comes nearest is told.
+    """
+    tried = _Tried(layout, motion, kept)
+    tried.check_corners()
+    found = tried.first()
+
+    def exact(base: float) -> float:
+        return exact_margin(tried.cam(base), layout, kept).least
+
+    low, high = found * (1.0 - NEAR), found * (1.0 + NEAR)
+    if tried.reaches(low) and exact(low) < 0.0 <= exact(high):
+        found = _root(exact, low, high)
+    at = exact_margin(tried.cam(found), layout, kept)
+    return Least(found, at.at, at.by, layout.offset)
+
+
+def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
+    """The offset [m] of a translating follower with which the base radius may be least.
+
+    Of a flat face, whose offset moves nothing but the place of contact, that with which the face has to be least
+    long on its longer side.
+
+    Raises
+    ------
+    InputError
+        An oscillating follower.
+    MotionError
+        As `least_base_radius`.
+    """
+    if layout.kind != "translating":
+        raise InputError("[follower] kind", _("only a translating follower has an offset"))
+    if layout.flat:
+        least = least_base_radius(layout, motion, kept)
+        ends = layout.cam(motion, least.base_radius).face
+        return replace(least, offset=layout.offset + 0.5 * (ends.least + ends.greatest))
+    slopes = motion.lift(_mesh(motion), 1)[1]
+
+    def radius(offset: float) -> float:
+        return _Tried(replace(layout, offset=offset), motion, kept).first() + layout.touch.roller
+
+    sides = sorted(layout.sense * one for one in (float(slopes.min()), float(slopes.max())))
+    # the best axis lies where neither the rise nor the fall alone would put it farther
+    found = minimize_scalar(
+        radius,
+        bounds=(sides[0], sides[1]),
+        method="bounded",
+        options={"xatol": OFFSET * (sides[1] - sides[0])},
+    )
+    return least_base_radius(replace(layout, offset=float(found.x)), motion, kept)
+
+
+class _Tried:
+    """Cams of several base radii on one mesh, for which the lift is computed once."""
+
+    def __init__(self, layout: Layout, motion: Motion, kept: Admissible) -> None:
+        self.layout, self.motion, self.kept = layout, motion, kept
+        self.phi = np.append(_mesh(motion), self._decisive())
+        self.lift = motion.lift(self.phi, ORDER)
+        self.size = float(np.abs(self.lift[0]).max())
+        if layout.kind == "oscillating":
+            self.size *= layout.distance
+
+    def _decisive(self) -> list[float]:
+        """Angles at which a bound of the pressure angle may decide, whatever the offset and the radius.
+
+        A straight line of the slope tan(bound) touches the curve of s over s' there.
+        """
+        if self.layout.kind == "oscillating" or self.layout.flat:
+            return []
+        bounds = {math.tan(one) for one in (self.kept.pressure_angle, self.kept.return_angle)}
+        found: list[float] = []
+        for steep in (sign * one for one in bounds if one < STEEPEST for sign in (1.0, -1.0)):
+            for start, stop in pairwise(self.motion.edges):
+
+                def touches(phi: Array, steep: float = steep) -> Array:
+                    _lift, slope, second = self.motion.lift(phi, 2)
+                    return np.asarray(second - steep * slope)
+
+                found += roots(touches, inside(start, stop))[:MOST]
+        return found
+
+    def cam(self, base: float) -> FollowerCam:
+        return FollowerCam(self.motion, self.layout.guide(base), self.layout.touch, base, self.layout.sense)
+
+    def margin(self, base: float) -> Margin:
+        try:
+            guide = self.layout.guide(base)
+        except InputError:
+            return Margin(-math.inf, 0.0, "reach")
+        with np.errstate(divide="ignore", invalid="ignore"):
+            contact = self.layout.touch.contact(guide, self.phi, self.lift, self.layout.sense)
+        return margin(contact, self.lift[1], self.layout, self.kept)
+
+    def reaches(self, base: float) -> bool:
+        return self.margin(base).least > -math.inf
+
+    def check_corners(self) -> None:
+        """Raise MotionError where the speed of the lift jumps so that every cam is undercut."""
+        base = next((one for one in self._radii(SMALLEST) if self.reaches(one)), self.size)
+        for corner in self.cam(base).corners:
+            if corner.undercuts(self.layout.touch.roller):
+                what = _(
+                    "at {angle:.6g} deg the speed of the lift jumps: a corner is undercut with every radius"
+                )
+                told = what.format(angle=math.degrees(corner.at))
+                raise MotionError("[[segments]]", told, _("join the segments there with equal slopes"))
+
+    def first(self) -> float:
+        """The first base radius, from below, that keeps the bounds on the mesh."""
+        best, before = Margin(-math.inf, 0.0, "reach"), 0.0
+        for base in self._radii(self._lowest()):
+            found = self.margin(base)
+            if found.least >= 0.0:
+                return float(base) if not before else _root(lambda one: self.margin(one).least, before, base)
+            best = max(best, found, key=lambda one: one.least)
+            before = base if found.least > -math.inf else 0.0
+        raise self._none(best)
+
+    def _radii(self, least: float) -> Array:
+        count = 2 + int(math.log(max(GREATEST * self.size / least, STEP)) / math.log(STEP))
+        return np.asarray(least * STEP ** np.arange(count), dtype=np.float64)
+
+    def _lowest(self) -> float:
+        """A radius below which none keeps the bounds."""
+        layout, small = self.layout, SMALLEST * self.size
+        if layout.kind == "oscillating":
+            return (
+                small if layout.flat else max(small, abs(layout.distance - layout.arm) - layout.touch.roller)
+            )
+        if layout.flat:
+            return small
+        heights = self._heights()
+        return max(small, math.hypot(heights, layout.offset) * (1.0 - 1e-12) - layout.touch.roller)
+
+    def _heights(self) -> float:
+        """The least height of the roller's centre at lift 0 that keeps the pressure angles at every sample."""
+        lift, slope = self.lift[:2]
+        across = np.abs(slope - self.layout.sense * self.layout.offset)
+        rise, fall = (
+            np.max(across[here] / math.tan(most) - lift[here], initial=0.0)
+            for here, most in ((slope >= 0, self.kept.pressure_angle), (slope <= 0, self.kept.return_angle))
+        )
+        return float(max(rise, fall))
+
+    def _none(self, best: Margin) -> MotionError:
+        what = _("no base radius keeps the bounds: {bound} is broken at {angle:.6g} deg at least")
+        bounds = {
+            "pressure angle": _("the pressure angle"),
+            "curvature": _("the radius of curvature"),
+            "reach": _("the follower's reach"),
+        }
+        told = what.format(bound=bounds[best.by], angle=math.degrees(best.at))
+        return MotionError("[bounds]", told, _("admit more, or change the follower"))
+
+
+def _mesh(motion: Motion) -> Array:
+    return np.concatenate([mesh(*inside(start, stop)) for start, stop in pairwise(motion.edges)])
+
+
+def _root(function: Callable[[float], float], low: float, high: float) -> float:
+    return float(brentq(function, low, high, xtol=1e-300, rtol=4 * np.finfo(float).eps))
