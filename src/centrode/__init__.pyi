@@ -150,6 +150,17 @@ from .present import cam_figures as cam_figures
 from .present import write_cam_motion_csv as write_cam_motion_csv
 from .present import write_cam_laws_csv as write_cam_laws_csv
 from .present import cam_motion_figure as cam_motion_figure
+from .cams.followers.described import follower_cam as follower_cam
+from .cams.followers.forces.labelled import cam_forces as cam_forces
+from .cams.followers.forces.acting import follower_forces as follower_forces
+from .cams.followers.forces.demand import Burden as Burden
+from .cams.followers.forces.keeping import least_push as least_push
+from .cams.followers.forces.keeping import jump_speed as jump_speed
+from .cams.followers.forces.keeping import preload_needed as preload_needed
+from .cams.followers.forces.keeping import stiffness_needed as stiffness_needed
+from .study.cams.forces import forces_rows as forces_rows
+from .present import write_cam_forces_csv as write_cam_forces_csv
+from .present import cam_forces_figure as cam_forces_figure
 from .present import laws_figure as laws_figure
 
 # Profiles of cams, walking wheels

@@ -4,6 +4,7 @@ from centrode.laws.curves import CURVES, Curve
 from centrode.laws.law import Law
 from centrode.laws.segments import (
     B_SPLINE,
+    DEGREE,
     DWELL,
     MOST_DEGREE,
     POLYNOMIAL,
@@ -20,6 +21,7 @@ from centrode.laws.uniform import Uniform
 __all__ = [
     "B_SPLINE",
     "CURVES",
+    "DEGREE",
     "DWELL",
     "MOST_DEGREE",
     "POLYNOMIAL",

@@ -11,7 +11,7 @@ from centrode.laws.segments import SegmentedLaw
 
 @dataclass(frozen=True)
 class ShaftLaw:
-    """s(t) = scale lift(angle + speed t).
+    """s(t) = lift(angle + speed t), or less that.
 
     Attributes
     ----------
@@ -20,14 +20,14 @@ class ShaftLaw:
     speed : float [rad/s], positive
     angle : float [rad]
         Of the shaft at t = 0.
-    scale : float
-        -1.0 where the lift lowers the value.
+    lowers : bool
+        Whether the lift lowers the value.
     """
 
     lift: SegmentedLaw
     speed: float
     angle: float = 0.0
-    scale: float = 1.0
+    lowers: bool = False
 
     @property
     def span(self) -> tuple[float, float] | None:
@@ -41,4 +41,6 @@ class ShaftLaw:
 
     def jet(self, m: Any, t: Number) -> Number:
         """s(t) [rad or m] over the algebra of `m`."""
-        return self.lift.jet(m, t * self.speed + self.angle) * self.scale
+        lift = self.lift.jet(m, t * self.speed + self.angle)
+        # Not the lift times -1: at rest that is a zero with a minus.
+        return lift * 0.0 - lift if self.lowers else lift

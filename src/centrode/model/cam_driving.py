@@ -27,11 +27,12 @@ def pivot_of(mechanism: Description, link: str) -> str | None:
 
 def follower_problems(mechanism: Description, drive: Drive, at: Place) -> Iterator[Problem]:
     """What is wrong with the point of a link that is said to touch the cam."""
-    if drive.cam is None or drive.cam_point is None or drive.link not in mechanism.links:
+    link = drive.link or ""
+    if drive.cam is None or drive.cam_point is None or link not in mechanism.links:
         return
-    points = mechanism.links[drive.link].coordinates
-    unknown = list(known(drive.cam_point, points, "point", (*at, "cam_point"), drive.link))
-    pivot = pivot_of(mechanism, drive.link)
+    points = mechanism.links[link].coordinates
+    unknown = list(known(drive.cam_point, points, "point", (*at, "cam_point"), link))
+    pivot = pivot_of(mechanism, link)
     yield from unknown
     if unknown or pivot is None:
         return

@@ -148,8 +148,7 @@ class Drive(Part):
         if self.segments is not None:
             return segmented(self.segments, self.repeat)
         if self.cam is not None:
-            scale = -1.0 if self.lowers else 1.0
-            return ShaftLaw(self.cam.lift_law, self.turning or 1.0, self.cam_angle, scale)
+            return ShaftLaw(self.cam.lift_law, self.turning or 1.0, self.cam_angle, self.lowers)
         times, values = zip(*self.table or (), strict=True)
         return TableLaw(times, values)
 

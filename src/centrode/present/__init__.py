@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         cam_path_figure,
         cam_routes_figure,
     )
+    from centrode.present.cams.forces import cam_forces_figure
     from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
     from centrode.present.cams.outline_dxf import write_outlines_dxf
     from centrode.present.cams.outline_files import write_cam_outlines
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from centrode.present.cams.tables import (
         write_cam_contact_csv,
         write_cam_csv,
+        write_cam_forces_csv,
         write_cam_laws_csv,
         write_cam_motion_csv,
         write_cam_routes_csv,
@@ -87,6 +89,8 @@ __all__ = [
     "cam_body_figures",
     "cam_curves_figure",
     "cam_figures",
+    "cam_forces_figure",
+    "write_cam_forces_csv",
     "cam_motion_figure",
     "laws_figure",
     "write_cam_laws_csv",
@@ -150,6 +154,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "forces.balance_tables": ["write_balance_csv", "write_harmonics_csv"],
         "cams.bodies": ["cam_body_figures"],
         "cams.drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
+        "cams.forces": ["cam_forces_figure"],
         "cams.motion_drawing": ["cam_motion_figure", "laws_figure"],
         "cams.choice": ["choice_figures", "trade_off_figure"],
         "cams.choice_tables": ["write_choice"],
@@ -157,6 +162,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "cams.tables": [
             "write_cam_contact_csv",
             "write_cam_csv",
+            "write_cam_forces_csv",
             "write_cam_laws_csv",
             "write_cam_motion_csv",
             "write_cam_routes_csv",

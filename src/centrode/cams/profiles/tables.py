@@ -20,7 +20,7 @@ from centrode.kinematics.dataset import named
 from centrode.locale import _
 from centrode.model import limits
 from centrode.model.cams.description import Cam
-from centrode.model.cams.files import AnyCam
+from centrode.model.cams.files import AnyCam, curved
 from centrode.model.cams.plate import PlateCam
 
 DEFAULT_SAMPLES = 361
@@ -138,7 +138,7 @@ def shoe_dataset(wheel: Mover, samples: int) -> xr.Dataset:
     return xr.Dataset(variables, coords={"axis": AXES}, attrs={"hub_height": wheel.height})
 
 
-def walking_wheel(cam: Cam) -> Mover:
+def walking_wheel(cam: AnyCam) -> Mover:
     """The walking wheel of a description.
 
     Raises
@@ -148,7 +148,7 @@ def walking_wheel(cam: Cam) -> Mover:
     MotionError
         A shoe with a cusp; no return arc within the bounds.
     """
-    return wheel_of(cam, cam_body(cam))
+    return wheel_of(curved(cam), cam_body(cam))
 
 
 def wheel_of(cam: Cam, body: CamBody) -> Mover:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator, ValidationInfo, field_validator
@@ -12,24 +13,18 @@ from pydantic import Field, PlainValidator, ValidationInfo, field_validator
 from centrode import laws
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cams.values import whole
 from centrode.model.part import Part, missing_key
 from centrode.model.problems import Problem, shown
-from centrode.model.segments import DRIVEN
-from centrode.model.values import choice, entries, numbers, positive, si
+from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
+from centrode.model.values import choice, entries, positive, si
 
 MOST = 200
 """Segments of a turn."""
-MOST_THROUGH = {laws.POLYNOMIAL: 10, laws.B_SPLINE: 200}
-"""Points on the way: the degree of a polynomial grows with them, that of a B-spline does not."""
 MOST_RATES = 8
 """Derivatives that may be given at an end."""
 
 CLOSED = 1e-9
 """Segments whose angles miss a turn by no more [rad] are taken to fill it: so far angles are written out."""
-
-_TURN = {"angle": "rad", "length": "m"}
-_NOTHING: tuple[object, ...] = (None, (), [])
 
 
 def read_rates(value: object) -> tuple[float, ...]:
@@ -47,17 +42,7 @@ def _rate(value: object, kind: str, order: int) -> float:
         # A second derivative times the square of an angle is a lift: units of every order are read by that.
         return si(value.strip() + order * "*rad", kind)
     except Problem:
-        return _plain_rate(value, f"{_TURN[kind]}/rad" + (f"^{order}" if order > 1 else ""))
-
-
-def _plain_rate(text: str, unit: str) -> float:
-    """A text without a unit, which counts as SI."""
-    try:
-        return si(text, "ratio")
-    except Problem:
-        what = _("expected a rate ({unit}), got {value}").format(unit=unit, value=shown(text))
-        repair = _('write a number in {unit}, or a text with a unit such as "{example}"')
-        raise Problem(what, repair.format(unit=unit, example=f"5 {unit}")) from None
+        return plain_rate(value, f"{UNITS[kind]}/rad" + (f"^{order}" if order > 1 else ""))
 
 
 class LiftSegment(Part):
@@ -88,7 +73,7 @@ class LiftSegment(Part):
     at_start: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
     at_end: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
     through: tuple[tuple[float, float], ...] = ()
-    degree: Annotated[int, whole(1, laws.MOST_DEGREE)] | None = None
+    degree: Annotated[int, PlainValidator(read_degree)] | None = None
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
@@ -99,15 +84,7 @@ class LiftSegment(Part):
             wrong.append(Problem(_("a dwell stays where it is and has no `to`"), _("take it out")))
         if curve != laws.DWELL and given.get("to") is None:
             wrong.append(missing_key("to"))
-        if curve not in laws.THROUGH_POINTS:
-            repair = _('take it out, or write curve = "polynomial" or "b-spline"')
-            what = _("{key} belongs to a polynomial or a B-spline")
-            foreign = [key for key in ("at_start", "at_end", "through") if given.get(key) not in _NOTHING]
-            wrong += [Problem(what.format(key=key), repair) for key in foreign]
-        if curve != laws.B_SPLINE and given.get("degree") is not None:
-            repair = _("take it out; that of a polynomial follows from what is asked of it")
-            wrong.append(Problem(_("degree belongs to a B-spline"), repair))
-        return wrong
+        return wrong + foreign_keys(given, ("at_start", "at_end", "through"))
 
     @field_validator("start", mode="plain")
     @classmethod
@@ -122,17 +99,13 @@ class LiftSegment(Part):
     @field_validator("through", mode="plain")
     @classmethod
     def _through(cls, value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...]:
-        most = MOST_THROUGH.get(str(info.data.get("curve")), max(MOST_THROUGH.values()))
-        rows = [numbers(row, ("angle", DRIVEN.get()), "[angle, lift]") for row in entries(value, most)]
-        return tuple((angle, lift) for angle, lift in rows)
+        return read_through(value, info, "angle", "[angle, lift]")
 
     @property
     def law(self) -> laws.Segment:
         """The segment of the law, over angles instead of times; raises InputError where it makes none."""
-        degree = {} if self.degree is None else {"degree": self.degree}
-        return laws.Segment(
-            self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, **degree
-        )
+        degree = laws.DEGREE if self.degree is None else self.degree
+        return laws.Segment(self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, degree)
 
 
 def _lift_of(value: object) -> float:
@@ -169,7 +142,7 @@ def segment_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
     lifts = [segment.to for segment in segments if segment.to is not None]
     if lifts and lifts[-1] != 0:
         what = _("the lift does not return: a turn begins at 0 and ends at {lift:.9g} {unit}")
-        told = what.format(lift=lifts[-1], unit=_TURN[DRIVEN.get()])
+        told = what.format(lift=lifts[-1], unit=UNITS[DRIVEN.get()])
         found.append(Problem(told, _("let the last segment that moves go to 0"), ("segments",)))
     if not lifts or not any(lifts):
         found.append(Problem(_("nothing moves: no segment lifts the follower"), at=("segments",)))
@@ -196,6 +169,11 @@ def _lawless(segments: Sequence[LiftSegment]) -> list[Problem]:
     """What formulas refuse: points out of order, numbers beyond reach, segments that are lost beside others."""
     found, before = [], 0.0
     for number, segment in enumerate(segments):
+        angles = (0.0, *(angle for angle, _lift in segment.through), segment.angle)
+        if not all(one < other for one, other in pairwise(angles)):
+            what = _("the angles of `through` increase and lie inside the segment, counted from its start")
+            found.append(Problem(what, _("correct them, or the segment's angle"), ("segments", number)))
+            continue
         try:
             segment.law.pieces(0.0, before)
         except InputError as error:
@@ -205,5 +183,5 @@ def _lawless(segments: Sequence[LiftSegment]) -> list[Problem]:
         try:
             lift_law(segments)
         except InputError as error:
-            found.append(Problem(error.what, error.repair, ("segments",)))
+            found.append(Problem(error.what, _("give it more of the turn"), ("segments",)))
     return found

@@ -14,6 +14,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.described import follower_cam
 from centrode.cams.followers.guidance import Oscillating
+from centrode.errors import InputError
 from centrode.model.cam_driving import pivot_of
 
 if TYPE_CHECKING:
@@ -144,6 +145,11 @@ def driving_cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -
         Its motion, without batch dimensions.
     factor : float
         Units of the display in a metre.
+
+    Raises
+    ------
+    InputError
+        A cam that cannot lead its follower.
     """
     return tuple(_cams(mechanism, dataset, factor))
 
@@ -161,7 +167,10 @@ def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Itera
             1.0, float(np.nanmax(abs(values)))
         ):
             continue
-        body = follower_cam(drive.cam)
+        try:
+            body = follower_cam(drive.cam)
+        except InputError as error:
+            raise InputError(f"[[drives]] {drive.id}, cam, {error.where}", error.what, error.repair) from None
         placed = (
             _translating(mechanism, drive, body, zero)
             if drive.guide

@@ -17,14 +17,14 @@ from centrode.quantities import QUANTITIES
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.cams.plate import PlateCam
+    from centrode.model.cams.files import AnyCam
 
 PANELS = ("follower_push", "follower_moment", "contact_force", "cam_torque", "contact_stress")
 SCALES = {"Pa": (1e-6, "MPa")}
 """Factors and units of what no display names."""
 
 
-def cam_forces_figure(cam: PlateCam, forces: xarray.Dataset) -> Figure:
+def cam_forces_figure(cam: AnyCam, forces: xarray.Dataset) -> Figure:
     """Push, contact force, torque and contact stress over a turn of the cam (`ct.cam_forces`)."""
     with house_style():
         rows = []
@@ -40,7 +40,7 @@ def cam_forces_figure(cam: PlateCam, forces: xarray.Dataset) -> Figure:
         return sheet(_("Forces on cam and follower"), _(cam.title), rows, _over_turn(cam, forces))
 
 
-def _over_turn(cam: PlateCam, forces: xarray.Dataset) -> Abscissa:
+def _over_turn(cam: AnyCam, forces: xarray.Dataset) -> Abscissa:
     """The cam's angle, in the unit of the display."""
     factor, unit = shown_as("rad", cam.display)
     phi = forces["cam_angle"].to_numpy() * factor

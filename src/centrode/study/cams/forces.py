@@ -15,8 +15,6 @@ from centrode.study.cams.said import Asked, CamPart, Rows, Units
 from centrode.study.scalars import Scalar
 
 MEGA = 1e-6
-ROUNDING = 1e-9
-"""Share of the greatest force below which a push is rounding."""
 
 
 def forces_part(cam: PlateCam, asked: Asked) -> CamPart | None:
@@ -102,18 +100,16 @@ def _springs(facts: dict[str, float], said: _Said) -> Rows:
     preload, stiffness = facts["preload_needed"], facts["stiffness_needed"]
     if math.isinf(preload):
         return [(_("spring needed"), _("none keeps the contact"))]
-    rows = [
-        (
-            _("spring needed"),
-            _("with this stiffness a preload of {value}").format(value=said.pushed(max(preload, 0.0))),
-        )
-    ]
+    told = _("with this stiffness a preload of {value}").format(value=said.pushed(preload))
+    if preload <= 0:
+        told = _("with this stiffness no preload")
+    rows = [(_("spring needed"), told)]
     if math.isinf(stiffness):
         return [*rows, ("", _("with this preload none is stiff enough"))]
-    return [
-        *rows,
-        ("", _("with this preload a stiffness of {value}").format(value=said.stiffness(stiffness))),
-    ]
+    told = _("with this preload a stiffness of {value}").format(value=said.stiffness(stiffness))
+    if stiffness <= 0:
+        told = _("with this preload no stiffness")
+    return [*rows, ("", told)]
 
 
 def _greatest(facts: dict[str, float], said: _Said) -> Rows:

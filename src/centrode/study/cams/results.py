@@ -51,9 +51,9 @@ PARTS: Mapping[str, MakesPart] = {
 
 FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
     "motion": motion_part,
+    "laws": laws_part,
     "profile": plate_part,
     "forces": forces_part,
-    "laws": laws_part,
 }
 """The same of a cam that is given by its follower's lift."""
 

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.contacts.along import greatest_along
 from centrode.cams.contacts.line import Material, Pressed, contact_modulus, line_contact
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.described import follower_cam
-from centrode.cams.followers.forces.cycle import Extreme, inside
+from centrode.cams.followers.forces.cycle import Extreme, greatest_between
 from centrode.cams.followers.forces.demand import Burden
 from centrode.cams.followers.forces.meeting_of import meeting_of
 from centrode.model.cams.files import AnyCam, with_follower
@@ -116,13 +113,7 @@ class FollowerForces:
         return self._greatest(lambda one: _pressure(one.strip, one.phi))
 
     def _greatest(self, value: Callable[[Forces], Array]) -> Extreme:
-        found = [
-            greatest_along((start, inside(start, stop)), lambda phi: value(self.at(phi)))
-            for start, stop in pairwise(self.body.edges)
-        ]
-        known = [one for one in found if not math.isnan(one.value)]
-        best = max(known, key=lambda one: one.value, default=found[0])
-        return Extreme(best.value, best.angle)
+        return greatest_between(self.body.edges, lambda phi: value(self.at(phi)))
 
 
 def follower_forces(cam: AnyCam) -> FollowerForces:

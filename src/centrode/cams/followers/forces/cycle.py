@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.contacts.along import greatest_along
 from centrode.cams.followers.forces.demand import Lifting
 
 Array = NDArray[np.float64]
 OfRows = Callable[[Array], Array]
 """From lift and derivatives (3, n) to values (n)."""
+
+NODES = 181
+"""Angles of a stretch among which an extreme is looked for before it is refined."""
+
+INNER = 33
+"""Angles between the neighbours of the best one, again and again."""
+
+FINE = 1e-11
+"""An angle is refined to this share of its stretch; a flat top is known to some 1e-8 of it."""
 
 STEP = 1e-9
 """Slopes at an edge that differ by less, over the greatest slope, are taken for equal."""
@@ -34,13 +42,30 @@ def greatest(motion: Lifting, value: OfRows) -> Extreme:
 
     Every stretch is looked at by itself, its end from inside, so that what jumps at an edge counts on both sides.
     """
-    found = [
-        greatest_along((start, inside(start, stop)), lambda phi: value(motion.lift(phi, 2)))
-        for start, stop in pairwise(motion.edges)
-    ]
-    known = [one for one in found if not math.isnan(one.value)]
-    best = max(known, key=lambda one: one.value, default=found[0])
-    return Extreme(best.value, best.angle)
+    return greatest_between(motion.edges, lambda phi: value(motion.lift(phi, 2)))
+
+
+def greatest_between(edges: Sequence[float], value: Callable[[Array], Array]) -> Extreme:
+    """The greatest value of a function of angles (n) [rad], smooth between edges, as `greatest`."""
+    found = [_peak(value, start, inside(start, stop)) for start, stop in pairwise(edges)]
+    return max(found, key=lambda one: -math.inf if math.isnan(one.value) else one.value)
+
+
+def _peak(value: Callable[[Array], Array], start: float, stop: float) -> Extreme:
+    """The greatest value of a stretch: the best of a mesh, then of ever finer ones about it."""
+    low, high, count = start, stop, NODES
+    best = Extreme(math.nan, start)
+    while True:
+        phi = np.linspace(low, high, count)
+        values = value(phi)
+        if np.isnan(values).all():
+            return best
+        top = int(np.nanargmax(values))
+        if not values[top] <= best.value:
+            best = Extreme(float(values[top]), float(phi[top]))
+        if high - low <= FINE * (stop - start):
+            return best
+        low, high, count = phi[max(top - 1, 0)], phi[min(top + 1, count - 1)], INNER
 
 
 def least(motion: Lifting, value: OfRows) -> Extreme:
