@@ -67,7 +67,8 @@ def _panel(
             _("admissible"), (1.0, factor * bound), xycoords=("axes fraction", "data"), xytext=(-4, 2),
             textcoords="offset points", ha="right", va="bottom", color=GROUND, fontsize=8.5,
         )  # fmt: skip
-    axes.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
+    if name != "face_place" or np.nanmin(values) < 0.0:
+        axes.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
     turn, _unit = shown_as("rad", cam.display)
     ends = turn * np.cumsum([one.angle for one in cam.segments])[:-1]
     for end in ends:
