@@ -52,6 +52,7 @@ PLATE_PROPERTIES: dict[type[Part], Schema] = {
         "offset": quantity_schema("length"),
         "arm": above_zero("length"),
         "pivot_distance": above_zero("length"),
+        "face_offset": quantity_schema("length"),
         "mass": quantity_schema("mass"),
         "inertia": quantity_schema("inertia"),
         "spring": reference_to(Spring),
@@ -71,6 +72,7 @@ PLATE_PROPERTIES: dict[type[Part], Schema] = {
     },
     Bounds: {
         "pressure_angle": above_zero("angle"),
+        "return_pressure_angle": above_zero("angle"),
         "curvature_radius": above_zero("length"),
         "stress": above_zero("pressure"),
     },
@@ -78,6 +80,8 @@ PLATE_PROPERTIES: dict[type[Part], Schema] = {
     FollowerStudy: {
         "samples": {"type": "integer", "minimum": 1, "maximum": limits.SAMPLES},
         "instants": list_of(quantity_schema("angle"), 0, limits.INSTANTS),
+        "chord_tolerance": above_zero("length"),
+        "show_undercut": {"type": "boolean"},
     },
     PlateCam: {
         "title": TEXT,
