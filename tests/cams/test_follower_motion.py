@@ -315,7 +315,6 @@ def test_other_kinds_of_cams_are_told_apart() -> None:
         ct.path_of,
         ct.cam_routes,
         ct.cam_body,
-        ct.cam_profile,
         ct.cam_contact,
         ct.choose_cam,
         ct.walking_wheel,
