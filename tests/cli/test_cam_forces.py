@@ -115,11 +115,10 @@ def test_the_linkage_and_its_cam_move_together(centrode: Centrode, folder: Path)
 
 
 def test_a_cam_turns_under_its_follower(centrode: Centrode, folder: Path) -> None:
-    for name in ("valve-cam", "indexing-cam"):
-        asked = ("--out", name, "--samples", "9", "--animate", "--no-figures")
-        assert centrode("cam", name, *asked).code == 0
-        with Image.open(folder / name / "cam.gif") as animation:
-            assert animation.n_frames == 60
+    asked = ("--out", "turn", "--samples", "9", "--animate", "--no-figures", "--dark")
+    assert centrode("cam", "indexing-cam", *asked).code == 0
+    with Image.open(folder / "turn" / "cam.gif") as animation:
+        assert animation.n_frames == 60
 
 
 def test_an_animation_needs_a_size_and_a_folder(centrode: Centrode, folder: Path) -> None:
