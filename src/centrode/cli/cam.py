@@ -25,9 +25,7 @@ if TYPE_CHECKING:
 _DXF = find_spec("ezdxf") is not None
 
 
-@click.command(
-    help=mark("Compute a cam by a curvature law or its follower's lift.")
-)
+@click.command(help=mark("Compute a cam by a curvature law or its follower's lift."))
 @click.argument(
     "cam", metavar=mark("FILE_OR_EXAMPLE"), help=mark("A TOML file, or the name of a built-in cam.")
 )
