@@ -93,6 +93,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {f"contact_{name}" for name in ("stress", "stress_by_source", "shear", "depth", "half_width")}
     cams |= {"cam_curvature_radius"}
     cams |= {"cam_angle", "joint_angle", "joint_before", "joint_after", "lift", "swing"}
+    cams |= {"drawn_angle", "drawn_motion"}
     ends = ("slope", "second", "third", "fourth", "velocity", "acceleration", "jerk")
     cams |= {f"{front}_{end}" for front in ("lift", "swing") for end in ends}
     cams |= {"share", "rise_share", "peak_coefficient", "torque_coefficient", "first_jump"}
