@@ -151,6 +151,9 @@ from .present import write_cam_motion_csv as write_cam_motion_csv
 from .present import write_cam_laws_csv as write_cam_laws_csv
 from .present import cam_motion_figure as cam_motion_figure
 from .cams.followers.described import follower_cam as follower_cam
+from .cams.followers.described import least_cam as least_cam
+from .cams.followers.outlines import follower_outlines as follower_outlines
+from .cams.followers.tabled import cam_points as cam_points
 from .cams.followers.forces.labelled import cam_forces as cam_forces
 from .cams.followers.forces.acting import follower_forces as follower_forces
 from .cams.followers.forces.demand import Burden as Burden
@@ -176,6 +179,8 @@ from .present import write_outlines_svg as write_outlines_svg
 from .present import write_outlines_dxf as write_outlines_dxf
 from .present import write_cam_outlines as write_cam_outlines
 from .present import profile_figure as profile_figure
+from .present import follower_cam_figure as follower_cam_figure
+from .present import plate_curves_figure as plate_curves_figure
 from .present import walking_figure as walking_figure
 from .present import cam_body_figures as cam_body_figures
 

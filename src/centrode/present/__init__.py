@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from centrode.present.cams.outline_dxf import write_outlines_dxf
     from centrode.present.cams.outline_files import write_cam_outlines
     from centrode.present.cams.outline_svg import write_outlines_svg
+    from centrode.present.cams.plate_curves import plate_curves_figure
+    from centrode.present.cams.plate_drawing import follower_cam_figure
     from centrode.present.cams.profile_drawing import profile_figure
     from centrode.present.cams.profile_tables import write_profile_csv
     from centrode.present.cams.tables import (
@@ -116,6 +118,8 @@ __all__ = [
     "reduction_figures",
     "plan_figure",
     "polygon_figures",
+    "plate_curves_figure",
+    "follower_cam_figure",
     "profile_figure",
     "region_figure",
     "save_figures",
@@ -184,6 +188,8 @@ _attached, __dir__, _names = lazy_loader.attach(
         "cams.outline_files": ["write_cam_outlines"],
         "cams.outline_svg": ["write_outlines_svg"],
         "plan_drawing": ["plan_figure"],
+        "cams.plate_curves": ["plate_curves_figure"],
+        "cams.plate_drawing": ["follower_cam_figure"],
         "cams.profile_drawing": ["profile_figure"],
         "cams.profile_tables": ["write_profile_csv"],
         "integration_tables": ["write_integration_csv"],

@@ -8,7 +8,7 @@ import math
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.layouts import layout_of
 from centrode.cams.followers.motion import follower_motion
-from centrode.cams.followers.sizing import Admissible, least_base_radius
+from centrode.cams.followers.sizing import Admissible, Least, best_offset, least_base_radius
 from centrode.cams.profiles.equidistants import Undercut
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
@@ -45,6 +45,27 @@ def _body(cam: PlateCam) -> FollowerCam:
             raise InputError("[cam] base_radius", what, _("give it, or write [bounds] that it is to keep"))
         base = least_base_radius(layout, motion, admissible_of(cam)).base_radius
     return layout.cam(motion, base)
+
+
+def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:
+    """The least cam that keeps `[bounds]`: its base radius, what decides it and where.
+
+    Parameters
+    ----------
+    offset : bool
+        Choose the offset of a translating follower too, so that the base radius is least; of a flat face so that it is
+        touched as far on both sides. Without bounds the profile is only kept from being undercut.
+
+    Raises
+    ------
+    InputError
+        A cam that is given by a curvature law; an oscillating follower has no offset.
+    MotionError
+        No base radius keeps the bounds.
+    """
+    plate = with_follower(cam)
+    find = best_offset if offset else least_base_radius
+    return find(layout_of(plate), follower_motion(plate), admissible_of(plate))
 
 
 def bounded(cam: PlateCam) -> bool:
