@@ -201,7 +201,11 @@ def lessened(old: str, new: str, text: str = FULL) -> str:
         ('at_start = [0, "0 mm/rad^2"]', f"at_start = {[0] * 9}", "at most 8 entries are allowed, got 9"),
         ('through = [["60 deg", "15 mm"]]', 'through = [["160 deg", 0]]', "the angles of `through` increase"),
         ('through = [["60 deg", "15 mm"]]', "through = [0.5]", "expected [angle, lift], got 0.5"),
-        ("degree = 4", "degree = 2", "a B-spline of degree 2 takes fewer derivatives at an end than that, got 2"),
+        (
+            "degree = 4",
+            "degree = 2",
+            "a B-spline of degree 2 takes fewer derivatives at an end than that, got 2",
+        ),
         ("degree = 4", "degree = 40", "degree must be a whole number from 1 to 15, got 40"),
         ('contact = "roller"\nroller_radius = "10 mm"', 'contact = "roller"', '"roller_radius" is missing'),
         ('contact = "roller"', 'contact = "knife"', '"roller_radius" belongs to a roller; take it out'),
