@@ -16,10 +16,13 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.problems import likely, shown
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
+PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]
 
 
 @overload
 def example(name: CamName) -> Cam: ...  # type: ignore[overload-overlap]
+@overload
+def example(name: PlateName) -> PlateCam: ...  # type: ignore[overload-overlap]
 @overload
 def example(name: str) -> Mechanism: ...
 def example(name: str) -> Mechanism | Cam | PlateCam:
