@@ -140,7 +140,7 @@ def test_without_speed_forces_are_those_at_rest():
 @pytest.mark.parametrize(
     ("body", "follower", "message"),
     [
-        ({"base_radius": None}, {}, "the profile needs the base radius"),
+        ({"base_radius": None}, {}, "needs the cam's base radius"),
         ({}, {"offset": "60 mm"}, "misses the base circle"),
         ({"speed": "-1 rpm"}, {}, "must be positive"),
         ({"speed": "10 mm"}, {}, "expected an angular speed"),

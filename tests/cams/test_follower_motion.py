@@ -315,10 +315,62 @@ def test_other_kinds_of_cams_are_told_apart() -> None:
         ct.path_of,
         ct.cam_routes,
         ct.cam_body,
-        ct.cam_profile,
         ct.cam_contact,
         ct.choose_cam,
         ct.walking_wheel,
     ):
         with pytest.raises(InputError, match="given by its follower's lift"):
             call(plate)
+
+
+def narrow() -> ct.PlateCam:
+    return cam(
+        [
+            {"angle": "150 deg", "to": "20 mm", "curve": "uniform"},
+            {"angle": "0.5 deg", "to": "20.01 mm", "curve": "modified trapezoid"},
+            {"angle": "209.5 deg", "to": 0, "curve": "harmonic"},
+        ]
+    )
+
+
+def test_what_is_drawn_does_not_depend_on_samples() -> None:
+    """A segment between two samples is drawn all the same, from joint to joint."""
+    data = ct.cam(narrow(), samples=3)
+    assert data.sizes["sample"] == 3
+    angle, velocity = data.drawn_angle.values, data.drawn_motion.sel(derivative=1).values
+    inside = (angle > math.radians(150)) & (angle < math.radians(150.5))
+    # C_v = 2 at the middle, which is a break of the curve and so a place.
+    assert velocity[inside].max() == pytest.approx(2 * 1e-5 / math.radians(0.5), rel=1e-9)
+    assert angle[0] == 0 and angle[-1] == data.joint_angle.values[-1]
+    # Each place is rounded by half a unit of a turn's last place.
+    assert (np.diff(angle) >= 0).all() and np.diff(angle).max() <= math.radians(1.0) + 2 * EPS * math.tau
+    both = np.flatnonzero(np.isclose(angle, math.radians(150), rtol=1e-15))
+    assert velocity[both].tolist() == pytest.approx([20e-3 / math.radians(150), 0.0], rel=1e-12)
+
+
+def test_jumps_are_drawn_as_such() -> None:
+    plate = narrow()
+    figure = ct.cam_motion_figure(plate, ct.cam(plate, samples=3))
+    dashed = [[line for line in axes.lines if line.get_linestyle() == "--"] for axes in figure.axes]
+    # Of the lift none; of the velocity two, at both ends of the turn and at 150 deg.
+    assert [len(lines) for lines in dashed][:2] == [0, 3]
+    heights = sorted(float(np.ptp(line.get_ydata())) for line in dashed[1])
+    assert heights == pytest.approx([20e-3 / math.radians(150)] * 3, rel=1e-12)
+    assert [text.get_text() for text in figure.axes[0].texts] == ["uniform", "2", "harmonic"]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"follower": 5},
+        {"follower": {"contact": "knife"}, "segments": 3},
+        {"follower": {"contact": "knife"}, "segments": [3]},
+        {"follower": {"kind": ["oscillating"]}, "segments": []},
+        {"follower": {"contact": "knife", "spring": 3}, "segments": []},
+        {"follower": {"contact": "knife"}, "segments": [{"angle": math.nan, "curve": "dwell"}]},
+        {"follower": {"contact": "knife"}, "segments": [{"angle": 1e9, "curve": "dwell"}]},
+    ],
+)
+def test_what_is_no_cam_in_python_is_refused(wrong: dict[str, object]) -> None:
+    with pytest.raises(InputError):
+        ct.PlateCam(kind="cam", **wrong)

@@ -79,8 +79,8 @@ class Segment:
             raise InputError("", what)
         rates = max(len(self.at_start), len(self.at_end))
         if self.curve == B_SPLINE and rates >= self.degree:
-            what = _("a B-spline of degree {degree} takes at most {most} derivatives at an end, got {count}")
-            told = what.format(degree=self.degree, most=self.degree - 1, count=rates)
+            what = _("a B-spline of degree {degree} takes fewer derivatives at an end than that, got {count}")
+            told = what.format(degree=self.degree, count=rates)
             raise InputError("", told, _("raise the degree, or give fewer"))
 
     @property

@@ -44,6 +44,8 @@ CAMS = (
     Quantity("joint_angle", "φ", "rad", mark("angle of the cam where segments meet")),
     Quantity("joint_before", "", "m", mark("lift and derivatives before it")),
     Quantity("joint_after", "", "m", mark("lift and derivatives after it")),
+    Quantity("drawn_angle", "φ", "rad", mark("angle of the cam at the drawn places")),
+    Quantity("drawn_motion", "", "m", mark("lift and derivatives at the drawn places")),
     Quantity("share", "u", "1", mark("share of the angle")),
     Quantity("rise_share", "s/h", "1", mark("share of the rise")),
     Quantity("peak_coefficient", "C", "1", mark("peak coefficient")),

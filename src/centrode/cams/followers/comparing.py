@@ -163,7 +163,8 @@ def first_rise(cam: AnyCam) -> int:
         if segment.to is not None and segment.to != before:
             return number
         before = before if segment.to is None else segment.to
-    raise InputError("[[segments]]", _("nothing moves: no segment lifts the follower"))
+    what = _("no segment ends at another lift than it begins at: there is no rise to compare laws for")
+    raise InputError("[[segments]]", what, _("leave --laws out, or use ct.compare_laws"))
 
 
 def cam_laws(cam: AnyCam, samples: int = SAMPLES) -> xr.Dataset:

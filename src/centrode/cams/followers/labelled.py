@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import xarray as xr
 from centrode import __version__
 from centrode.cams.followers.joints import ORDER, joints_of
 from centrode.cams.followers.motion import FollowerMotion
+from centrode.cams.followers.stretches import stretches
 from centrode.errors import Status
 from centrode.kinematics.dataset import Variable, named
 from centrode.model.cams.files import cam_text
@@ -21,6 +23,8 @@ Array = npt.NDArray[np.float64]
 
 BY_ANGLE = ("", "_slope", "_second", "_third", "_fourth")
 IN_TIME = ("_velocity", "_acceleration", "_jerk")
+WIDTH, LEAST_PLACES = math.radians(1.0), 9
+"""A drawn curve has a place at least every degree, and so many in each stretch."""
 
 
 def motion_names(swings: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -45,7 +49,7 @@ def dataset_of_motion(cam: PlateCam, motion: FollowerMotion, phi: Array) -> xr.D
             data[name] = named(name, ("sample",), values[order] * motion.speed**order)
     data["status"] = _all_right(len(phi))
     coordinates = {"cam_angle": named("cam_angle", ("sample",), phi), "derivative": list(range(ORDER + 1))}
-    return xr.Dataset(data | _joints(motion), coords=coordinates, attrs=_facts(cam, motion))
+    return xr.Dataset(data | _joints(motion) | _curve(motion), coords=coordinates, attrs=_facts(cam, motion))
 
 
 def _joints(motion: FollowerMotion) -> dict[str, Variable]:
@@ -58,6 +62,22 @@ def _joints(motion: FollowerMotion) -> dict[str, Variable]:
         for name, values in sides.items()
     }
     return {"joint_angle": named("joint_angle", ("joint",), [one.angle for one in joints]), **data}
+
+
+def _curve(motion: FollowerMotion) -> dict[str, Variable]:
+    """The motion as it is drawn whatever the samples: each stretch by its own formula, with both its ends."""
+    angles, values = [], []
+    for stretch in stretches(motion.law):
+        low, high = stretch.ends
+        phi = np.linspace(low, high, max(LEAST_PLACES, 1 + math.ceil((high - low) / WIDTH)))
+        angles.append(phi)
+        values.append(stretch.derivatives(phi, ORDER))
+    units = {"units": ", ".join(QUANTITIES[name].unit for name in motion_names(motion.swings)[0])}
+    drawn = np.concatenate(values, axis=1).T
+    return {
+        "drawn_angle": named("drawn_angle", ("place",), np.concatenate(angles)),
+        "drawn_motion": (("place", "derivative"), drawn, {**named("drawn_motion", (), None)[2], **units}),
+    }
 
 
 def _all_right(count: int) -> Variable:

@@ -144,9 +144,15 @@ def segment_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
         what = _("the lift does not return: a turn begins at 0 and ends at {lift:.9g} {unit}")
         told = what.format(lift=lifts[-1], unit=UNITS[DRIVEN.get()])
         found.append(Problem(told, _("let the last segment that moves go to 0"), ("segments",)))
-    if not lifts or not any(lifts):
+    if not any(lifts) and not any(_swells(segment) for segment in segments):
         found.append(Problem(_("nothing moves: no segment lifts the follower"), at=("segments",)))
     return found or _lawless(segments)
+
+
+def _swells(segment: LiftSegment) -> bool:
+    """Whether a segment that ends where it began is asked to move on its way."""
+    lifts = [lift for _angle, lift in segment.through]
+    return any((*lifts, *segment.at_start, *segment.at_end))
 
 
 def _misplaced(segments: Sequence[LiftSegment]) -> list[Problem]:

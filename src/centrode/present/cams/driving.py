@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.described import follower_cam
+from centrode.cams.followers.described import bounded, follower_cam
 from centrode.cams.followers.guidance import Oscillating
-from centrode.errors import InputError
+from centrode.errors import CentrodeError
 from centrode.model.cam_driving import pivot_of
 
 if TYPE_CHECKING:
@@ -148,15 +148,17 @@ def driving_cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -
 
     Raises
     ------
-    InputError
-        A cam that cannot lead its follower.
+    InputError, MotionError
+        A cam that cannot lead its follower, or whose profile it undercuts.
     """
     return tuple(_cams(mechanism, dataset, factor))
 
 
 def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Iterator[DrivingCam]:
     for drive in mechanism.drives:
-        if drive.cam is None or drive.cam.body.base_radius is None or drive.turning is None:
+        if drive.cam is None or drive.turning is None:
+            continue
+        if drive.cam.body.base_radius is None and not bounded(drive.cam):
             continue
         time = np.asarray(dataset["time"], dtype=float)
         values = np.asarray(dataset["drive_value"].sel(drive=drive.id), dtype=float)
@@ -169,8 +171,9 @@ def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Itera
             continue
         try:
             body = follower_cam(drive.cam)
-        except InputError as error:
-            raise InputError(f"[[drives]] {drive.id}, cam, {error.where}", error.what, error.repair) from None
+        except CentrodeError as error:
+            where = ", ".join(part for part in (f"[[drives]] {drive.id}, cam", error.where) if part)
+            raise type(error)(where, error.what, error.repair) from None
         placed = (
             _translating(mechanism, drive, body, zero)
             if drive.guide

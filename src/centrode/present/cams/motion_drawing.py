@@ -28,6 +28,8 @@ WIDTH, PANEL = 7.6, 1.75
 LETTER = 0.085
 """Inches of a letter of a curve's name."""
 JUMP = (0, (2, 1.5))
+ROUNDING = 1e-9
+"""Share of the greatest value below which a jump is not drawn."""
 
 
 def cam_motion_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
@@ -57,23 +59,20 @@ def _draw_order(
     """One derivative, segment by segment, so that a jump is drawn as one."""
     quantity = QUANTITIES[name]
     factor, unit = shown_as(quantity.unit, cam.display)
-    phi, values = dataset["cam_angle"].to_numpy(), dataset[name].to_numpy()
-    places = np.array([0.0, *dataset["joint_angle"].to_numpy()])
-    after = rate * np.roll(dataset["joint_after"].to_numpy()[:, order], 1)
-    before = rate * dataset["joint_before"].to_numpy()[:, order]
-    for low, high, first, last in zip(places[:-1], places[1:], after, before, strict=True):
-        inside = (phi > low) & (phi < high)
-        x, y = [low, *phi[inside], high], [first, *values[inside], last]
-        axes.plot(turn * np.array(x), factor * np.array(y), color=PALETTE[0])
-    size = np.nanmax(np.abs([*values, *before, *after]), initial=0.0)
-    for place, down, up in zip(places[1:-1], before[:-1], after[1:], strict=True):
-        if abs(up - down) > 1e-9 * size:
-            axes.plot([turn * place] * 2, [factor * down, factor * up], color=PALETTE[1], linestyle=JUMP)
-        axes.axvline(turn * place, color=MUTED, linewidth=0.6, zorder=1)
-    for place in (places[0], places[-1]):
-        if abs(after[0] - before[-1]) > 1e-9 * size:
-            ends = [factor * before[-1], factor * after[0]]
-            axes.plot([turn * place] * 2, ends, color=PALETTE[1], linestyle=JUMP, clip_on=False)
+    phi = turn * dataset["drawn_angle"].to_numpy()
+    values = factor * rate * dataset["drawn_motion"].to_numpy()[:, order]
+    for part in np.split(np.arange(len(phi)), 1 + np.flatnonzero(np.diff(phi) == 0.0)):
+        axes.plot(phi[part], values[part], color=PALETTE[0])
+    places = turn * dataset["joint_angle"].to_numpy()
+    before, after = (
+        factor * rate * dataset[f"joint_{side}"].to_numpy()[:, order] for side in ("before", "after")
+    )
+    size = float(np.abs(values).max())
+    for place, down, up in zip([0.0, *places], [before[-1], *before], [after[-1], *after], strict=True):
+        if abs(up - down) > ROUNDING * size:
+            at_end = place in (0.0, places[-1])
+            axes.plot([place] * 2, [down, up], color=PALETTE[1], linestyle=JUMP, clip_on=not at_end)
+        axes.axvline(place, color=MUTED, linewidth=0.6, zorder=1)
     axes.axhline(0.0, color=INK, linewidth=0.6, zorder=1)
     axes.set_ylabel(labelled(formula(quantity.symbol), unit))
     axes.yaxis.set_major_formatter(Decimals())

@@ -6,9 +6,11 @@ import math
 
 import xarray as xr
 
+from centrode.cams.followers.described import bounded
 from centrode.cams.followers.forces.acting import follower_forces
 from centrode.cams.followers.forces.labelled import dataset_of_forces
 from centrode.cams.sampled import angles_of
+from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
@@ -21,9 +23,12 @@ def forces_part(cam: PlateCam, asked: Asked) -> CamPart | None:
     """Forces over a turn; nothing where neither mass nor spring nor load is given, or no base radius."""
     follower = cam.follower
     given = follower.mass or follower.inertia or follower.load or follower.spring is not None
-    if not given or cam.body.base_radius is None:
+    if not given or (cam.body.base_radius is None and not bounded(cam)):
         return None
-    forces = follower_forces(cam)
+    try:
+        forces = follower_forces(cam)
+    except MotionError:  # told of the profile
+        return None
     found = dataset_of_forces(cam, forces, angles_of(cam, asked.samples))
     heading = _("Forces on cam and follower")
     failures = _failures(cam, found)

@@ -27,7 +27,7 @@ def cam_forces(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None
     Parameters
     ----------
     cam : PlateCam
-        With `base_radius`; without `speed` the forces are those at rest.
+        With `base_radius` or `[bounds]`; without `speed` the forces are those at rest.
     samples : int
         Evenly spaced over a turn, both ends included; the description's own number, else 361.
     at : (n,) angles of the cam [rad]
@@ -45,7 +45,7 @@ def cam_forces(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None
     Raises
     ------
     InputError
-        A cam by a curvature law, no base radius, a follower that does not reach the base circle.
+        As `follower_cam`.
     """
     plate = with_follower(cam)
     return dataset_of_forces(plate, follower_forces(plate), angles_of(plate, samples, at))
