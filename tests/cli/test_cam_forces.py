@@ -114,6 +114,24 @@ def test_the_linkage_and_its_cam_move_together(centrode: Centrode, folder: Path)
     assert 'Link "lever" is driven by a cam, which turns at a constant 900 deg/s.' in " ".join(told.split())
 
 
+def test_a_cam_turns_under_its_follower(centrode: Centrode, folder: Path) -> None:
+    asked = ("--out", "turn", "--samples", "9", "--animate", "--no-figures", "--dark")
+    assert centrode("cam", "indexing-cam", *asked).code == 0
+    with Image.open(folder / "turn" / "cam.gif") as animation:
+        assert animation.n_frames == 60
+
+
+def test_an_animation_needs_a_size_and_a_folder(centrode: Centrode, folder: Path) -> None:
+    (folder / "open.toml").write_text(FAST.replace('base_radius = "40 mm"\n', ""))
+    done = centrode("cam", "open.toml", "--out", "open", "--animate")
+    assert done.code == 2
+    assert "the cam has no size: neither base_radius nor bounds are given" in done.err
+    assert not (folder / "open").exists()
+    done = centrode("cam", "valve-cam", "--animate")
+    assert done.code == 2
+    assert "there is no folder to write into" in done.err
+
+
 def test_a_linkage_with_a_cam_that_undercuts_tells_it(centrode: Centrode, folder: Path) -> None:
     flat = FAST.replace('"roller"', '"flat"').replace('roller_radius = "10 mm"\n', "")
     (folder / "fast.toml").write_text(flat.replace('"40 mm"', '"1 mm"'))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
+from PIL import Image
 
 import centrode as ct
 from centrode.present.cams.driving_drawing import draw_cams
@@ -100,3 +101,17 @@ def test_faces_and_edges_lie_on_the_cam(name):
         assert off.max() <= 1e-12 or off.min() >= -1e-12
         touching = outline[np.argmin(np.abs(off))]
         assert 0.0 <= (touching - line[0]) @ along <= np.hypot(*(line[1] - line[0]))
+
+
+@pytest.mark.parametrize("name", ["valve-cam", "indexing-cam"])
+def test_a_turn_is_written_frame_by_frame(name, tmp_path):
+    told = []
+    body = ct.follower_cam(ct.load_cam(name))
+    for number in range(2):
+        ct.animate_follower(
+            body, tmp_path / f"{number}.gif", name, frames=4, said=lambda *done: told.append(done)
+        )
+    with Image.open(tmp_path / "0.gif") as animation:
+        assert animation.n_frames == 4
+    assert told[:4] == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    assert (tmp_path / "0.gif").read_bytes() == (tmp_path / "1.gif").read_bytes()

@@ -41,7 +41,11 @@ _DXF = find_spec("ezdxf") is not None
 @click.option(
     "--laws", is_flag=True, help=mark("Also other laws of motion for the first rise of the follower.")
 )
-@click.option("--animate", is_flag=True, help=mark("Also write an animation: the wheel walks a step."))
+@click.option(
+    "--animate",
+    is_flag=True,
+    help=mark("Also write an animation: a walking wheel makes a step, a cam turns under its follower."),
+)
 @no_figures_option
 @dark_option
 def cam(
@@ -68,7 +72,7 @@ def cam(
             with output.output_folder(out) as draft:
                 results = ct.cam_results(description, samples, terms, groove=groove, front=True, laws=laws)
                 _write(results, draft, progress, groove=groove, figures=not no_figures, dark=dark)
-                if animate and "wheel" in results.objects:
+                if animate:
                     _animate(results, draft, progress, dark=dark)
                 names = sorted(path.name for path in draft.iterdir())
     click.echo(_(description.title) or cam)
@@ -76,7 +80,7 @@ def cam(
         click.echo("\n" + _text(part))
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
-        if "body" in results.objects and not _DXF:
+        if {"body", "plate"} & results.objects.keys() and not _DXF:
             click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
     if results.failures:
         raise MotionError(cam, "; ".join(results.failures))
@@ -96,8 +100,8 @@ def _check_options(
 
 
 def _check_animation(cam: ct.Cam | ct.PlateCam, out: Path | None, animate: bool) -> None:
-    """An animation needs a wheel that walks and a folder."""
-    if animate and getattr(cam, "mover", None) is None:
+    """An animation needs a wheel that walks or a cam with its follower, and a folder."""
+    if animate and isinstance(cam, ct.Cam) and cam.mover is None:
         raise InputError("--animate", _("nothing walks: the cam has no [mover]"), _("leave it out"))
     if animate and out is None:
         raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))
@@ -139,11 +143,17 @@ def _write(
 
 
 def _animate(results: CamResults, folder: Path, progress: Progress, *, dark: bool) -> None:
-    """Write the walking wheel's step into a folder."""
-    name, cam = "walking-wheel.gif", results.cam
+    """Write the walking wheel's step, or a turn of the cam under its follower, into a folder."""
+    objects, cam = results.objects, results.cam
+    name = "walking-wheel.gif" if "wheel" in objects else "cam.gif"
 
     def said(done: int, of: int) -> None:
         progress.say(_("drawing {name}").format(name=name), done, of)
 
-    wheel = results.objects["wheel"]
-    ct.animate_walking(wheel, folder / name, _(cam.title), cam.display, dark=dark, said=said)
+    if "wheel" in objects:
+        ct.animate_walking(objects["wheel"], folder / name, _(cam.title), cam.display, dark=dark, said=said)
+    elif "plate" in objects:
+        ct.animate_follower(objects["plate"], folder / name, _(cam.title), cam.display, dark=dark, said=said)
+    elif isinstance(cam, ct.PlateCam) and not results.failures:
+        what = _("the cam has no size: neither base_radius nor bounds are given")
+        raise InputError("--animate", what, _("give one of them, or leave it out"))

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         cam_path_figure,
         cam_routes_figure,
     )
+    from centrode.present.cams.follower_animation import animate_follower
     from centrode.present.cams.forces import cam_forces_figure
     from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
     from centrode.present.cams.outline_dxf import write_outlines_dxf
@@ -82,6 +83,7 @@ __all__ = [
     "animate_centrodes",
     "animate_motion",
     "balance_figures",
+    "animate_follower",
     "animate_walking",
     "choice_figures",
     "contact_figure",
@@ -158,6 +160,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "forces.balance_tables": ["write_balance_csv", "write_harmonics_csv"],
         "cams.bodies": ["cam_body_figures"],
         "cams.drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
+        "cams.follower_animation": ["animate_follower"],
         "cams.forces": ["cam_forces_figure"],
         "cams.motion_drawing": ["cam_motion_figure", "laws_figure"],
         "cams.choice": ["choice_figures", "trade_off_figure"],

@@ -12,19 +12,18 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from centrode.cams.followers.contact import ORDER, Array, Contact, Face, Motion, Touch
+from centrode.cams.followers.crossing import FLAT_HALVINGS, crossings, inside, nodes_of
 from centrode.cams.followers.guidance import (
     Guidance,
 )
 from centrode.cams.profiles.equidistants import Undercut
-from centrode.cams.searching import Extremes, Function, extremes, roots
+from centrode.cams.searching import Extremes, Function
 
 Kind: TypeAlias = Literal["translating", "oscillating"]
 KINK = 1e-9
 """Turns of the normal [rad], and steps of the contact over the base radius, that are rounding."""
 FLAT = 1e-13
 """Slopes below this share of a value (by radian) are rounding."""
-BESIDE = 1e-5
-"""Beside an extreme [rad]: there the slope has its sign."""
 PLACES = 721
 WATCHED = {
     "pressure": ("pressure_angle", "pressure_slope"),
@@ -136,11 +135,11 @@ class FollowerCam:
     def _backwards(self) -> Iterator[tuple[float, float]]:
         """Stretches between cusps and edges on which the profile runs back."""
         values, _slopes = self._watched("stretch")
+        # cusps lie on both sides of the lowest places, however near
         lowest = self.turns("stretch")
+        found = crossings(values, sorted({*self.edges, *lowest.tolist()}))
         for start, stop in pairwise(self.edges):
-            first, last = inside(start, stop)
-            # cusps lie on both sides of the lowest places, however near
-            cusps = roots(values, sorted({first, *(one for one in lowest if first < one < last), last}))
+            cusps = found[(found > start) & (found < stop)].tolist()
             for low, high in pairwise((start, *cusps, stop)):
                 inner = np.linspace(low, high, 9)[1:-1]
                 if high > low and float(np.median(self.contact(inner).stretch)) <= 0.0:
@@ -168,19 +167,15 @@ class FollowerCam:
 
     def _extremes(self, name: str) -> Extremes:
         """Over the stretches between edges, with what holds before and behind each."""
-        values, slopes = self._watched(name)
-        found = [extremes(values, slopes, inside(*ends)) for ends in pairwise(self.edges)]
-        low, high = min(found, key=lambda one: one.least), max(found, key=lambda one: one.greatest)
-        return Extremes(low.least, low.at_least, high.greatest, high.at_greatest)
+        values, _slopes = self._watched(name)
+        at = np.append(nodes_of(self.edges), self.turns(name))
+        found = values(at)
+        low, high = int(np.argmin(found)), int(np.argmax(found))
+        return Extremes(float(found[low]), float(at[low]), float(found[high]), float(at[high]))
 
-    def turns(self, name: str) -> list[float]:
+    def turns(self, name: str) -> Array:
         """Angles [rad] between edges at which a value of `WATCHED` is least or greatest, growing."""
-        _values, slopes = self._watched(name)
-        found = np.array([one for ends in pairwise(self.edges) for one in roots(slopes, inside(*ends))])
-        if not found.size:
-            return []
-        # on a dwell the slope is zero all along: nothing turns there
-        return list(found[slopes(found - BESIDE) * slopes(found + BESIDE) < 0.0].tolist())
+        return crossings(self._watched(name)[1], self.edges, FLAT_HALVINGS)
 
     def _watched(self, name: str) -> tuple[Function, Function]:
         """A value of the contact and its slope as functions of the angle."""
@@ -248,8 +243,3 @@ class FollowerCam:
         depth = self.touch.roller - float(apart[worst])
         scale = float(np.abs(found.centre).max())
         return (depth, float(phi[worst])) if depth > KINK * scale else (0.0, 0.0)
-
-
-def inside(start: float, stop: float) -> tuple[float, float]:
-    """The ends of a stretch between edges, the second just before it: at an edge holds what begins there."""
-    return start, float(np.nextafter(stop, start))

@@ -7,8 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from centrode.cams.followers.bodies import FollowerCam, inside
+from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.contact import Array, Contact, Face
+from centrode.cams.followers.crossing import inside
 from centrode.errors import InputError
 from centrode.locale import _
 

@@ -8,8 +8,9 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from centrode.cams.followers.bodies import FollowerCam, inside
+from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.contact import Face, Motion, Point, Touch
+from centrode.cams.followers.crossing import nodes_of
 from centrode.cams.followers.guidance import (
     Guidance,
     Translating,
@@ -17,7 +18,6 @@ from centrode.cams.followers.guidance import (
     oscillating_face,
     translating,
 )
-from centrode.cams.searching import mesh
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam
@@ -80,8 +80,7 @@ class Layout:
 
 def _check_led(cam: FollowerCam) -> None:
     """Raise InputError at the first angle at which the follower cannot be led."""
-    ends = zip(cam.edges[:-1], cam.edges[1:], strict=True)
-    phi = np.concatenate([mesh(*inside(start, stop)) for start, stop in ends])
+    phi = nodes_of(cam.edges)
     found = cam.contact(phi)
     turning = found.pace
     bad = np.flatnonzero(~((np.cos(found.pressure_angle) > 0.0) & (turning > 0.0)))

@@ -9,8 +9,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from centrode.cams.followers.bodies import Corner, FollowerCam, inside
+from centrode.cams.followers.bodies import Corner, FollowerCam
 from centrode.cams.followers.contact import Array, Contact, Face
+from centrode.cams.followers.crossing import inside
 from centrode.cams.followers.cutting import LEAST_SPACES, check_cutter, chord_pieces, cutter_speed
 from centrode.cams.profiles.outlines import Layer, Outline
 

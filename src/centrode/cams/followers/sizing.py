@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from centrode.cams.followers.bodies import Corner, FollowerCam, inside
+from centrode.cams.followers.bodies import Corner, FollowerCam
 from centrode.cams.followers.contact import ORDER, Array, Contact, Motion
+from centrode.cams.followers.crossing import FLAT_HALVINGS, crossings, nodes_of
 from centrode.cams.followers.layouts import Layout
-from centrode.cams.searching import mesh, roots
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 
@@ -25,8 +24,8 @@ NEAR = 1e-3
 """By how much of itself a radius found on the mesh may differ from the exact one."""
 STEEPEST = 1e6
 """Tangents of pressure angles from which on a bound is none."""
-MOST = 24
-"""Places of a stretch at which a bound may decide; on a dwell every node is one."""
+BACK = 0.8
+"""Share of the least radius for one offset from which on that for the next is looked for."""
 STILL = 1e-12
 """Slopes of the lift below this share of the greatest are those of a dwell."""
 OFFSET = 1e-9
@@ -105,12 +104,8 @@ def margin(contact: Contact, slope: Array, layout: Layout, kept: Admissible) -> 
 
 def exact_margin(cam: FollowerCam, layout: Layout, kept: Admissible) -> Margin:
     """`margin` over the whole turn, extremes found to rounding."""
-    turns = [
-        one
-        for name in ("pressure", "stretch" if layout.flat else "path_curvature")
-        for one in cam.turns(name)
-    ]
-    phi = np.append(_mesh(cam.motion), turns)
+    names = ("pressure", "stretch" if layout.flat else "path_curvature")
+    phi = np.concatenate([nodes_of(cam.edges), *(cam.turns(name) for name in names)])
     found = margin(cam.contact(phi), cam.motion.lift(phi, 1)[1], layout, kept)
     sharp = [one.at for one in cam.corners if _breaks(one, layout, kept)]
     return Margin(-math.inf, sharp[0], "curvature") if sharp else found
@@ -173,12 +168,17 @@ def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
         least = least_base_radius(layout, motion, kept)
         ends = layout.cam(motion, least.base_radius).face
         return replace(least, offset=layout.offset + 0.5 * (ends.least + ends.greatest))
-    slopes = motion.lift(_mesh(motion), 1)[1]
+    nodes = _nodes(layout, motion, kept)
+
+    before = 0.0
 
     def radius(offset: float) -> float:
-        return _Tried(replace(layout, offset=offset), motion, kept).first() + layout.touch.roller
+        nonlocal before
+        before = _Tried(replace(layout, offset=offset), motion, kept, nodes).first(BACK * before)
+        return before + layout.touch.roller
 
-    sides = sorted(layout.sense * one for one in (float(slopes.min()), float(slopes.max())))
+    speeds = float(nodes.lift[1].min()), float(nodes.lift[1].max())
+    sides = sorted(layout.sense * one for one in speeds)
     # the best axis lies where neither the rise nor the fall alone would put it farther
     found = minimize_scalar(
         radius,
@@ -189,35 +189,48 @@ def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
     return least_base_radius(replace(layout, offset=float(found.x)), motion, kept)
 
 
-class _Tried:
-    """Cams of several base radii on one mesh, for which the lift is computed once."""
+@dataclass(frozen=True)
+class _Nodes:
+    """Angles (n) [rad] at which bounds are looked at, and the lift with its derivatives there."""
 
-    def __init__(self, layout: Layout, motion: Motion, kept: Admissible) -> None:
+    phi: Array
+    lift: Array
+
+
+def _nodes(layout: Layout, motion: Motion, kept: Admissible) -> _Nodes:
+    phi = np.append(nodes_of(motion.edges), _decisive(layout, motion, kept))
+    return _Nodes(phi, motion.lift(phi, ORDER))
+
+
+def _decisive(layout: Layout, motion: Motion, kept: Admissible) -> list[float]:
+    """Angles at which a bound of the pressure angle may decide, whatever the offset and the radius.
+
+    A straight line of the slope tan(bound) touches the curve of s over s' there.
+    """
+    if layout.kind == "oscillating" or layout.flat:
+        return []
+    bounds = {math.tan(one) for one in (kept.pressure_angle, kept.return_angle)}
+    found: list[float] = []
+    for steep in (sign * one for one in bounds if one < STEEPEST for sign in (1.0, -1.0)):
+
+        def touches(phi: Array, steep: float = steep) -> Array:
+            _lift, slope, second = motion.lift(phi, 2)
+            return np.asarray(second - steep * slope)
+
+        found += crossings(touches, motion.edges, FLAT_HALVINGS).tolist()
+    return found
+
+
+class _Tried:
+    """Cams of several base radii on the same nodes."""
+
+    def __init__(self, layout: Layout, motion: Motion, kept: Admissible, nodes: _Nodes | None = None) -> None:
         self.layout, self.motion, self.kept = layout, motion, kept
-        self.phi = np.append(_mesh(motion), self._decisive())
-        self.lift = motion.lift(self.phi, ORDER)
+        nodes = nodes or _nodes(layout, motion, kept)
+        self.phi, self.lift = nodes.phi, nodes.lift
         self.size = float(np.abs(self.lift[0]).max())
         if layout.kind == "oscillating":
             self.size *= layout.distance
-
-    def _decisive(self) -> list[float]:
-        """Angles at which a bound of the pressure angle may decide, whatever the offset and the radius.
-
-        A straight line of the slope tan(bound) touches the curve of s over s' there.
-        """
-        if self.layout.kind == "oscillating" or self.layout.flat:
-            return []
-        bounds = {math.tan(one) for one in (self.kept.pressure_angle, self.kept.return_angle)}
-        found: list[float] = []
-        for steep in (sign * one for one in bounds if one < STEEPEST for sign in (1.0, -1.0)):
-            for start, stop in pairwise(self.motion.edges):
-
-                def touches(phi: Array, steep: float = steep) -> Array:
-                    _lift, slope, second = self.motion.lift(phi, 2)
-                    return np.asarray(second - steep * slope)
-
-                found += roots(touches, inside(start, stop))[:MOST]
-        return found
 
     def cam(self, base: float) -> FollowerCam:
         return FollowerCam(self.motion, self.layout.guide(base), self.layout.touch, base, self.layout.sense)
@@ -234,10 +247,10 @@ class _Tried:
     def reaches(self, base: float) -> bool:
         return self.margin(base).least > -math.inf
 
-    def first(self) -> float:
-        """The first base radius, from below, that keeps the bounds on the mesh."""
-        best, before = Margin(-math.inf, 0.0, "reach"), 0.0
-        for base in self._radii(self._lowest()):
+    def first(self, near: float = 0.0) -> float:
+        """The first base radius, from below, that keeps the bounds on the mesh; from `near` on if that breaks them."""
+        best, before, lowest = Margin(-math.inf, 0.0, "reach"), 0.0, self._lowest()
+        for base in self._radii(near if near > lowest and self.margin(near).least < 0.0 else lowest):
             found = self.margin(base)
             if found.least >= 0.0:
                 return float(base) if not before else _root(lambda one: self.margin(one).least, before, base)
@@ -280,10 +293,6 @@ class _Tried:
         }
         told = what.format(bound=bounds[best.by], angle=math.degrees(best.at))
         return MotionError("[bounds]", told, _("admit more, or change the follower"))
-
-
-def _mesh(motion: Motion) -> Array:
-    return np.concatenate([mesh(*inside(start, stop)) for start, stop in pairwise(motion.edges)])
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:

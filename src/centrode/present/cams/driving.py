@@ -61,6 +61,12 @@ class DrivingCam:
         """Places (n, 2) of the follower's axes in the picture, in units of the display."""
         return self.factor * (self.centre + places @ self.axes)
 
+    @classmethod
+    def alone(cls, body: FollowerCam, angles: Array, factor: float) -> DrivingCam:
+        """The cam with its follower in the follower's own axes, without a linkage."""
+        pivot = np.array([body.guide.distance, 0.0]) if isinstance(body.guide, Oscillating) else None
+        return cls(body, np.zeros(2), np.eye(2), angles, pivot, factor)
+
     @property
     def hub(self) -> Array:
         """The axis, in units of the display."""
@@ -103,6 +109,13 @@ class DrivingCam:
         ends = (self.body.face.least - over + offset, self.body.face.greatest + over + offset)
         first, last = self.drawn(np.array([[x, height] for x in ends]))
         return first, last
+
+    def foot(self, sample: int) -> Array:
+        """Where the stem of a translating follower ends: in the roller's centre, the edge, or on the face."""
+        if isinstance(self.body.guide, Oscillating):
+            return self._touching(sample)
+        height = self.body.guide.start + float(self.body.motion.lift(self.angles[[sample]])[0, 0])
+        return np.asarray(self.drawn(np.array([[self.body.guide.offset, height]]))[0])
 
     def reach(self) -> Array:
         """Corners of a box that holds the cam however it has turned, and its roller at any sample."""

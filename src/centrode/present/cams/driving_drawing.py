@@ -23,10 +23,11 @@ def draw_cams(axes: Axes, scene: Scene, sample: int) -> None:
     """The driving cams of a scene as they stand at a sample."""
     for cam in scene.cams:
         if np.isfinite(cam.angles[sample]):
-            _draw(axes, cam, sample, scene.sign)
+            draw_cam(axes, cam, sample, scene.sign)
 
 
-def _draw(axes: Axes, cam: DrivingCam, sample: int, size: float) -> None:
+def draw_cam(axes: Axes, cam: DrivingCam, sample: int, size: float) -> None:
+    """A cam with its roller, arm or face as they stand at a sample; `size` is the radius of a hinge."""
     axes.add_patch(
         Polygon(cam.outline(sample), closed=True, facecolor=MUTED, edgecolor="none", alpha=0.25, zorder=1.8)
     )
