@@ -206,6 +206,22 @@ def lessened(old: str, new: str, text: str = FULL) -> str:
             "degree = 2",
             "a B-spline of degree 2 takes fewer derivatives at an end than that, got 2",
         ),
+        (
+            'to = "25 mm"',
+            "to = 1e30",
+            "[[segments]] 1: the lift runs away: with these conditions it may reach 1e+30 m",
+        ),
+        ("at_start = [0,", "at_start = [1e20,", "[[segments]] 3: the lift runs away"),
+        (
+            'through = [["60 deg", "15 mm"]]',
+            "through = [[1e-30, 0.015]]",
+            "[[segments]] 3: the lift runs away",
+        ),
+        (
+            'from = "90 deg"\nangle = "pi/4 rad"',
+            "angle = 1e-7",
+            "1e-07 is beyond what can be computed with; stay above",
+        ),
         ("degree = 4", "degree = 40", "degree must be a whole number from 1 to 15, got 40"),
         ('contact = "roller"\nroller_radius = "10 mm"', 'contact = "roller"', '"roller_radius" is missing'),
         ('contact = "roller"', 'contact = "knife"', '"roller_radius" belongs to a roller; take it out'),

@@ -2,6 +2,7 @@
 
 from centrode.laws.curves import CURVES, Curve
 from centrode.laws.law import Law
+from centrode.laws.pieces import Piece
 from centrode.laws.segments import (
     B_SPLINE,
     DEGREE,
@@ -25,6 +26,7 @@ __all__ = [
     "DWELL",
     "MOST_DEGREE",
     "POLYNOMIAL",
+    "Piece",
     "SEGMENT_CURVES",
     "THROUGH_POINTS",
     "Curve",

@@ -15,6 +15,8 @@ from centrode.locale import _
 
 LEAST_SPACES = 8
 """Least number of spaces between the points of a piece."""
+UNCOUNTED = 1e12
+"""Points beyond which they are not counted."""
 MOST_POINTS = 200_000
 FINE = 64
 """Places of the first mesh of a piece for one that it needs at least."""
@@ -87,7 +89,8 @@ def _dealt(cam: FollowerCam, start: float, stop: float, tolerance: float, cutter
     density = np.sqrt(np.max(ways, axis=0) * turning / (8.0 * SAFE * tolerance))
     needed = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(fine))])
     if needed[-1] > MOST_POINTS:
-        return fine[:1].repeat(math.ceil(needed[-1]))
+        # only their number is wanted: it takes no memory
+        return np.broadcast_to(fine[:1], (math.ceil(min(needed[-1], UNCOUNTED)),))
     # an even share keeps stretches that need next to nothing from being left without points
     even = LEAST_SPACES * (fine - first) / (last - first)
     shares = needed + even

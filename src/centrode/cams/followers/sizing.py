@@ -24,6 +24,8 @@ NEAR = 1e-3
 """By how much of itself a radius found on the mesh may differ from the exact one."""
 STEEPEST = 1e6
 """Tangents of pressure angles from which on a bound is none."""
+BACK = 0.8
+"""Share of the least radius for one offset from which on that for the next is looked for."""
 STILL = 1e-12
 """Slopes of the lift below this share of the greatest are those of a dwell."""
 OFFSET = 1e-9
@@ -168,8 +170,12 @@ def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
         return replace(least, offset=layout.offset + 0.5 * (ends.least + ends.greatest))
     nodes = _nodes(layout, motion, kept)
 
+    before = 0.0
+
     def radius(offset: float) -> float:
-        return _Tried(replace(layout, offset=offset), motion, kept, nodes).first() + layout.touch.roller
+        nonlocal before
+        before = _Tried(replace(layout, offset=offset), motion, kept, nodes).first(BACK * before)
+        return before + layout.touch.roller
 
     speeds = float(nodes.lift[1].min()), float(nodes.lift[1].max())
     sides = sorted(layout.sense * one for one in speeds)
@@ -241,10 +247,10 @@ class _Tried:
     def reaches(self, base: float) -> bool:
         return self.margin(base).least > -math.inf
 
-    def first(self) -> float:
-        """The first base radius, from below, that keeps the bounds on the mesh."""
-        best, before = Margin(-math.inf, 0.0, "reach"), 0.0
-        for base in self._radii(self._lowest()):
+    def first(self, near: float = 0.0) -> float:
+        """The first base radius, from below, that keeps the bounds on the mesh; from `near` on if that breaks them."""
+        best, before, lowest = Margin(-math.inf, 0.0, "reach"), 0.0, self._lowest()
+        for base in self._radii(near if near > lowest and self.margin(near).least < 0.0 else lowest):
             found = self.margin(base)
             if found.least >= 0.0:
                 return float(base) if not before else _root(lambda one: self.margin(one).least, before, base)

@@ -23,6 +23,11 @@ MOST = 200
 MOST_RATES = 8
 """Derivatives that may be given at an end."""
 
+LEAST_ANGLE = 1e-6
+"""Of a segment [rad]: a fifth of a second of arc."""
+MOST_LIFT = 1e4
+"""What a lift may reach [m or rad], between its points too."""
+
 CLOSED = 1e-9
 """Segments whose angles miss a turn by no more [rad] are taken to fill it: so far angles are written out."""
 
@@ -43,6 +48,14 @@ def _rate(value: object, kind: str, order: int) -> float:
         return si(value.strip() + order * "*rad", kind)
     except Problem:
         return plain_rate(value, f"{UNITS[kind]}/rad" + (f"^{order}" if order > 1 else ""))
+
+
+def _read_angle(value: object) -> float:
+    angle = positive(value, "angle")
+    if angle < LEAST_ANGLE:
+        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        raise Problem(what, _("stay above {least:g}").format(least=LEAST_ANGLE))
+    return angle
 
 
 class LiftSegment(Part):
@@ -66,7 +79,7 @@ class LiftSegment(Part):
         Of a B-spline.
     """
 
-    angle: Annotated[float, PlainValidator(lambda value: positive(value, "angle"))]
+    angle: Annotated[float, PlainValidator(_read_angle)]
     start: Annotated[float | None, Field(alias="from")] = None
     to: float | None = None
     curve: Annotated[str, choice(*laws.SEGMENT_CURVES)]
@@ -155,6 +168,17 @@ def _swells(segment: LiftSegment) -> bool:
     return any((*lifts, *segment.at_start, *segment.at_end))
 
 
+def _reached(pieces: Sequence[tuple[float, laws.Piece]]) -> float:
+    """A bound of the lift's size: what the powers of each formula sum up to at its ends."""
+    bounds, start = [], 0.0
+    for end, piece in pieces:
+        reach = max(abs(start - piece.origin), abs(end - piece.origin)) / piece.unit
+        terms = (abs(c) * reach**k for k, c in enumerate(piece.powers, 1))
+        bounds.append(abs(piece.value) + math.fsum(terms) + abs(piece.square))
+        start = end
+    return max(bounds)
+
+
 def _misplaced(segments: Sequence[LiftSegment]) -> list[Problem]:
     """Segments that say they begin where the one before does not end."""
     found, end = [], 0.0
@@ -175,15 +199,10 @@ def _lawless(segments: Sequence[LiftSegment]) -> list[Problem]:
     """What formulas refuse: points out of order, numbers beyond reach, segments that are lost beside others."""
     found, before = [], 0.0
     for number, segment in enumerate(segments):
-        angles = (0.0, *(angle for angle, _lift in segment.through), segment.angle)
-        if not all(one < other for one, other in pairwise(angles)):
-            what = _("the angles of `through` increase and lie inside the segment, counted from its start")
-            found.append(Problem(what, _("correct them, or the segment's angle"), ("segments", number)))
-            continue
         try:
-            segment.law.pieces(0.0, before)
-        except InputError as error:
-            found.append(Problem(error.what, error.repair, ("segments", number)))
+            _check_formulas(segment, before)
+        except Problem as problem:
+            found.append(Problem(problem.what, problem.repair, ("segments", number)))
         before = before if segment.to is None else segment.to
     if not found:
         try:
@@ -191,3 +210,19 @@ def _lawless(segments: Sequence[LiftSegment]) -> list[Problem]:
         except InputError as error:
             found.append(Problem(error.what, _("give it more of the turn"), ("segments",)))
     return found
+
+
+def _check_formulas(segment: LiftSegment, before: float) -> None:
+    """Raise the problem of a segment that has no formulas, or such as run away."""
+    angles = (0.0, *(angle for angle, _lift in segment.through), segment.angle)
+    if not all(one < other for one, other in pairwise(angles)):
+        what = _("the angles of `through` increase and lie inside the segment, counted from its start")
+        raise Problem(what, _("correct them, or the segment's angle"))
+    try:
+        reached = _reached(segment.law.pieces(0.0, before))
+    except InputError as error:
+        raise Problem(error.what, error.repair) from None
+    if not reached <= MOST_LIFT:
+        what = _("the lift runs away: with these conditions it may reach {lift:.3g} {unit}")
+        repair = _("give smaller lifts and rates, or points that lie further apart")
+        raise Problem(what.format(lift=reached, unit=UNITS[DRIVEN.get()]), repair)
