@@ -208,3 +208,19 @@ def test_files_of_outlines(tmp_path: Path) -> None:
         assert len(space.query(f'SPLINE[layer=="{layer}"]')) == len(cams()["arm"].edges) - 1
     text = (tmp_path / "cam.svg").read_text(encoding="utf-8")
     assert 'id="cutter"' in text and 'id="profile"' in text
+
+
+def test_points_of_a_description_have_normals_square_to_their_way() -> None:
+    cam = ct.load_cam("indexing-cam")
+    points = ct.cam_points(cam)
+    here = points["curve"].to_numpy() == "path"
+    place, normal = points["curve_point"].to_numpy()[here], points["curve_normal"].to_numpy()[here]
+    np.testing.assert_allclose(np.hypot(*normal.T), 1.0, rtol=4 * EPS)
+    ways = np.diff(place, axis=0)
+    # a chord leaves the tangent by half of what the normal turns along it
+    turned = np.hypot(*np.diff(normal, axis=0).T)
+    lean = np.abs(np.sum(ways * normal[:-1], axis=1)) / np.hypot(*ways.T)
+    assert np.all(lean < turned + 1e-9)
+    assert np.all(np.sum(place * normal, axis=1) > 0.0)  # out of the cam
+    with pytest.raises(InputError, match="a groove is made for a cam that is given by its roller's path"):
+        ct.cam_profile(cam, groove=True)

@@ -10,7 +10,8 @@ from scipy.optimize import linprog
 
 from centrode.cams.followers.contact import Face, Point
 from centrode.cams.followers.layouts import Layout
-from centrode.cams.followers.sizing import Admissible, best_offset, exact_margin, least_base_radius
+from centrode.cams.followers.margins import Admissible, exact_margin
+from centrode.cams.followers.sizing import best_offset, least_base_radius
 from centrode.errors import InputError, MotionError
 from follower_motions import lift_of, rise_dwell_fall_dwell
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -19,7 +18,6 @@ from centrode.cams.followers.guidance import (
 from centrode.cams.profiles.equidistants import Undercut
 from centrode.cams.searching import Extremes, Function
 
-Kind: TypeAlias = Literal["translating", "oscillating"]
 KINK = 1e-9
 """Turns of the normal [rad], and steps of the contact over the base radius, that are rounding."""
 FLAT = 1e-13

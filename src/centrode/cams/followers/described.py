@@ -7,8 +7,9 @@ import math
 
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.layouts import layout_of
+from centrode.cams.followers.margins import Admissible
 from centrode.cams.followers.motion import follower_motion
-from centrode.cams.followers.sizing import Admissible, Least, best_offset, least_base_radius
+from centrode.cams.followers.sizing import Least, best_offset, least_base_radius
 from centrode.cams.profiles.equidistants import Undercut
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
