@@ -70,7 +70,7 @@ def read_toml(example: Example) -> None:
     if tables.get("kind") == "cam":
         cam = ct.parse_cam(text)
         assert ct.parse_cam(ct.cam_text(cam)) == cam
-        ct.path_of(cam)
+        ct.cam(cam, samples=2)
         return
     if not {"links", "drives"} <= tables.keys():
         Description(**{"links": {}, **tables})

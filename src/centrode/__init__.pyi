@@ -19,6 +19,7 @@ from .model.schema import mechanism_schema as mechanism_schema
 
 # The description of a cam
 from .model.cams.description import Cam as Cam
+from .model.cams.plate import PlateCam as PlateCam
 from .model.cams.description import varied as varied
 from .model.cams.files import read_cam as read_cam
 from .model.cams.files import parse_cam as parse_cam
@@ -136,6 +137,9 @@ from .cams.labelled import cam as cam
 from .cams.comparison import cam_routes as cam_routes
 from .cams.described import path_of as path_of
 from .study.cams.results import cam_results as cam_results
+from .cams.followers.motion import follower_motion as follower_motion
+from .cams.followers.comparing import cam_laws as cam_laws
+from .cams.followers.comparing import compare_laws as compare_laws
 from .present import write_cam_csv as write_cam_csv
 from .present import write_cam_routes_csv as write_cam_routes_csv
 from .present import write_cam_tables as write_cam_tables
@@ -143,6 +147,25 @@ from .present import cam_path_figure as cam_path_figure
 from .present import cam_curves_figure as cam_curves_figure
 from .present import cam_routes_figure as cam_routes_figure
 from .present import cam_figures as cam_figures
+from .present import write_cam_motion_csv as write_cam_motion_csv
+from .present import write_cam_laws_csv as write_cam_laws_csv
+from .present import cam_motion_figure as cam_motion_figure
+from .cams.followers.described import follower_cam as follower_cam
+from .cams.followers.described import least_cam as least_cam
+from .cams.followers.outlines import follower_outlines as follower_outlines
+from .cams.followers.tabled import cam_points as cam_points
+from .cams.followers.forces.labelled import cam_forces as cam_forces
+from .cams.followers.forces.acting import follower_forces as follower_forces
+from .cams.followers.forces.demand import Burden as Burden
+from .cams.followers.forces.keeping import least_push as least_push
+from .cams.followers.forces.keeping import jump_speed as jump_speed
+from .cams.followers.forces.keeping import preload_needed as preload_needed
+from .cams.followers.forces.keeping import stiffness_needed as stiffness_needed
+from .study.cams.forces import forces_rows as forces_rows
+from .present import write_cam_forces_csv as write_cam_forces_csv
+from .present import cam_forces_figure as cam_forces_figure
+from .present import animate_follower as animate_follower
+from .present import laws_figure as laws_figure
 
 # Profiles of cams, walking wheels
 from .cams.profiles.tables import cam_profile as cam_profile
@@ -157,6 +180,8 @@ from .present import write_outlines_svg as write_outlines_svg
 from .present import write_outlines_dxf as write_outlines_dxf
 from .present import write_cam_outlines as write_cam_outlines
 from .present import profile_figure as profile_figure
+from .present import follower_cam_figure as follower_cam_figure
+from .present import plate_curves_figure as plate_curves_figure
 from .present import walking_figure as walking_figure
 from .present import cam_body_figures as cam_body_figures
 

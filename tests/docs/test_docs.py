@@ -40,7 +40,7 @@ def options(command: click.Command, path: str = "centrode") -> list[tuple[str, s
 def keys(schema: dict[str, Any]) -> list[tuple[str, str]]:
     """(part, key) of the description and each of its parts."""
     parts = {"": schema, **schema["$defs"]}
-    return [(part, key) for part, properties in parts.items() for key in properties["properties"]]
+    return [(part, key) for part, properties in parts.items() for key in properties.get("properties", ())]
 
 
 def anchor(heading: str) -> str:
@@ -111,7 +111,7 @@ CAM_KEYS = [(part, key) for part, key in keys(ct.cam_schema()) if part != "Displ
 
 @pytest.mark.parametrize(("part", "key"), CAM_KEYS)
 def test_keys_of_cams_are_told(part: str, key: str) -> None:
-    pages = [text for page, text in TEXTS.items() if page.stem in ("cams", "cam-profiles", "cam-contact")]
+    pages = [text for page, text in TEXTS.items() if page.stem.startswith("cam")]
     assert f"`{key}`" in "\n".join(pages) or f"`[{key}]`" in "\n".join(pages)
 
 

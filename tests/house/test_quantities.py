@@ -92,6 +92,13 @@ def test_every_variable_of_a_motion_is_named() -> None:
     cams |= {"hub_travel", "hub_rate"}
     cams |= {f"contact_{name}" for name in ("stress", "stress_by_source", "shear", "depth", "half_width")}
     cams |= {"cam_curvature_radius"}
+    cams |= {"profile_normal", "face_place", "cutter_centre", "curve_point", "curve_normal"}
+    cams |= {"cam_angle", "joint_angle", "joint_before", "joint_after", "lift", "swing"}
+    cams |= {"drawn_angle", "drawn_motion"}
+    cams |= {"follower_push", "follower_moment", "contact_force", "cam_torque"}
+    ends = ("slope", "second", "third", "fourth", "velocity", "acceleration", "jerk")
+    cams |= {f"{front}_{end}" for front in ("lift", "swing") for end in ends}
+    cams |= {"share", "rise_share", "peak_coefficient", "torque_coefficient", "first_jump"}
     known |= cams
     known |= {
         "bearing_load",

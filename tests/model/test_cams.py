@@ -98,7 +98,7 @@ def test_written_and_read_again_it_is_the_same(text: str) -> None:
 @pytest.mark.parametrize("name", ct.example_names("cam"))
 def test_examples_are_cams_and_say_where_they_are_from(name: str) -> None:
     cam = ct.example(name)
-    assert isinstance(cam, ct.Cam)
+    assert isinstance(cam, ct.Cam | ct.PlateCam)
     assert ct.load_cam(name) == cam == parse_cam(cam_text(cam))
     assert ct.example_text(name).startswith("# ")
 

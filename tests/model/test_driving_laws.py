@@ -106,6 +106,22 @@ def test_it_is_a_law_of_time() -> None:
     assert ct.motion(free, samples=2).time.values.tolist() == [0.0, 3.0]
 
 
+def test_a_drive_may_follow_a_b_spline() -> None:
+    """Values at the points, rest at the ends; what is written reads back the same."""
+    rest = "speed_at_start = 0, acceleration_at_start = 0, speed_at_end = 0, acceleration_at_end = 0"
+    points = 'through = [[0.5, "20 deg"], [1.5, "70 deg"]]'
+    lines = f'segments = [{{ to = "90 deg", time = 2, curve = "b-spline", {points}, {rest} }}]'
+    mechanism = parse_mechanism(driven(lines) + '[assembly]\nsides = { B = "left" }')
+    motion = ct.motion(mechanism, samples=5)
+    turned = motion.angle.sel(link="OA").values - 1
+    assert turned.tolist() == pytest.approx(
+        [math.radians(x) for x in (0, 20, turned[2] * 180 / math.pi, 70, 90)]
+    )
+    assert motion.angular_velocity.sel(link="OA").values[[0, 4]].tolist() == [0, 0]
+    assert motion.angular_acceleration.sel(link="OA").values[[0, 4]].tolist() == [0, 0]
+    assert parse_mechanism(mechanism_text(mechanism)) == mechanism
+
+
 def test_repeated_segments_need_a_time_to_run() -> None:
     lines = 'segments = [{ to = "1 turn", time = "3 s", curve = "cycloidal" }]\nrepeat = true'
     mechanism = parse_mechanism(driven(lines) + '[assembly]\nsides = { B = "left" }')
@@ -130,7 +146,7 @@ def test_repeated_segments_need_a_time_to_run() -> None:
         ('to = "1 mm", time = 1, curve = "uniform"', "segment 1, to: expected an angle (rad)"),
         (
             'to = 1, time = 1, curve = "uniform", speed_at_start = 0',
-            'speed_at_start belongs to a polynomial; take it out, or write curve = "polynomial"',
+            'speed_at_start belongs to a polynomial or a B-spline; take it out, or write curve = "polynomial" or',
         ),
         (
             'to = 1, time = 1, curve = "polynomial", jerk_at_end = 1, speed_at_end = 1',
@@ -145,6 +161,18 @@ def test_repeated_segments_need_a_time_to_run() -> None:
             "the times of `through` increase and lie inside the segment",
         ),
         ('to = 1, time = 1, curve = "polynomial", through = [0.5]', "expected [time, value], got 0.5"),
+        (
+            'to = 1, time = 1, curve = "polynomial", degree = 3',
+            "degree belongs to a B-spline; take it out; that of a polynomial follows from what is asked of it",
+        ),
+        (
+            'to = 1, time = 1, curve = "b-spline", degree = 99',
+            "degree must be a whole number from 1 to 15, got 99",
+        ),
+        (
+            'to = 1, time = 1, curve = "b-spline", degree = 2, speed_at_end = 0, acceleration_at_end = 0',
+            "a B-spline of degree 2 takes fewer derivatives at an end than that, got 2",
+        ),
         (
             f'to = 1, time = 1, curve = "polynomial", through = {[[k / 20, 0] for k in range(1, 12)]}',
             "at most 10 entries are allowed, got 11",
@@ -164,7 +192,7 @@ def test_bad_segments_are_refused(complaint: Callable[[str], str], keys: str, me
         ("segments = 3", "segments: expected a list, got 3"),
         ("segments = [3]", "segment 1: expected a table, got 3"),
         ('segments = [{ time = 1, curve = "dwell" }]\nspeed = 1', "speed, segments are given together"),
-        ("", "one of speed, law, table, segments is missing"),
+        ("", "one of speed, law, table, segments, cam is missing"),
         ("speed = 1\nrepeat = true", "repeat belongs to segments; take it out, or give segments"),
         ('segments = [{ time = 1, curve = "dwell" }]\nrepeat = 1', "repeat: expected true or false, got 1"),
         (

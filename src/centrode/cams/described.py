@@ -15,11 +15,12 @@ from centrode.cams.expanded import TOLERANCE, ExpandedPath, expanded_path
 from centrode.cams.path import RollerPath, SymmetricPath
 from centrode.cams.text_curvature import TextCurvature
 from centrode.errors import InputError
-from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam, curved
 
 
-def law_of(cam: Cam) -> CurvatureLaw:
+def law_of(cam: AnyCam) -> CurvatureLaw:
     """The curvature law K(phi) [1/m] of a cam; InputError where its numbers make none."""
+    cam = curved(cam)
     given = cam.curvature
     try:
         if given.law == "constant":
@@ -38,15 +39,16 @@ def law_of(cam: Cam) -> CurvatureLaw:
         raise InputError(error.where or "[curvature]", error.what, error.repair) from None
 
 
-def half_path(cam: Cam, tolerance: float = TOLERANCE) -> ExpandedPath:
+def half_path(cam: AnyCam, tolerance: float = TOLERANCE) -> ExpandedPath:
     """The path that the law itself gives: of a symmetric cam the half with phi >= 0."""
+    cam = curved(cam)
     start = cam.start
     return expanded_path(
         law_of(cam), start.radius, start.pressure_angle, cam.range.start, cam.range.stop, tolerance
     )
 
 
-def path_of(cam: Cam, tolerance: float = TOLERANCE) -> RollerPath:
+def path_of(cam: AnyCam, tolerance: float = TOLERANCE) -> RollerPath:
     """The path of the roller's centre, by series expanded anew step by step to a tolerance.
 
     Raises
@@ -54,5 +56,6 @@ def path_of(cam: Cam, tolerance: float = TOLERANCE) -> RollerPath:
     InputError
         A curvature that is not positive and finite where the path goes, its angle is told.
     """
+    cam = curved(cam)
     half = half_path(cam, tolerance)
     return SymmetricPath(half) if cam.curvature.symmetric else half

@@ -12,25 +12,28 @@ import xarray as xr
 from centrode import __version__
 from centrode.cams.described import path_of
 from centrode.cams.drawn import drawn_curvature
+from centrode.cams.followers.labelled import dataset_of_motion
+from centrode.cams.followers.motion import follower_motion
 from centrode.cams.path import RollerPath
 from centrode.cams.sampled import angles_of
 from centrode.errors import Status
 from centrode.kinematics.dataset import Variable, labels_of, named
 from centrode.model.cams.description import Cam
-from centrode.model.cams.files import cam_text
+from centrode.model.cams.files import AnyCam, cam_text
+from centrode.model.cams.plate import PlateCam
 
 Array = npt.NDArray[np.float64]
 
 
-def cam(cam: Cam, samples: int | None = None, at: npt.ArrayLike | None = None) -> xr.Dataset:
-    """The path of a cam's roller, by series expanded anew step by step.
+def cam(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None = None) -> xr.Dataset:
+    """The path of a cam's roller, by series expanded anew step by step; or the motion of a cam's follower.
 
     Parameters
     ----------
-    cam : Cam
+    cam : Cam or PlateCam
     samples : int
-        Evenly spaced over the range, both ends included; the description's own number, else 361.
-    at : (n,) angles of the carrier [rad]
+        Evenly spaced over the range or a turn, both ends included; the description's own number, else 361.
+    at : (n,) angles of the carrier, or of the cam [rad]
         Exactly these places instead.
 
     Returns
@@ -39,7 +42,9 @@ def cam(cam: Cam, samples: int | None = None, at: npt.ArrayLike | None = None) -
         Along `sample`, over `carrier_angle`: rho with two derivatives, the pressure angle, its sine with two
         derivatives and its cosine, the curvature of the law and its slope, the roller's centre, the curvature of the
         curve drawn through the neighbouring places, status (docs: cams). Beyond a stall a sample is open; at a stall
-        it is singular: its derivatives are NaN.
+        it is singular: its derivatives are NaN. Of a cam that is given by its follower's lift: along `sample`, over
+        `cam_angle`, the lift with four derivatives by the cam's angle, and with a speed of the cam those in time
+        (docs: cam followers).
 
     Raises
     ------
@@ -47,6 +52,8 @@ def cam(cam: Cam, samples: int | None = None, at: npt.ArrayLike | None = None) -
         As `path_of`.
     """
     phi = angles_of(cam, samples, at)
+    if isinstance(cam, PlateCam):
+        return dataset_of_motion(cam, follower_motion(cam), phi)
     path = path_of(cam)
     return dataset_of_path(cam, path, phi)
 

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
-from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam
+from centrode.model.cams.plate import PlateCam
 
 Array = npt.NDArray[np.float64]
 
 DEFAULT_SAMPLES = 361
 
 
-def ends_of(cam: Cam) -> tuple[float, float]:
-    """First and last angle [rad] that a cam asks for: of a symmetric one on both sides."""
+def ends_of(cam: AnyCam) -> tuple[float, float]:
+    """First and last angle [rad] that a cam asks for: of a symmetric one on both sides, of a follower's a turn."""
+    if isinstance(cam, PlateCam):
+        return 0.0, math.tau
     low, high = cam.range.start, cam.range.stop
     return (-high, high) if cam.curvature.symmetric else (low, high)
 
 
-def angles_of(cam: Cam, samples: int | None = None, at: npt.ArrayLike | None = None) -> Array:
+def angles_of(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None = None) -> Array:
     """Angles [rad]: those given, else evenly spaced ones, both ends included.
 
     Raises

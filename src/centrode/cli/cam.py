@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 _DXF = find_spec("ezdxf") is not None
 
 
-@click.command(help=mark("Compute a cam from the curvature of its roller's path."))
+@click.command(help=mark("Compute a cam by a curvature law or its follower's lift."))
 @click.argument(
     "cam", metavar=mark("FILE_OR_EXAMPLE"), help=mark("A TOML file, or the name of a built-in cam.")
 )
@@ -39,7 +40,14 @@ _DXF = find_spec("ezdxf") is not None
     help=mark("Cut the power series after a_N; the description's own number, else 20."),
 )
 @click.option("--groove", is_flag=True, help=mark("Also the outer wall of a groove that the roller runs in."))
-@click.option("--animate", is_flag=True, help=mark("Also write an animation: the wheel walks a step."))
+@click.option(
+    "--laws", is_flag=True, help=mark("Also other laws of motion for the first rise of the follower.")
+)
+@click.option(
+    "--animate",
+    is_flag=True,
+    help=mark("Also write an animation: a walking wheel makes a step, a cam turns under its follower."),
+)
 @no_figures_option
 @dark_option
 def cam(
@@ -48,6 +56,7 @@ def cam(
     samples: int | None,
     terms: int | None,
     groove: bool,
+    laws: bool,
     animate: bool,
     no_figures: bool,
     dark: bool,
@@ -55,16 +64,17 @@ def cam(
     """Print what is known of a cam, and write it where asked."""
     description = ct.load_cam(cam)
     names: list[str] = []
+    _check_options(description, {"--terms": terms is not None, "--groove": groove}, {"--laws": laws})
     _check_animation(description, out, animate)
     with about(cam), Progress() as progress:
         progress.say(_("solving"))
         if out is None:
-            results = ct.cam_results(description, samples, terms, groove=groove)
+            results = ct.cam_results(description, samples, terms, groove=groove, laws=laws)
         else:
             with output.output_folder(out) as draft:
-                results = ct.cam_results(description, samples, terms, groove=groove, front=True)
+                results = ct.cam_results(description, samples, terms, groove=groove, front=True, laws=laws)
                 _write(results, draft, progress, groove=groove, figures=not no_figures, dark=dark)
-                if animate and "wheel" in results.objects:
+                if animate:
                     _animate(results, draft, progress, dark=dark)
                 names = output.finished(draft)
     click.echo(_(description.title) or cam)
@@ -72,15 +82,28 @@ def cam(
         click.echo("\n" + _text(part))
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
-        if "body" in results.objects and not _DXF:
+        if {"body", "plate"} & results.objects.keys() and not _DXF:
             click.echo(_('no DXF: it needs ezdxf, install it with pip install "centrode[drawings]"'))
     if results.failures:
         raise MotionError(cam, "; ".join(results.failures))
 
 
-def _check_animation(cam: ct.Cam, out: Path | None, animate: bool) -> None:
-    """An animation needs a wheel that walks and a folder."""
-    if animate and cam.mover is None:
+def _check_options(
+    cam: ct.Cam | ct.PlateCam, of_curvature: Mapping[str, bool], of_lift: Mapping[str, bool]
+) -> None:
+    """Options that mean nothing for this cam."""
+    plate = isinstance(cam, ct.PlateCam)
+    what = _("this cam is given by a curvature law and has no follower's lift")
+    if plate:
+        what = _("this cam is given by its follower's lift and has no curvature law")
+    for name, given in (of_curvature if plate else of_lift).items():
+        if given:
+            raise InputError(name, what, _("leave it out"))
+
+
+def _check_animation(cam: ct.Cam | ct.PlateCam, out: Path | None, animate: bool) -> None:
+    """An animation needs a wheel that walks or a cam with its follower, and a folder."""
+    if animate and isinstance(cam, ct.Cam) and cam.mover is None:
         raise InputError("--animate", _("nothing walks: the cam has no [mover]"), _("leave it out"))
     if animate and out is None:
         raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))
@@ -122,11 +145,17 @@ def _write(
 
 
 def _animate(results: CamResults, folder: Path, progress: Progress, *, dark: bool) -> None:
-    """Write the walking wheel's step into a folder."""
-    name, cam = "walking-wheel.gif", results.cam
+    """Write the walking wheel's step, or a turn of the cam under its follower, into a folder."""
+    objects, cam = results.objects, results.cam
+    name = "walking-wheel.gif" if "wheel" in objects else "cam.gif"
 
     def said(done: int, of: int) -> None:
         progress.say(_("drawing {name}").format(name=name), done, of)
 
-    wheel = results.objects["wheel"]
-    ct.animate_walking(wheel, folder / name, _(cam.title), cam.display, dark=dark, said=said)
+    if "wheel" in objects:
+        ct.animate_walking(objects["wheel"], folder / name, _(cam.title), cam.display, dark=dark, said=said)
+    elif "plate" in objects:
+        ct.animate_follower(objects["plate"], folder / name, _(cam.title), cam.display, dark=dark, said=said)
+    elif isinstance(cam, ct.PlateCam) and not results.failures:
+        what = _("the cam has no size: neither base_radius nor bounds are given")
+        raise InputError("--animate", what, _("give one of them, or leave it out"))

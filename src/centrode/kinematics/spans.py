@@ -11,6 +11,7 @@ import numpy.typing as npt
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.kinematics.paths import JETS, DrivenBy, Path
+from centrode.laws import ShaftLaw
 from centrode.locale import _
 from centrode.model import limits
 
@@ -162,7 +163,10 @@ def _at_times(path: Path, time: Array) -> Span:
 
 
 def _one_turn(path: Path) -> float:
+    periods = [one.law.period for one in path.driven if isinstance(one.law, ShaftLaw)]
     speeds = [abs(one.drive.speed) for one in path.driven if one.drive.kind == "angle" and one.drive.speed]
+    if periods and not speeds:
+        return max(periods)
     if not speeds:
         raise InputError(
             "[study]",

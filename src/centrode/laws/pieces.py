@@ -80,7 +80,14 @@ class Pieces:
 
     def jet(self, m: Any, t: Number) -> Number:
         """The value at t over the algebra of `m`, which needs sin (with cos, on jets)."""
-        origin, unit, wave, cycloid, square, *powers = row_at(self.breaks, self.rows, plain(t))
+        return self._formula(row_at(self.breaks, self.rows, plain(t)), m, t)
+
+    def at_row(self, place: int, m: Any, t: Number) -> Number:
+        """The value at t by one formula, wherever t lies: 0 is the one before the first break."""
+        return self._formula(self.rows[place], m, t)
+
+    def _formula(self, row: Row, m: Any, t: Number) -> Number:
+        origin, unit, wave, cycloid, square, *powers = row
         x = (t - origin) / unit
         value = x * 0.0 + powers.pop()
         while powers:

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from centrode.errors import InputError
+from centrode.laws.b_spline import b_spline
 from centrode.laws.conditions import Condition, polynomial
 from centrode.laws.curves import CURVES
 from centrode.laws.law import Number
@@ -16,7 +17,16 @@ from centrode.locale import _
 
 DWELL = "dwell"
 POLYNOMIAL = "polynomial"
-SEGMENT_CURVES = (*CURVES, DWELL, POLYNOMIAL)
+B_SPLINE = "b-spline"
+THROUGH_POINTS = (POLYNOMIAL, B_SPLINE)
+"""Curves by conditions: values on the way, derivatives at the ends."""
+SEGMENT_CURVES = (*CURVES, DWELL, *THROUGH_POINTS)
+
+DEGREE = 5
+"""Of a B-spline: with it speed, acceleration, jerk and the rate of the jerk are continuous."""
+MOST_DEGREE = 15
+INNER_JUMPS = {"modified sine": 4, "modified trapezoid": 4}
+"""Curves of several formulas, and the lowest derivative that jumps where these meet."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +42,11 @@ class Segment:
     curve : str
         One of `SEGMENT_CURVES`.
     at_start, at_end : tuple of float [rad/s or m/s, and so on]
-        Of a polynomial: speed, acceleration, ... as far as they are given.
+        Of a polynomial or a B-spline: speed, acceleration, ... as far as they are given.
     through : tuple of (time [s], value [rad or m])
-        Of a polynomial: values on the way, at times from the segment's start.
+        Of a polynomial or a B-spline: values on the way, at times from the segment's start.
+    degree : int
+        Of a B-spline.
 
     Raises
     ------
@@ -48,6 +60,7 @@ class Segment:
     at_start: tuple[float, ...] = ()
     at_end: tuple[float, ...] = ()
     through: tuple[tuple[float, float], ...] = ()
+    degree: int = DEGREE
 
     def __post_init__(self) -> None:
         numbers = [self.time, self.to or 0.0, *self.at_start, *self.at_end]
@@ -61,11 +74,28 @@ class Segment:
         if not all(before < after for before, after in pairwise(times)):
             what = _("the times of `through` increase and lie inside the segment, counted from its start")
             raise InputError("", what, _("correct them, or the segment's time"))
+        if not 1 <= self.degree <= MOST_DEGREE:
+            what = _("the degree of a B-spline lies between 1 and {most}").format(most=MOST_DEGREE)
+            raise InputError("", what)
+        rates = max(len(self.at_start), len(self.at_end))
+        if self.curve == B_SPLINE and rates >= self.degree:
+            what = _("a B-spline of degree {degree} takes fewer derivatives at an end than that, got {count}")
+            told = what.format(degree=self.degree, count=rates)
+            raise InputError("", told, _("raise the degree, or give fewer"))
+
+    @property
+    def inner_jump(self) -> int | None:
+        """The lowest derivative that jumps inside the segment; None: all are continuous."""
+        if self.curve == B_SPLINE:
+            count = 2 + len(self.at_start) + len(self.at_end) + len(self.through)
+            return self.degree if count > self.degree + 1 else None
+        return INNER_JUMPS.get(self.curve)
 
     def pieces(self, start: float, before: float) -> list[tuple[float, Piece]]:
         """Its formulas, each with the time [s] at which it ends, from a time and a value of the law."""
-        if self.curve == POLYNOMIAL:
-            found = polynomial(self._conditions(before))
+        if self.curve in THROUGH_POINTS:
+            asked = self._conditions(before)
+            found = polynomial(asked) if self.curve == POLYNOMIAL else b_spline(asked, self.degree)
             return [(start + end, replace(piece, origin=start + piece.origin)) for end, piece in found]
         after = before if self.to is None else self.to
         curve = CURVES["uniform" if self.curve == DWELL else self.curve]
@@ -74,7 +104,7 @@ class Segment:
         return list(zip(ends, placed, strict=True))
 
     def _conditions(self, before: float) -> list[Condition]:
-        """What is asked of the polynomial, at times from the segment's start."""
+        """What is asked of the polynomial or the B-spline, at times from the segment's start."""
         way: list[Condition] = [(time, (value,)) for time, value in self.through]
         return [(0.0, (before, *self.at_start)), *way, (self.time, (self.to or 0.0, *self.at_end))]
 
@@ -96,12 +126,13 @@ class SegmentedLaw:
     segments: tuple[Segment, ...]
     repeat: bool = False
     whole: Pieces = field(init=False, repr=False, compare=False)
+    ends: tuple[float, ...] = field(init=False, repr=False, compare=False)
     gain: float = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not self.segments:
             raise InputError("", _("a law of segments needs at least one"), _("add a segment"))
-        breaks, pieces, value = [0.0], [], 0.0
+        breaks, pieces, value, ends = [0.0], [], 0.0, []
         for number, segment in enumerate(self.segments, 1):
             for end, piece in segment.pieces(breaks[-1], value):
                 if not end > breaks[-1]:
@@ -110,9 +141,11 @@ class SegmentedLaw:
                 breaks.append(end)
                 pieces.append(piece)
             value = value if segment.to is None else segment.to
+            ends.append(breaks[-1])
         # A turn may lack a rounding error of the period: the formulas at its ends then go on.
         before, after = (pieces[0], pieces[-1]) if self.repeat else (Piece(0.0, 0.0), Piece(0.0, value))
         object.__setattr__(self, "whole", Pieces.of(breaks, (before, *pieces, after)))
+        object.__setattr__(self, "ends", tuple(ends))
         object.__setattr__(self, "gain", value)
 
     @property
@@ -124,6 +157,17 @@ class SegmentedLaw:
     def span(self) -> tuple[float, float] | None:
         """From 0 to the end of the last segment; None if the segments repeat."""
         return None if self.repeat else (0.0, self.period)
+
+    def at_joint(self, number: int, m: Any, t: Number) -> tuple[Number, Number]:
+        """What the formulas before and behind the end of a segment, counted from 0, give at t over the algebra of `m`.
+
+        At the last end the formula behind it is that of the first segment, a period later, where they repeat.
+        """
+        place = self.whole.breaks.index(self.ends[number])
+        before = self.whole.at_row(place, m, t)
+        if self.repeat and number == len(self.ends) - 1:
+            return before, self.whole.at_row(1, m, t - self.period) + self.gain
+        return before, self.whole.at_row(place + 1, m, t)
 
     def jet(self, m: Any, t: Number) -> Number:
         """s(t) [rad or m] over the algebra of `m`; the segment is chosen by the plain value of t."""

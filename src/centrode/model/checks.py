@@ -8,6 +8,7 @@ from itertools import chain, islice
 from centrode.locale import _
 from centrode.model import limits
 from centrode.model.bodies import Link
+from centrode.model.cam_driving import follower_problems
 from centrode.model.connection import disconnected_parts
 from centrode.model.description import Description
 from centrode.model.joining import cylinder_problems, joining_problems
@@ -121,6 +122,7 @@ def _drives(mechanism: Description) -> Iterator[Problem]:
         if drive.distance:
             wrong = list(two_known_points(mechanism, drive.distance, (*at, "distance")))
             yield from wrong or cylinder_problems(mechanism, drive, at)
+        yield from follower_problems(mechanism, drive, at)
 
 
 def _rest(mechanism: Description) -> Iterator[Problem]:

@@ -197,4 +197,4 @@ def _kind_and_law(first: object) -> tuple[str, bool]:
         return first.kind, first.speed is None
     keys = first if isinstance(first, Mapping) else {}
     kind = "displacement" if keys.get("guide") else "distance" if keys.get("distance") else "angle"
-    return kind, keys.get("speed") is None and bool({"law", "table", "segments"} & keys.keys())
+    return kind, keys.get("speed") is None and bool({"law", "table", "segments", "cam"} & keys.keys())

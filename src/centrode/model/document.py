@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from centrode.model.description import Description
-from centrode.model.names import PLACED, two_points
-from centrode.model.pairs import PLANE_KEYS, Guide
-from centrode.model.part import Part
-from centrode.model.values import Placed
+from centrode.model.names import two_points
+from centrode.model.tabled import part_tables
 
 
 def document(mechanism: Description) -> dict[str, Any]:
@@ -19,30 +16,3 @@ def document(mechanism: Description) -> dict[str, Any]:
         if link.points == two_points(name):
             del tables["links"][name]["points"]
     return tables
-
-
-def part_tables(part: Part) -> dict[str, Any]:
-    """Tables of any part of a description."""
-    tables = {}
-    for key, name in part.keys().items():
-        value, field = getattr(part, name), type(part).model_fields[name]
-        if field.is_required() or value != field.default or _needed(part, name):
-            tables[key] = _plain(value)
-    return tables
-
-
-def _needed(part: Part, name: str) -> bool:
-    """Keys that a file has to give although the part has a default: a guide's line, in the plane."""
-    return isinstance(part, Guide) and part.pole is None and name in PLANE_KEYS
-
-
-def _plain(value: object) -> Any:
-    if isinstance(value, Part):
-        return part_tables(value)
-    if isinstance(value, Placed):
-        return PLACED if value.at is None else {PLACED: list(value.at)}
-    if isinstance(value, Mapping):
-        return {key: _plain(entry) for key, entry in value.items()}
-    if isinstance(value, tuple):
-        return [_plain(entry) for entry in value]
-    return value

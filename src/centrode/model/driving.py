@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import PlainValidator, ValidationInfo, field_validator
+from pydantic import PlainValidator, ValidationInfo, field_validator, model_validator
 
 from centrode.errors import InputError
-from centrode.laws import Law, TableLaw, TextLaw, Uniform
+from centrode.laws import Law, ShaftLaw, TableLaw, TextLaw, Uniform
 from centrode.locale import _
+from centrode.model.cams.beside import read_plate_cam
+from centrode.model.cams.plate import PlateCam
 from centrode.model.names import FRAME
 from centrode.model.part import Part, one_of
 from centrode.model.problems import Problem
 from centrode.model.segments import Segment, read_repeat, read_segments, segmented
 from centrode.model.tables import Columns, read_rows
-from centrode.model.values import READING, Name, listed, read_text, si
+from centrode.model.values import READING, Angle, Name, listed, positive, quantity, read_text, si
 
-_LAWS = ("speed", "law", "table", "segments")
+_LAWS = ("speed", "law", "table", "segments", "cam")
+_OF_CAM = ("cam_speed", "cam_angle", "cam_point", "lowers")
 
 
 def _read_law(value: object) -> str:
@@ -40,10 +43,20 @@ class Drive(Part):
         The link an angle is measured from.
     start : float [rad or m]
         Value at t = 0, without the law's own value there; from the initial position if left out.
-    speed, law, table, segments : float [rad/s or m/s], formula in t, rows of (time, value), tuple of Segment
-        One of them. In a file, `table` may be the path of a CSV file beside it.
+    speed, law, table, segments, cam : float [rad/s or m/s], formula in t, rows of (time, value), Segments, PlateCam
+        One of them. In a file, `table` may be the path of a CSV file beside it, `cam` that of a cam's description or
+        the name of a built-in one.
     repeat : bool
         Whether the segments follow each other again and again.
+    cam_speed : float [rad/s]
+        Of the cam; its description's own if left out.
+    cam_angle : float [rad]
+        Of the cam at t = 0.
+    cam_point : str
+        The driven link's point that touches the cam, or the roller's centre; the link's own axis is the arm if left
+        out.
+    lowers : bool
+        Whether the cam's lift lowers the value instead of raising it.
     """
 
     link: Name | None = None
@@ -56,6 +69,11 @@ class Drive(Part):
     table: tuple[tuple[float, float], ...] | None = None
     segments: tuple[Segment, ...] | None = None
     repeat: Annotated[bool, PlainValidator(read_repeat)] = False
+    cam: Annotated[PlateCam, PlainValidator(read_plate_cam)] | None = None
+    cam_speed: Annotated[float, quantity("angular speed", positive)] | None = None
+    cam_angle: Angle = 0.0
+    cam_point: Name | None = None
+    lowers: Annotated[bool, PlainValidator(read_repeat)] = False
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
@@ -66,6 +84,10 @@ class Drive(Part):
             wrong.append(Problem(_("relative_to belongs to the drive of a link's angle"), repair))
         if given.get("repeat") and given.get("segments") is None:
             wrong.append(Problem(_("repeat belongs to segments"), _("take it out, or give segments")))
+        if given.get("cam") is None:
+            foreign = [key for key in _OF_CAM if given.get(key)]
+            told = _("{key} belongs to a cam")
+            wrong += [Problem(told.format(key=key), _("take it out, or give a cam")) for key in foreign]
         return super().key_problems(given) + wrong
 
     @field_validator("start", "speed", mode="plain")
@@ -93,6 +115,12 @@ class Drive(Part):
     def _segments(cls, value: object, info: ValidationInfo) -> tuple[Segment, ...] | None:
         return None if value is None else read_segments(value, _kind(info))
 
+    @model_validator(mode="after")
+    def _cam_fits(self) -> Self:
+        if self.cam is not None:
+            _check_cam(self, self.cam)
+        return self
+
     @property
     def kind(self) -> str:
         """What is driven: "angle", "displacement" or "distance"."""
@@ -104,6 +132,13 @@ class Drive(Part):
         return self.link or self.guide or "-".join(self.distance or ())
 
     @property
+    def turning(self) -> float | None:
+        """Speed [rad/s] of the cam that drives; None without one."""
+        if self.cam is None:
+            return None
+        return self.cam.body.speed if self.cam_speed is None else self.cam_speed
+
+    @property
     def motion_law(self) -> Law:
         """s(t) [rad or m]; the drive's value is start + s(t)."""
         if self.speed is not None:
@@ -112,6 +147,8 @@ class Drive(Part):
             return TextLaw(self.law)
         if self.segments is not None:
             return segmented(self.segments, self.repeat)
+        if self.cam is not None:
+            return ShaftLaw(self.cam.lift_law, self.turning or 1.0, self.cam_angle, self.lowers)
         times, values = zip(*self.table or (), strict=True)
         return TableLaw(times, values)
 
@@ -121,3 +158,26 @@ def _kind(info: ValidationInfo, rate: bool = False) -> str:
     if rate:
         return "angular speed" if angular else "speed"
     return "angle" if angular else "length"
+
+
+def _check_cam(drive: Drive, cam: PlateCam) -> None:
+    """Raise Problem where a cam cannot drive what it is to drive."""
+    if READING.get().space == "sphere":
+        raise Problem(_("plate cams are for the plane"), _("give another law"), ("cam",))
+    if drive.turning is None:
+        what = _("nothing says how fast the cam turns")
+        raise Problem(what, _("give cam_speed, or speed in the cam's table [cam]"), ("cam",))
+    if drive.distance is not None:
+        what = _("a cam drives the angle of a link, or a displacement along a guide")
+        raise Problem(what, _("name a link or a guide"), ("cam",))
+    if drive.cam_point is not None and not cam.swings:
+        what = _("cam_point belongs to a follower that oscillates; a guide leads its own point")
+        raise Problem(what, _("take it out"), ("cam_point",))
+    if cam.swings and drive.link is None:
+        what = _("the cam's follower oscillates, but a displacement is driven")
+        raise Problem(what, _("drive a link's angle, or take a translating follower"), ("cam",))
+    if not cam.swings and drive.guide is None:
+        what = _("the cam's follower translates, but an angle is driven")
+        raise Problem(
+            what, _("drive a displacement along a guide, or take an oscillating follower"), ("cam",)
+        )

@@ -3,31 +3,19 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import tomli_w
-from pydantic import ValidationError
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model import limits
 from centrode.model.document import document
 from centrode.model.mechanism import Mechanism
-from centrode.model.part import Part
-from centrode.model.problems import input_error
 from centrode.model.reading import read_file
-from centrode.model.toml_words import toml_reason
-from centrode.model.values import READING, Reading
+from centrode.model.toml_text import described, is_cam, toml_tables
 
-Described = TypeVar("Described", bound=Part)
-
-_KEY = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
-# Dotted keys nest without a bracket, and cost the parser the square of their number.
-_DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{limits.NESTING * 2},}}")
-_PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 _SHORT_LIST = re.compile(r"\[\n((?: +[^\[\]\n]*,\n)+) *\]")
 
 
@@ -63,19 +51,6 @@ def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | N
     return described(Mechanism, mapping, where, folder)
 
 
-def described(
-    kind: type[Described], mapping: Mapping[str, Any], where: str, folder: Path | None
-) -> Described:
-    """What plain dicts and lists describe, files beside it in `folder`; raises InputError that starts with `where`."""
-    token = READING.set(Reading(folder=folder or Path()))
-    try:
-        return kind.model_validate(dict(mapping))
-    except ValidationError as error:
-        raise input_error(error, where) from None
-    finally:
-        READING.reset(token)
-
-
 def mechanism_text(mechanism: Mechanism) -> str:
     """The mechanism as TOML in SI, without defaults; `parse_mechanism` gives exactly it back."""
     return in_short_lines(tomli_w.dumps(document(mechanism)))
@@ -86,60 +61,5 @@ def in_short_lines(text: str) -> str:
     return _SHORT_LIST.sub(_in_one_line, text)
 
 
-def is_cam(mapping: Mapping[str, Any]) -> bool:
-    """Whether a description says that it is a cam's."""
-    return mapping.get("kind") == "cam"
-
-
 def _in_one_line(match: re.Match[str]) -> str:
     return "[" + ", ".join(line.strip().removesuffix(",") for line in match.group(1).splitlines()) + "]"
-
-
-def toml_tables(text: str, where: str) -> dict[str, Any]:
-    """Tables of a text of TOML; raises InputError where it is none, is too long, or nests too deeply."""
-    if len(text) > limits.FILE_SIZE:
-        what = _("the text has {size} characters, at most {most} are allowed")
-        raise InputError(where, what.format(size=len(text), most=limits.FILE_SIZE))
-    repair = _("tables and lists lie at most {most} inside each other").format(most=limits.NESTING)
-    nested = InputError(where, _("the text nests too deeply"), repair)
-    if _DOTTED.search(text):
-        raise nested
-    try:
-        tables = tomllib.loads(text)
-    except RecursionError:
-        raise nested from None
-    except tomllib.TOMLDecodeError as error:
-        raise _not_toml(str(error), text, where) from None
-    except ValueError:  # a date or a number that Python cannot hold
-        reason = _("a date is impossible, or a number has too many digits")
-        raise InputError(where, _("not TOML: {reason}").format(reason=reason)) from None
-    if _depth(tables) > limits.NESTING:
-        raise nested
-    return tables
-
-
-def _not_toml(message: str, text: str, where: str) -> InputError:
-    match = _PLACE.fullmatch(message)
-    reason = toml_reason(match.group(1) if match else message)
-    lines = text.splitlines() or [""]
-    line, column = (
-        (match.group(2), match.group(3)) if match and match.group(2) else (len(lines), len(lines[-1]) + 1)
-    )
-    place = _("line {line}, column {column}").format(line=line, column=column)
-    return InputError(f"{where}, {place}" if where else place, _("not TOML: {reason}").format(reason=reason))
-
-
-def _depth(value: object) -> int:
-    """How deeply tables and lists nest, found level by level: no recursion that a file could exhaust."""
-    depth, level = 0, [value]
-    while level:
-        inner: list[object] = []
-        for entry in level:
-            if isinstance(entry, dict):
-                inner += entry.values()
-            elif isinstance(entry, list):
-                inner += entry
-        depth, level = depth + 1, inner
-        if depth > limits.NESTING:
-            break
-    return depth

@@ -18,6 +18,7 @@ Place = tuple[str | int, ...]
 TABLES = (
     *("display", "frame", "assembly", "machine", "study"),
     *("curvature", "start", "range", "roller", "return", "mover", "contact", "choose"),
+    *("cam", "follower", "bounds", "tool"),
 )
 
 KEY = "{key}"

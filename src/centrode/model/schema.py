@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from centrode.laws import SEGMENT_CURVES
+from centrode.laws import MOST_DEGREE, SEGMENT_CURVES
 from centrode.model import limits, segments
 from centrode.model.asked import Assembly, Display, Study
 from centrode.model.bodies import RING_AND_POINT, SHAPES, Frame, Link
@@ -130,13 +130,22 @@ PROPERTIES: dict[type[Part], Schema] = {
         "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 2), 2, limits.TABLE_ROWS)]},
         "segments": list_of(reference_to(Segment), 1, segments.MOST),
         "repeat": {"type": "boolean"},
+        "cam": {
+            "anyOf": [TEXT, {"type": "object"}],
+            "description": "a cam's file, a built-in cam, or its tables",
+        },
+        "cam_speed": above_zero("angular speed"),
+        "cam_angle": quantity_schema("angle"),
+        "cam_point": NAME,
+        "lowers": {"type": "boolean"},
     },
     Segment: {
         "to": AMOUNT,
         "time": above_zero("time"),
         "curve": {"enum": list(SEGMENT_CURVES)},
         **dict.fromkeys((*segments.AT_START, *segments.AT_END), AMOUNT),
-        "through": list_of(list_of(AMOUNT, 2, 2), 0, segments.MOST_THROUGH),
+        "through": list_of(list_of(AMOUNT, 2, 2), 0, max(segments.MOST_THROUGH.values())),
+        "degree": {"type": "integer", "minimum": 1, "maximum": MOST_DEGREE},
     },
     Assembly: {"sides": table_of(_SIDES, limits.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
     Load: {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextvars import ContextVar
 from itertools import pairwise
 from typing import Annotated, Any
@@ -13,20 +13,20 @@ from centrode import laws
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.part import Part, missing_key
-from centrode.model.problems import Problem, Problems, input_error, shown
+from centrode.model.problems import KEY, Problem, Problems, input_error, shown
 from centrode.model.values import choice, entries, numbers, positive, si
 
 MOST = 500
 """Segments of a drive."""
 
-MOST_THROUGH = 10
-"""Points a polynomial is led through: the degree grows with them."""
+MOST_THROUGH = {laws.POLYNOMIAL: 10, laws.B_SPLINE: 200}
+"""Points on the way: the degree of a polynomial grows with them, that of a B-spline does not."""
 
 AT_START = ("speed_at_start", "acceleration_at_start", "jerk_at_start")
 AT_END = ("speed_at_end", "acceleration_at_end", "jerk_at_end")
-_FOR_POLYNOMIAL = (*AT_START, *AT_END, "through")
+_BY_CONDITIONS = (*AT_START, *AT_END, "through")
 _NOTHING: tuple[object, ...] = (None, (), [])
-_UNITS = {"angle": "rad", "length": "m"}
+UNITS = {"angle": "rad", "length": "m"}
 
 DRIVEN: ContextVar[str] = ContextVar("DRIVEN", default="length")
 """Kind of what is driven, "angle" or "length": it decides what the numbers of a segment mean."""
@@ -42,17 +42,7 @@ def rate(value: object, kind: str, order: int) -> float:
         # An acceleration times a time squared is a length: units of every order are read by that.
         return si(value.strip() + order * "*s", kind)
     except Problem:
-        return _plain_rate(value, f"{_UNITS[kind]}/s^{order}")
-
-
-def _plain_rate(text: str, unit: str) -> float:
-    """A text without a unit, which counts as SI."""
-    try:
-        return si(text, "ratio")
-    except Problem:
-        what = _("expected a rate ({unit}), got {value}").format(unit=unit, value=shown(text))
-        repair = _('write a number in {unit}, or a text with a unit such as "{example}"')
-        raise Problem(what, repair.format(unit=unit, example=f"5 {unit}")) from None
+        return plain_rate(value, f"{UNITS[kind]}/s^{order}")
 
 
 class Segment(Part):
@@ -66,9 +56,11 @@ class Segment(Part):
     curve : str
         A curve by its name, "dwell" or "polynomial".
     speed_at_start, acceleration_at_start, jerk_at_start, speed_at_end, acceleration_at_end, jerk_at_end : float
-        Conditions on a polynomial, each with those of lower order.
+        Conditions on a polynomial or a B-spline, each with those of lower order.
     through : tuple of (time [s], value [rad or m])
-        Values of a polynomial on the way, at times from the segment's start.
+        Values of these on the way, at times from the segment's start.
+    degree : int
+        Of a B-spline.
     """
 
     to: float | None = None
@@ -81,6 +73,7 @@ class Segment(Part):
     acceleration_at_end: float | None = None
     jerk_at_end: float | None = None
     through: tuple[tuple[float, float], ...] = ()
+    degree: int | None = None
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
@@ -91,11 +84,7 @@ class Segment(Part):
             wrong.append(Problem(_("a dwell stays where it is and has no `to`"), _("take it out")))
         if curve != laws.DWELL and given.get("to") is None:
             wrong.append(missing_key("to"))
-        if curve != laws.POLYNOMIAL:
-            repair = _('take it out, or write curve = "polynomial"')
-            foreign = [key for key in _FOR_POLYNOMIAL if given.get(key) not in _NOTHING]
-            wrong += [Problem(_("{key} belongs to a polynomial").format(key=key), repair) for key in foreign]
-        return wrong + _gaps(given, AT_START) + _gaps(given, AT_END)
+        return wrong + foreign_keys(given, _BY_CONDITIONS) + _gaps(given, AT_START) + _gaps(given, AT_END)
 
     @field_validator("to", mode="plain")
     @classmethod
@@ -112,9 +101,13 @@ class Segment(Part):
 
     @field_validator("through", mode="plain")
     @classmethod
-    def _through(cls, value: object) -> tuple[tuple[float, float], ...]:
-        rows = [numbers(row, ("time", DRIVEN.get()), "[time, value]") for row in entries(value, MOST_THROUGH)]
-        return tuple((time, number) for time, number in rows)
+    def _through(cls, value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...]:
+        return read_through(value, info, "time", "[time, value]")
+
+    @field_validator("degree", mode="plain")
+    @classmethod
+    def _degree(cls, value: object) -> int | None:
+        return None if value is None else read_degree(value)
 
     @model_validator(mode="after")
     def _lawful(self) -> Segment:
@@ -128,11 +121,58 @@ class Segment(Part):
     def law(self) -> laws.Segment:
         """The segment of the law; raises InputError where its times do not increase."""
         return laws.Segment(
-            self.time, self.to, self.curve, self._rates(AT_START), self._rates(AT_END), self.through
+            self.time,
+            self.to,
+            self.curve,
+            self._rates(AT_START),
+            self._rates(AT_END),
+            self.through,
+            laws.DEGREE if self.degree is None else self.degree,
         )
 
     def _rates(self, keys: tuple[str, ...]) -> tuple[float, ...]:
         return tuple(number for key in keys if (number := getattr(self, key)) is not None)
+
+
+def foreign_keys(given: Mapping[str, Any], keys: Sequence[str]) -> list[Problem]:
+    """Keys of curves by conditions that are given for another curve."""
+    wrong = []
+    if given.get("curve") not in laws.THROUGH_POINTS:
+        repair = _('take it out, or write curve = "polynomial" or "b-spline"')
+        what = _("{key} belongs to a polynomial or a B-spline")
+        foreign = [key for key in keys if given.get(key) not in _NOTHING]
+        wrong = [Problem(what.format(key=key), repair) for key in foreign]
+    if given.get("curve") != laws.B_SPLINE and given.get("degree") is not None:
+        repair = _("take it out; that of a polynomial follows from what is asked of it")
+        wrong.append(Problem(_("degree belongs to a B-spline"), repair))
+    return wrong
+
+
+def read_through(
+    value: object, info: ValidationInfo, across: str, form: str
+) -> tuple[tuple[float, float], ...]:
+    """Values on the way, each with its place: as many as the curve may have."""
+    most = MOST_THROUGH.get(str(info.data.get("curve")), max(MOST_THROUGH.values()))
+    rows = [numbers(row, (across, DRIVEN.get()), form) for row in entries(value, most)]
+    return tuple((place, number) for place, number in rows)
+
+
+def read_degree(value: object) -> int:
+    """Degree of a B-spline."""
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= laws.MOST_DEGREE:
+        what = _("{key} must be a whole number from {least} to {most}, got {value}")
+        raise Problem(what.format(key=KEY, least=1, most=laws.MOST_DEGREE, value=shown(value)))
+    return value
+
+
+def plain_rate(text: str, unit: str) -> float:
+    """A derivative given as text without a unit, which counts as SI."""
+    try:
+        return si(text, "ratio")
+    except Problem:
+        what = _("expected a rate ({unit}), got {value}").format(unit=unit, value=shown(text))
+        repair = _('write a number in {unit}, or a text with a unit such as "{example}"')
+        raise Problem(what, repair.format(unit=unit, example=f"5 {unit}")) from None
 
 
 def read_segments(value: object, kind: str) -> tuple[Segment, ...]:

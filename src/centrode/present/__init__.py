@@ -23,14 +23,22 @@ if TYPE_CHECKING:
         cam_path_figure,
         cam_routes_figure,
     )
+    from centrode.present.cams.follower_animation import animate_follower
+    from centrode.present.cams.forces import cam_forces_figure
+    from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
     from centrode.present.cams.outline_dxf import write_outlines_dxf
     from centrode.present.cams.outline_files import write_cam_outlines
     from centrode.present.cams.outline_svg import write_outlines_svg
+    from centrode.present.cams.plate_curves import plate_curves_figure
+    from centrode.present.cams.plate_drawing import follower_cam_figure
     from centrode.present.cams.profile_drawing import profile_figure
     from centrode.present.cams.profile_tables import write_profile_csv
     from centrode.present.cams.tables import (
         write_cam_contact_csv,
         write_cam_csv,
+        write_cam_forces_csv,
+        write_cam_laws_csv,
+        write_cam_motion_csv,
         write_cam_routes_csv,
         write_cam_tables,
     )
@@ -81,6 +89,7 @@ __all__ = [
     "animate_centrodes",
     "animate_motion",
     "balance_figures",
+    "animate_follower",
     "animate_walking",
     "choice_figures",
     "contact_figure",
@@ -90,6 +99,12 @@ __all__ = [
     "cam_body_figures",
     "cam_curves_figure",
     "cam_figures",
+    "cam_forces_figure",
+    "write_cam_forces_csv",
+    "cam_motion_figure",
+    "laws_figure",
+    "write_cam_laws_csv",
+    "write_cam_motion_csv",
     "cam_path_figure",
     "cam_routes_figure",
     "centres_figure",
@@ -116,6 +131,8 @@ __all__ = [
     "reduction_figures",
     "plan_figure",
     "polygon_figures",
+    "plate_curves_figure",
+    "follower_cam_figure",
     "profile_figure",
     "region_figure",
     "save_figures",
@@ -157,10 +174,21 @@ _attached, __dir__, _names = lazy_loader.attach(
         "forces.balance_tables": ["write_balance_csv", "write_harmonics_csv"],
         "cams.bodies": ["cam_body_figures"],
         "cams.drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
+        "cams.follower_animation": ["animate_follower"],
+        "cams.forces": ["cam_forces_figure"],
+        "cams.motion_drawing": ["cam_motion_figure", "laws_figure"],
         "cams.choice": ["choice_figures", "trade_off_figure"],
         "cams.choice_tables": ["write_choice"],
         "cams.contact": ["contact_figure"],
-        "cams.tables": ["write_cam_contact_csv", "write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
+        "cams.tables": [
+            "write_cam_contact_csv",
+            "write_cam_csv",
+            "write_cam_forces_csv",
+            "write_cam_laws_csv",
+            "write_cam_motion_csv",
+            "write_cam_routes_csv",
+            "write_cam_tables",
+        ],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "centrodes": ["animate_centrodes", "centrodes_figure"],
@@ -181,6 +209,8 @@ _attached, __dir__, _names = lazy_loader.attach(
         "cams.outline_files": ["write_cam_outlines"],
         "cams.outline_svg": ["write_outlines_svg"],
         "plan_drawing": ["plan_figure"],
+        "cams.plate_curves": ["plate_curves_figure"],
+        "cams.plate_drawing": ["follower_cam_figure"],
         "cams.profile_drawing": ["profile_figure"],
         "cams.profile_tables": ["write_profile_csv"],
         "integration_tables": ["write_integration_csv"],

@@ -11,6 +11,7 @@ from matplotlib.patches import Polygon
 
 from centrode.model.mechanism import FRAME
 from centrode.present import signs
+from centrode.present.cams.driving_drawing import draw_cams
 from centrode.present.gears import pitch_circles
 from centrode.present.labels import label_places
 from centrode.present.obstacles import drive_arcs, ground_line, lines, unit
@@ -60,6 +61,7 @@ def draw_mechanism(
     for number, other in enumerate(faded):
         draw_links(axes, scene, other, links, alpha=0.14 + 0.16 * (number + 1) / len(faded))
     draw_frame(axes, scene, sample)
+    draw_cams(axes, scene, sample)
     draw_links(axes, scene, sample, links)
     draw_hinges(axes, scene, sample, links)
     if colour is None:

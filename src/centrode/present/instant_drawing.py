@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from centrode.analysis.graphic.board import round_scale
 from centrode.locale import _
 from centrode.present import signs
+from centrode.present.cams.driving_drawing import draw_cams
 from centrode.present.diagram_drawing import (
     COLUMN,
     CORNER,
@@ -130,6 +131,7 @@ def draw_mechanism_in(axes: Axes, scene: Scene) -> None:
     """The mechanism in its conventional signs, without names."""
     links = pens(scene.mechanism.link_names)
     draw_frame(axes, scene, 0)
+    draw_cams(axes, scene, 0)
     draw_links(axes, scene, 0, links)
     draw_hinges(axes, scene, 0, links)
     draw_drive(axes, scene, 0)

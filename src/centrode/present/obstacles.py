@@ -10,12 +10,14 @@ import numpy as np
 
 from centrode.present import signs
 from centrode.present.scene import Array, Scene, corners
-from centrode.present.wheels import cylinders, round_track, straight_track, wheel_at
+from centrode.present.wheels import Disc, cylinders, round_track, straight_track, wheel_at
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Guide
 
 Segments = list[tuple[Array, Array]]
+OUTLINE = 8
+"""Every so many places of a cam's outline are corners of the polygon that names keep clear of."""
 
 
 def lines(scene: Scene, sample: int) -> Segments:
@@ -34,7 +36,17 @@ def lines(scene: Scene, sample: int) -> Segments:
             found += [(places[name], places[name] + foot) for foot in feet]
     for arc in drive_arcs(scene, sample):
         found += along(list(arc))
-    return found + wheel_lines(scene, sample)
+    return found + wheel_lines(scene, sample) + cam_lines(scene, sample)
+
+
+def cam_lines(scene: Scene, sample: int) -> Segments:
+    """Driving cams and their rollers as segments."""
+    found: Segments = []
+    for cam in scene.cams:
+        found += around(list(cam.outline(sample)[::OUTLINE]))
+        roller = cam.roller(sample)
+        found += [] if roller is None else around(list(Disc(*roller).outline))
+    return found
 
 
 def wheel_lines(scene: Scene, sample: int) -> Segments:
@@ -94,11 +106,11 @@ def around(places: Sequence[Array]) -> Segments:
 
 
 def drive_arcs(scene: Scene, sample: int) -> list[Array]:
-    """The arcs of the drives' arrows, in the sense of a uniform drive; counter-clockwise for a law."""
+    """The arcs of the drives' arrows: in the sense of a uniform drive or a cam, counter-clockwise for a law."""
     places = scene.at(sample)
-    found: list[Array] = []
+    found = [signs.turning_arc(cam.hub, 0.0, cam.forward, scene.sign) for cam in scene.cams]
     for drive in scene.mechanism.drives:
-        if drive.link is None or drive.relative_to != "frame":
+        if drive.link is None or drive.relative_to != "frame" or drive.cam is not None:
             continue
         points = [name for name in scene.mechanism.links[drive.link].coordinates if name in places]
         pivots = [name for name in points if name in scene.mechanism.frame.points]

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.board import round_scale
 from centrode.locale import _
+from centrode.present.cams.driving_drawing import draw_cams
 from centrode.present.diagram_drawing import typeset
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
 from centrode.present.obstacles import lines
@@ -69,6 +70,7 @@ def draw_positions(page: Page, view: View, scene: Scene, count: int) -> None:
     for sample in range(count - 1, 0, -1):
         draw_links(axes, scene, sample, colours, alpha=0.22)
     draw_frame(axes, scene, 0)
+    draw_cams(axes, scene, 0)
     draw_links(axes, scene, 0, colours)
     draw_hinges(axes, scene, 0, colours)
     page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, 0))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.present.cams.driving import driving_cams
 from centrode.present.gears import pitch_circles
 from centrode.present.scene import Scene, box, span
 from centrode.present.shown import shown_as
@@ -43,10 +44,18 @@ def scene_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Scene:
     }
     low, high = box(list(tracks.values()))
     scene = Scene(
-        mechanism=mechanism, tracks=tracks, turns=turns, travels=travels, low=low, high=high, factor=factor
+        mechanism=mechanism,
+        tracks=tracks,
+        turns=turns,
+        travels=travels,
+        low=low,
+        high=high,
+        factor=factor,
+        cams=driving_cams(mechanism, dataset, factor),
     )
     lines = [scene.guide_line(guide, slice(None)) for guide in mechanism.guides if guide.on != "frame"]
     ends = [end for line in lines if line is not None for end in line]
     rims = [disc.outline for sample in range(samples) for _link, disc in pitch_circles(scene, sample)]
-    low, high = box([*tracks.values(), *ends, *reaches(scene), *rims])
+    cams = [cam.reach() for cam in scene.cams]
+    low, high = box([*tracks.values(), *ends, *reaches(scene), *rims, *cams])
     return replace(scene, low=low, high=high)

@@ -13,6 +13,7 @@ from centrode.present.sheet import Sheet
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Guide, Link
+    from centrode.present.cams.driving import DrivingCam
 
 Array = NDArray[np.float64]
 Samples = int | slice
@@ -30,11 +31,14 @@ class Scene(Sheet):
         The least and the greatest displacement along the guide.
     factor : float
         Display units of length in a metre.
+    cams : tuple of DrivingCam
+        The cams that drive it.
     """
 
     turns: Mapping[str, Array]
     travels: Mapping[str, Array]
     factor: float
+    cams: tuple[DrivingCam, ...] = ()
 
     def carried(self, link: str, local: Sequence[float], sample: Samples) -> Array | None:
         """Where a place in a link's own axes is at a sample or samples; nothing if the link has no position."""

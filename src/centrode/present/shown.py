@@ -15,7 +15,16 @@ if TYPE_CHECKING:
     from centrode.model.mechanism import Display, Mechanism
 
 MATHEMATICAL = str.maketrans(
-    {"φ": r"\varphi ", "θ": r"\theta ", "ω": r"\omega ", "ε": r"\varepsilon ", "′": "'", "″": "''"}
+    {
+        "φ": r"\varphi ",
+        "θ": r"\theta ",
+        "ω": r"\omega ",
+        "ε": r"\varepsilon ",
+        "′": "'",
+        "″": "''",
+        "‴": "'''",
+        "⁗": "''''",
+    }
 )
 
 

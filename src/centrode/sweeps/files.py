@@ -10,10 +10,10 @@ from typing import Any
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.examples.loading import load
-from centrode.model.files import toml_tables
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import nearest, shown
 from centrode.model.reading import read_file
+from centrode.model.toml_text import toml_tables
 from centrode.sweeps import limits
 from centrode.sweeps.asked import Reduce
 from centrode.sweeps.designs import Grid, grid

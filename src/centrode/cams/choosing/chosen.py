@@ -10,6 +10,7 @@ from centrode.cams.choosing.families import bounds_of, chosen_cam, family_of, st
 from centrode.cams.choosing.proving import Proof, prove
 from centrode.cams.choosing.trade_off import POINTS, TradeOff, trade_off
 from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam, curved
 
 MORE = 3
 """So often the search goes on from a neighbour that is better, as there are where a law is not smooth."""
@@ -44,7 +45,7 @@ class CamChoice:
 
 
 def choose_cam(
-    cam: Cam,
+    cam: AnyCam,
     points: int = POINTS,
     *,
     front: bool = True,
@@ -73,6 +74,7 @@ def choose_cam(
     InputError
         Nothing to choose, or ranges that hold no design.
     """
+    cam = curved(cam)
     family = family_of(cam)
     assert cam.choose is not None
     start, best, bounds = start_of(cam, family), cam.choose.minimise, bounds_of(cam)

@@ -20,12 +20,12 @@ from centrode.cams.sampled import angles_of
 from centrode.errors import InputError
 from centrode.kinematics.dataset import named
 from centrode.locale import _
-from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam, curved
 
 Array = NDArray[np.float64]
 
 
-def cam_contact(cam: Cam, samples: int | None = None) -> xr.Dataset:
+def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
     """Contact of roller and cam over the working arc.
 
     Parameters
@@ -48,6 +48,7 @@ def cam_contact(cam: Cam, samples: int | None = None) -> xr.Dataset:
     InputError
         No contact, a curvature that no cam has; a strip wider than the roller, for which the formulas do not hold.
     """
+    cam = curved(cam)
     contact = contact_of(cam)
     if contact is None:
         what = _("the contact stress needs the force, the width and the materials")

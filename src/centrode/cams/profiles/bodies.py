@@ -29,6 +29,7 @@ from centrode.cams.searching import roots
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam, curved
 from centrode.model.cams.parts import Return
 
 LEAST_BEND = 0.1
@@ -123,7 +124,7 @@ class CamBody:
         return float(max(jumps, default=0.0))
 
 
-def cam_body(cam: Cam) -> CamBody:
+def cam_body(cam: AnyCam) -> CamBody:
     """The cam of a description: closed by its return arc, open where it has neither that nor a mover.
 
     Raises
@@ -133,7 +134,7 @@ def cam_body(cam: Cam) -> CamBody:
     MotionError
         The follower stalls on the working arc; no return arc within the bounds was found.
     """
-    return _body(cam)
+    return _body(curved(cam))
 
 
 @functools.lru_cache(maxsize=16)

@@ -17,7 +17,14 @@ from centrode.cams.profiles.equidistants import Side, equidistant, signed
 from centrode.cams.wheel.shoe import Shoe
 
 Layer: TypeAlias = Literal[
-    "profile-working", "profile-return", "groove-working", "groove-return", "path", "shoe"
+    "profile-working",
+    "profile-return",
+    "groove-working",
+    "groove-return",
+    "path",
+    "shoe",
+    "profile",
+    "cutter",
 ]
 LEAST_PIECE = 8
 """Least number of spaces between points of a piece."""
@@ -35,12 +42,15 @@ class Outline:
         Growing; about a corner by what the normal has turned.
     places, slopes : (n, 2) [m], [m/rad]
         Points and derivatives by phi.
+    normals : (n, 2), optional
+        Unit vectors out of the cam, where they are known.
     """
 
     layer: Layer
     phi: Array
     places: Array
     slopes: Array
+    normals: Array | None = None
 
 
 def cam_outlines(body: CamBody, samples: int, *, groove: bool = False) -> list[Outline]:

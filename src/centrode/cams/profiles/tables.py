@@ -8,8 +8,11 @@ import numpy as np
 import xarray as xr
 
 from centrode.cams.closed.arcs import ClosedPath
+from centrode.cams.followers.described import follower_cam
+from centrode.cams.followers.tabled import follower_profile
 from centrode.cams.frames import Array, frames
 from centrode.cams.profiles.bodies import CamBody, cam_body
+from centrode.cams.sampled import angles_of
 from centrode.cams.wheel.shoe import Shoe
 from centrode.cams.wheel.walking import Mover, mover
 from centrode.errors import InputError
@@ -17,6 +20,8 @@ from centrode.kinematics.dataset import named
 from centrode.locale import _
 from centrode.model import limits
 from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam, curved
+from centrode.model.cams.plate import PlateCam
 
 DEFAULT_SAMPLES = 361
 AXES = ["x", "y"]
@@ -24,21 +29,23 @@ SAME = 1e-9
 """Angles [rad] that are nearer than this are one."""
 
 
-def cam_profile(cam: Cam, samples: int | None = None, *, groove: bool = False) -> xr.Dataset:
+def cam_profile(cam: AnyCam, samples: int | None = None, *, groove: bool = False) -> xr.Dataset:
     """The closed profile of a cam.
 
     Parameters
     ----------
+    cam : Cam or PlateCam
     samples : int
         Evenly spaced over the turn, both ends included, joints added; the description's own number, else 361.
     groove : bool
-        Also the outer wall of a groove.
+        Also the outer wall of a groove; not of a cam that is given by its follower's lift.
 
     Returns
     -------
     Dataset
         Over `sample`: `carrier_angle` phi, which `part` ("working", "return"), the path of the roller's centre and
-        the profile in the cam's axes and in polar form, pressure angle, curvatures (docs: cam-profiles).
+        the profile in the cam's axes and in polar form, pressure angle, curvatures (docs: cam-profiles). Of a cam that
+        is given by its follower's lift: over `cam_angle` (docs: cam-follower-profiles).
 
     Raises
     ------
@@ -46,6 +53,12 @@ def cam_profile(cam: Cam, samples: int | None = None, *, groove: bool = False) -
         As the description: no roller, one too large for a hollow of the groove, bounds that cannot be kept, a
         path that does not close.
     """
+    if isinstance(cam, PlateCam):
+        if groove:
+            what = _("a groove is made for a cam that is given by its roller's path")
+            raise InputError("groove", what, _("leave it out"))
+        tool = None if cam.tool is None else cam.tool.radius
+        return follower_profile(follower_cam(cam), angles_of(cam, samples), tool)
     return profile_dataset(cam_body(cam), count_of(cam, samples), groove=groove)
 
 
@@ -125,7 +138,7 @@ def shoe_dataset(wheel: Mover, samples: int) -> xr.Dataset:
     return xr.Dataset(variables, coords={"axis": AXES}, attrs={"hub_height": wheel.height})
 
 
-def walking_wheel(cam: Cam) -> Mover:
+def walking_wheel(cam: AnyCam) -> Mover:
     """The walking wheel of a description.
 
     Raises
@@ -135,7 +148,7 @@ def walking_wheel(cam: Cam) -> Mover:
     MotionError
         A shoe with a cusp; no return arc within the bounds.
     """
-    return wheel_of(cam, cam_body(cam))
+    return wheel_of(curved(cam), cam_body(cam))
 
 
 def wheel_of(cam: Cam, body: CamBody) -> Mover:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
 
 from pydantic import Field, model_validator
 
@@ -22,10 +22,12 @@ from centrode.model.cams.parts import (
     Start,
 )
 from centrode.model.cams.values import CONSTANT, POINT
-from centrode.model.document import part_tables
 from centrode.model.part import Part
 from centrode.model.problems import Problem, Problems, nearest, shown
+from centrode.model.tabled import part_tables
 from centrode.model.values import Text, choice
+
+SomeCam = TypeVar("SomeCam", bound=Part)
 
 
 class Cam(Part):
@@ -139,7 +141,7 @@ def _has(cam: Cam, name: str) -> bool:
     return getattr(getattr(cam, table), key, None) is not None
 
 
-def varied(cam: Cam, values: Mapping[str, float]) -> Cam:
+def varied(cam: SomeCam, values: Mapping[str, float]) -> SomeCam:
     """The cam with other numbers [SI] at paths such as "curvature.k0"; InputError for a path it does not have."""
     tables = part_tables(cam)
     for path, value in values.items():
@@ -152,7 +154,7 @@ def varied(cam: Cam, values: Mapping[str, float]) -> Cam:
             tables[table].setdefault("constants", {})[path.rpartition(".")[2]] = value
         else:
             tables[table][key] = value
-    return Cam(**tables)
+    return type(cam)(**tables)
 
 
 def _put_point(curvature: dict[str, Any], path: str, value: float) -> None:

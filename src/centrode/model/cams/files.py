@@ -4,25 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import tomli_w
 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
-from centrode.model.document import part_tables
-from centrode.model.files import described, in_short_lines, is_cam, toml_tables
+from centrode.model.cams.plate import PlateCam
+from centrode.model.files import in_short_lines
 from centrode.model.reading import read_file
+from centrode.model.tabled import part_tables
+from centrode.model.toml_text import described, is_cam, toml_tables
+
+AnyCam: TypeAlias = Cam | PlateCam
+"""A cam by the curvature of its roller's path, or by the lift of its follower."""
+
+_OF_CURVATURE = ("curvature", "start", "range")
+_OF_FOLLOWER = ("follower", "segments")
 
 
-def read_cam(path: str | Path) -> Cam:
+def read_cam(path: str | Path) -> AnyCam:
     """The cam described in a TOML file; raises InputError that says where it is wrong."""
     path = Path(path)
     return parse_cam(read_file(path), path.name, path.parent)
 
 
-def parse_cam(text: str, where: str = "", folder: Path | None = None) -> Cam:
+def parse_cam(text: str, where: str = "", folder: Path | None = None) -> AnyCam:
     """The cam described in a text of TOML.
 
     Parameters
@@ -40,16 +48,42 @@ def parse_cam(text: str, where: str = "", folder: Path | None = None) -> Cam:
     return cam_from(toml_tables(text, where), where, folder)
 
 
-def cam_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = None) -> Cam:
+def cam_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = None) -> AnyCam:
     """The cam described by plain dicts and lists as a file's; raises InputError that starts with `where`."""
     if not is_cam(mapping) and "links" in mapping:
         what = _("this describes a linkage, not a cam")
         raise InputError(
             where, what, _("compute it with: centrode run; in Python read it with read_mechanism")
         )
-    return described(Cam, mapping, where, folder)
+    given = [key for key in _OF_FOLLOWER if key in mapping]
+    if not given:
+        return described(Cam, mapping, where, folder)
+    other = [key for key in _OF_CURVATURE if key in mapping]
+    if other:
+        what = _("{one} and {other} do not go together: a cam has a curvature law, or a follower's lift")
+        told = what.format(
+            one=f"[{other[0]}]", other="[follower]" if given[0] == "follower" else "[[segments]]"
+        )
+        raise InputError(where, told, _("keep one of them"))
+    return described(PlateCam, mapping, where, folder)
 
 
-def cam_text(cam: Cam) -> str:
+def curved(cam: AnyCam) -> Cam:
+    """The cam itself if it is one by a curvature law; InputError if a follower's lift gives it."""
+    if isinstance(cam, Cam):
+        return cam
+    what = _("this cam is given by its follower's lift and has no curvature law")
+    raise InputError("", what, _("its lift is that of follower_motion"))
+
+
+def with_follower(cam: AnyCam) -> PlateCam:
+    """The cam itself if a follower's lift gives it; InputError if it is one by a curvature law."""
+    if isinstance(cam, PlateCam):
+        return cam
+    what = _("this cam is given by a curvature law and has no follower's lift")
+    raise InputError("", what, _("write [follower] and [[segments]]"))
+
+
+def cam_text(cam: AnyCam) -> str:
     """The cam as TOML in SI, without defaults; `parse_cam` gives exactly it back."""
     return in_short_lines(tomli_w.dumps(part_tables(cam)))

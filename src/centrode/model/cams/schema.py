@@ -5,6 +5,7 @@ from __future__ import annotations
 from centrode.model import limits
 from centrode.model.asked import Display
 from centrode.model.cams.description import Cam
+from centrode.model.cams.follower_schema import PLATE_PROPERTIES
 from centrode.model.cams.parts import (
     LAWS,
     LEAST_LEGS,
@@ -23,6 +24,7 @@ from centrode.model.cams.parts import (
     Roller,
     Start,
 )
+from centrode.model.cams.plate import PlateCam
 from centrode.model.cams.values import CONSTANT, LETTER, PARAMETERS, POINT
 from centrode.model.part import Part
 from centrode.model.schema import (
@@ -119,5 +121,21 @@ CAM_PROPERTIES: dict[type[Part], Schema] = {
 
 
 def cam_schema() -> Schema:
-    """JSON Schema (draft 2020-12) of a cam's file; what parts say about each other is not in it."""
-    return schema_of("centrode cam", Cam, CAM_PROPERTIES)
+    """JSON Schema (draft 2020-12) of a cam's file; what parts say about each other is not in it.
+
+    A file is that of a cam by a curvature law, or of one by its follower's lift.
+    """
+    curved, plate = (
+        schema_of("centrode cam", Cam, CAM_PROPERTIES),
+        schema_of("", PlateCam, PLATE_PROPERTIES),
+    )
+    words = ("$schema", "title")
+    kinds = {
+        name: {key: one for key, one in whole.items() if key not in (*words, "$defs")}
+        for name, whole in (("Cam", curved), ("PlateCam", plate))
+    }
+    return {
+        **{word: curved[word] for word in words},
+        "anyOf": [reference_to(Cam), reference_to(PlateCam)],
+        "$defs": {**curved["$defs"], **plate["$defs"], **kinds},
+    }

@@ -8,20 +8,24 @@ from typing import Literal, TypeAlias, overload
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
-from centrode.model.cams.files import parse_cam, read_cam
+from centrode.model.cams.files import AnyCam, parse_cam, read_cam
+from centrode.model.cams.plate import PlateCam
 from centrode.model.examples import example_names, example_text
 from centrode.model.files import parse_mechanism, read_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import likely, shown
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
+PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]
 
 
 @overload
 def example(name: CamName) -> Cam: ...  # type: ignore[overload-overlap]
 @overload
+def example(name: PlateName) -> PlateCam: ...  # type: ignore[overload-overlap]
+@overload
 def example(name: str) -> Mechanism: ...
-def example(name: str) -> Mechanism | Cam:
+def example(name: str) -> Mechanism | Cam | PlateCam:
     """The built-in mechanism or cam of a name; InputError if there is none."""
     if name in example_names("cam"):
         return parse_cam(example_text(name), f"{name}.toml")
@@ -40,7 +44,7 @@ def load(file_or_example: str | Path) -> Mechanism:
     return parse_mechanism(example_text(name), f"{name}.toml")
 
 
-def load_cam(file_or_example: str | Path) -> Cam:
+def load_cam(file_or_example: str | Path) -> AnyCam:
     """The cam in a TOML file, or the built-in one of that name; a file goes before an example.
 
     Raises InputError if there is neither, or the file is no description of a cam.

@@ -9,21 +9,26 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.figure import Figure
 
 from centrode.locale import _
+from centrode.present.cams.plate_drawing import follower_cam_figure
 from centrode.present.cams.profile_drawing import profile_figure
 from centrode.present.cams.walking_drawing import walking_figure
 
 if TYPE_CHECKING:
-    from centrode.model.cams.description import Cam
+    from centrode.model.cams.files import AnyCam
 
 INSTANTS = 6
 """Instants over a step, where the description names none."""
 
 
-def cam_body_figures(cam: Cam, objects: Mapping[str, Any], *, groove: bool = False) -> dict[str, Figure]:
+def cam_body_figures(cam: AnyCam, objects: Mapping[str, Any], *, groove: bool = False) -> dict[str, Figure]:
     """Figures of the cam's profile and of the walking wheel, by name, of what there is."""
     found = {}
     if "body" in objects:
         found["cam-body"] = profile_figure(objects["body"], _(cam.title), cam.display, groove=groove)
+    if "plate" in objects:
+        found["cam-body"] = follower_cam_figure(
+            objects["plate"], objects["plate_outlines"], _(cam.title), cam.display
+        )
     if "wheel" in objects:
         wheel = objects["wheel"]
         pitch = math.tau / wheel.legs

@@ -19,7 +19,7 @@ from centrode.present.style import DASHES, INK, PALETTE, Decimals, house_style
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.cams.description import Cam
+    from centrode.model.cams.files import AnyCam
 
 Array = NDArray[np.float64]
 HIGH, LOW = 3.6, 2.0
@@ -27,7 +27,7 @@ HIGH, LOW = 3.6, 2.0
 MEGA = 1e-6
 
 
-def contact_figure(cam: Cam, contact: xarray.Dataset) -> Figure:
+def contact_figure(cam: AnyCam, contact: xarray.Dataset) -> Figure:
     """Stress by both formulas with its greatest value, shear, half width and depth of the strip.
 
     Parameters

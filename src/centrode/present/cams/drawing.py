@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray
@@ -17,13 +17,16 @@ from numpy.typing import NDArray
 from centrode.locale import _
 from centrode.present.abscissa import Abscissa, angle_ticks
 from centrode.present.cams.contact import contact_figure
+from centrode.present.cams.forces import cam_forces_figure
+from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
+from centrode.present.cams.plate_curves import plate_curves_figure
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals, house_style, pens
 from centrode.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    from centrode.model.cams.description import Cam
+    from centrode.model.cams.files import AnyCam
 
 Array = NDArray[np.float64]
 
@@ -41,7 +44,7 @@ ROUNDING = 1e-17
 """Differences [m] below this are not drawn."""
 
 
-def over_carrier(cam: Cam, dataset: xarray.Dataset) -> Abscissa:
+def over_carrier(cam: AnyCam, dataset: xarray.Dataset) -> Abscissa:
     """The carrier's angle, in the unit of the display."""
     factor, unit = shown_as("rad", cam.display)
     phi = dataset["carrier_angle"].to_numpy() * factor
@@ -52,7 +55,7 @@ def over_carrier(cam: Cam, dataset: xarray.Dataset) -> Abscissa:
     return Abscissa(phi[order], order, none, np.zeros(len(phi), dtype=bool), (), label, unit)
 
 
-def cam_curves_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
+def cam_curves_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
     """Radius, pressure angle and curvature of a cam's path (`ct.cam`) over the carrier's angle."""
     with house_style():
         rows = []
@@ -68,7 +71,7 @@ def cam_curves_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
         return figure
 
 
-def _mark_stall(panels: list[Axes], cam: Cam, dataset: xarray.Dataset) -> None:
+def _mark_stall(panels: list[Axes], cam: AnyCam, dataset: xarray.Dataset) -> None:
     stall = float(dataset.attrs["stall"])
     if not math.isfinite(stall):
         return
@@ -81,7 +84,7 @@ def _mark_stall(panels: list[Axes], cam: Cam, dataset: xarray.Dataset) -> None:
     )  # fmt: skip
 
 
-def cam_path_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
+def cam_path_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
     """The path of a cam's roller about its centre, with rays to it and the normals that the pressure angle is from."""
     with house_style():
         factor, unit = shown_as("m", cam.display)
@@ -136,7 +139,7 @@ def _draw_rays(axes: Axes, dataset: xarray.Dataset, factor: float) -> None:
         )
 
 
-def cam_routes_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
+def cam_routes_figure(cam: AnyCam, dataset: xarray.Dataset) -> Figure:
     """What parts the three routes to a cam's path (`ct.cam_routes`), on a logarithmic scale."""
     with house_style():
         factor, unit = shown_as("m", cam.display)
@@ -172,7 +175,7 @@ def cam_routes_figure(cam: Cam, dataset: xarray.Dataset) -> Figure:
         return figure
 
 
-def _mark_circle(axes: Axes, cam: Cam, dataset: xarray.Dataset) -> None:
+def _mark_circle(axes: Axes, cam: AnyCam, dataset: xarray.Dataset) -> None:
     """Where the series ends to converge."""
     factor, _unit = shown_as("rad", cam.display)
     radius = float(dataset.attrs["radius_of_convergence"]) * factor
@@ -187,19 +190,23 @@ def _mark_circle(axes: Axes, cam: Cam, dataset: xarray.Dataset) -> None:
             )  # fmt: skip
 
 
-CAM_FIGURES: Mapping[str, tuple[str, Callable[[Cam, xarray.Dataset], Figure]]] = {
+CAM_FIGURES: Mapping[str, tuple[str, Callable[[Any, xarray.Dataset], Figure]]] = {
     "cam-path": ("cam-path", cam_path_figure),
     "cam-curves": ("cam-path", cam_curves_figure),
     "cam-routes": ("cam-routes", cam_routes_figure),
     "cam-contact": ("cam-contact", contact_figure),
+    "cam-forces": ("cam-forces", cam_forces_figure),
+    "cam-motion": ("cam-motion", cam_motion_figure),
+    "cam-curvature": ("cam-profile", plate_curves_figure),
+    "cam-laws": ("cam-laws", lambda cam, dataset: laws_figure(dataset, _(cam.title))),
 }
 """Figures of a cam's results: name of the file -> name of the dataset, and what draws it."""
 
 
-def cam_figures(cam: Cam, datasets: Mapping[str, xarray.Dataset]) -> dict[str, Figure]:
+def cam_figures(cam: AnyCam, datasets: Mapping[str, xarray.Dataset]) -> dict[str, Figure]:
     """Figures of a cam by name, of those datasets that are there."""
     return {
         name: draw(cam, datasets[source])
         for name, (source, draw) in CAM_FIGURES.items()
-        if source in datasets
+        if source in datasets and (name != "cam-curvature" or "segments" in type(cam).model_fields)
     }

@@ -12,21 +12,21 @@ from centrode.present.cams.outline_dxf import write_outlines_dxf
 from centrode.present.cams.outline_svg import write_outlines_svg
 
 if TYPE_CHECKING:
-    from centrode.model.cams.description import Cam
+    from centrode.model.cams.files import AnyCam
 
 SAMPLES = 720
 """Spaces between the points of an outline over a turn."""
 
 
 def write_cam_outlines(
-    cam: Cam, objects: Mapping[str, Any], folder: Path, *, groove: bool = False, dxf: bool = True
+    cam: AnyCam, objects: Mapping[str, Any], folder: Path, *, groove: bool = False, dxf: bool = True
 ) -> None:
     """Write the profiles of a cam and of its shoe as SVG and DXF into a folder.
 
     Parameters
     ----------
     objects : mapping
-        `CamPart.objects` of all parts: "body" and "wheel" are written where they are there.
+        `CamPart.objects` of all parts: "body", "wheel" and "plate_outlines" are written where they are there.
     groove : bool
         Also the outer wall.
     dxf : bool
@@ -37,6 +37,8 @@ def write_cam_outlines(
         found["cam-profile"] = cam_outlines(objects["body"], SAMPLES, groove=groove)
     if "wheel" in objects:
         found["shoe-profile"] = shoe_outlines(objects["wheel"].shoe, SAMPLES // 4)
+    if "plate_outlines" in objects:
+        found["cam-profile"] = objects["plate_outlines"]
     title = _(cam.title)
     for name, outlines in found.items():
         write_outlines_svg(outlines, folder / f"{name}.svg", title)

@@ -38,6 +38,8 @@ BLUE, VERMILION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#8A8A8A"
 
 STROKES: Mapping[str, Stroke] = {
     "path": Stroke(GREY, 0.25, (4.0, 1.0, 0.6, 1.0), 8),
+    "cutter": Stroke(VERMILION, 0.25, (3.0, 1.2), 1),
+    "profile": Stroke(BLUE, 0.5, (), 5),
     "profile-working": Stroke(BLUE, 0.5, (), 5),
     "profile-return": Stroke(VERMILION, 0.5, (3.0, 1.2), 1),
     "groove-working": Stroke(BLUE, 0.35, (), 4),

@@ -34,6 +34,8 @@ MOST_ROLLERS = 12
 ROOM = 0.06
 LAYERS = {
     "path": mark("path of the roller's centre"),
+    "profile": mark("profile of the cam"),
+    "cutter": mark("path of the cutter's centre"),
     "profile-working": mark("profile, working arc"),
     "profile-return": mark("profile, return arc"),
     "groove-working": mark("outer wall, working arc"),

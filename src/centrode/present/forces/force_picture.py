@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.board import round_scale
 from centrode.locale import _
+from centrode.present.cams.driving_drawing import draw_cams
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, write_head
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
 from centrode.present.forces.force_signs import moment_arc
@@ -51,6 +52,7 @@ def force_page(mechanism: Mechanism, reactions: xarray.Dataset, motion: xarray.D
     axes = view.axes(page)
     links = pens(mechanism.link_names)
     draw_frame(axes, scene, sample)
+    draw_cams(axes, scene, sample)
     draw_links(axes, scene, sample, links)
     draw_hinges(axes, scene, sample, links)
     page.avoid((view.mm(a), view.mm(b)) for a, b in lines(scene, sample))

@@ -11,9 +11,15 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam
+from centrode.model.cams.plate import PlateCam
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
+from centrode.study.cams.forces import forces_part
+from centrode.study.cams.laws import laws_part
+from centrode.study.cams.motion import motion_part
 from centrode.study.cams.path import path_part
+from centrode.study.cams.plate import plate_part
 from centrode.study.cams.profile import profile_part
 from centrode.study.cams.routes import routes_part
 from centrode.study.cams.said import Asked, CamPart
@@ -27,6 +33,12 @@ class MakesPart(Protocol):
     def __call__(self, cam: Cam, asked: Asked) -> CamPart | None: ...
 
 
+class MakesFollowerPart(Protocol):
+    """The same of a cam that is given by its follower's lift."""
+
+    def __call__(self, cam: PlateCam, asked: Asked) -> CamPart | None: ...
+
+
 PARTS: Mapping[str, MakesPart] = {
     "path": path_part,
     "routes": routes_part,
@@ -37,12 +49,20 @@ PARTS: Mapping[str, MakesPart] = {
 }
 """Parts by name, in the order in which they are computed and shown."""
 
+FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
+    "motion": motion_part,
+    "laws": laws_part,
+    "profile": plate_part,
+    "forces": forces_part,
+}
+"""The same of a cam that is given by its follower's lift."""
+
 
 @dataclass(frozen=True)
 class CamResults:
     """Everything about a cam: its parts by name."""
 
-    cam: Cam
+    cam: AnyCam
     parts: Mapping[str, CamPart]
 
     @property
@@ -62,32 +82,39 @@ class CamResults:
 
 
 def cam_results(
-    cam: Cam,
+    cam: AnyCam,
     samples: int | None = None,
     terms: int | None = None,
     *,
     groove: bool = False,
     front: bool = False,
+    laws: bool = False,
 ) -> CamResults:
     """Everything about the cam of a description.
 
     Parameters
     ----------
-    cam : Cam
+    cam : Cam or PlateCam
     samples : int
-        Evenly spaced over the range; the description's own number, else 361.
+        Evenly spaced over the range or the turn; the description's own number, else 361.
     terms : int
         Of the power series; the description's own number, else 20.
     groove : bool
         Also the outer wall of a groove that the roller runs in.
     front : bool
         Also the front of best designs where `[choose] trade_off` names a measure; it takes some seconds.
+    laws : bool
+        Also other laws of motion for the first rise of a follower.
 
     Raises
     ------
     InputError
         What `ct.cam` and `ct.cam_routes` refuse.
     """
-    asked = Asked(samples, terms, groove, front)
-    found = {name: make(cam, asked) for name, make in PARTS.items()}
+    asked = Asked(samples, terms, groove, front, laws)
+    found: dict[str, CamPart | None]
+    if isinstance(cam, PlateCam):
+        found = {name: make(cam, asked) for name, make in FOLLOWER_PARTS.items()}
+    else:
+        found = {name: make(cam, asked) for name, make in PARTS.items()}
     return CamResults(cam, {name: part for name, part in found.items() if part is not None})

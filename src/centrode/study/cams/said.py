@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import xarray as xr
 
-from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam
 from centrode.quantities import display_unit
 from centrode.study.scalars import Scalar
 
@@ -18,12 +18,16 @@ Rows: TypeAlias = list[tuple[str, str]]
 
 @dataclass(frozen=True)
 class Asked:
-    """What is asked for besides the description: numbers of samples and of terms of the series, a groove, a front."""
+    """What is asked for besides the description.
+
+    Numbers of samples and of terms of the series, a groove, a front, other laws of motion.
+    """
 
     samples: int | None = None
     terms: int | None = None
     groove: bool = False
     front: bool = False
+    laws: bool = False
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,7 @@ class CamPart:
 class Units:
     """Numbers with their units as a cam's description shows them."""
 
-    cam: Cam
+    cam: AnyCam
 
     def text(self, value: float, unit: str = "m", digits: int = 6) -> str:
         """A number in SI as it is shown, with its unit."""

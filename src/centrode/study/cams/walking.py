@@ -171,4 +171,5 @@ def _scalars(wheel: Mover, proof: Rolling) -> dict[str, Scalar]:
 def _both_sides(at: float, units: Units) -> str:
     """An angle, on both sides where the law is the same there."""
     at = at if abs(at) > LEAST_ANGLE else 0.0
-    return f"±{units.angle(abs(at))}" if units.cam.curvature.symmetric and at else units.angle(at)
+    both = isinstance(units.cam, Cam) and units.cam.curvature.symmetric and at
+    return f"±{units.angle(abs(at))}" if both else units.angle(at)

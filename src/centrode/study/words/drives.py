@@ -26,10 +26,18 @@ DRIVEN = {
     ("cylinder", False): mark("Cylinder {name} is driven: its length follows a given law."),
 }
 
+BY_CAM = {
+    "link": mark("Link {link} is driven by a cam, which turns at a constant {speed}."),
+    "slider": mark("The slider in {point} is driven by a cam, which turns at a constant {speed}."),
+    "guided": mark("Link {link} is driven along its guide by a cam, which turns at a constant {speed}."),
+}
+
 
 def sentence_on_drive(drive: Drive, roles: Roles) -> str:
     """What a drive drives, at a constant speed or by a law."""
     mechanism = roles.mechanism
+    if drive.turning is not None:
+        return _sentence_on_cam(drive, mechanism)
     constant = drive.speed is not None
     angular = drive.kind == "angle" or mechanism.space == "sphere"
     speed = "" if drive.speed is None else _speed(mechanism, abs(drive.speed), angular=angular)
@@ -50,6 +58,16 @@ def sentence_on_drive(drive: Drive, roles: Roles) -> str:
     return _(DRIVEN[kind, constant]).format(
         link=called(link), pivot=pivot, base=called(drive.relative_to), speed=speed
     )
+
+
+def _sentence_on_cam(drive: Drive, mechanism: Mechanism) -> str:
+    """What a cam drives, and how fast it turns."""
+    speed = _speed(mechanism, drive.turning or 0.0, angular=True)
+    if drive.guide is None:
+        return _(BY_CAM["link"]).format(link=called(drive.link or ""), speed=speed)
+    guide = mechanism.guide(drive.guide)
+    kind = "slider" if guide.link is None else "guided"
+    return _(BY_CAM[kind]).format(point=guide.point, link=called(guide.link or ""), speed=speed)
 
 
 def _speed(mechanism: Mechanism, speed: float, *, angular: bool) -> str:

@@ -1,0 +1,228 @@
+"""Segments of a follower's lift over a turn of its cam, as a file gives them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Annotated, Any
+
+from pydantic import Field, PlainValidator, ValidationInfo, field_validator
+
+from centrode import laws
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.part import Part, missing_key
+from centrode.model.problems import Problem, shown
+from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
+from centrode.model.values import choice, entries, positive, si
+
+MOST = 200
+"""Segments of a turn."""
+MOST_RATES = 8
+"""Derivatives that may be given at an end."""
+
+LEAST_ANGLE = 1e-6
+"""Of a segment [rad]: a fifth of a second of arc."""
+MOST_LIFT = 1e4
+"""What a lift may reach [m or rad], between its points too."""
+
+CLOSED = 1e-9
+"""Segments whose angles miss a turn by no more [rad] are taken to fill it: so far angles are written out."""
+
+
+def read_rates(value: object) -> tuple[float, ...]:
+    """Derivatives of the lift by the cam's angle, of first and higher order, in SI."""
+    return tuple(
+        _rate(entry, DRIVEN.get(), order) for order, entry in enumerate(entries(value, MOST_RATES), 1)
+    )
+
+
+def _rate(value: object, kind: str, order: int) -> float:
+    """One of them: a number, or a text such as "5 mm/rad^2"."""
+    if not isinstance(value, str):
+        return si(value, "ratio")
+    try:
+        # A second derivative times the square of an angle is a lift: units of every order are read by that.
+        return si(value.strip() + order * "*rad", kind)
+    except Problem:
+        return plain_rate(value, f"{UNITS[kind]}/rad" + (f"^{order}" if order > 1 else ""))
+
+
+def _read_angle(value: object) -> float:
+    angle = positive(value, "angle")
+    if angle < LEAST_ANGLE:
+        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        raise Problem(what, _("stay above {least:g}").format(least=LEAST_ANGLE))
+    return angle
+
+
+class LiftSegment(Part):
+    """A stretch of a turn, over which the follower rises, falls or dwells.
+
+    Attributes
+    ----------
+    angle : float [rad], positive
+        How far the cam turns meanwhile.
+    start : float [rad] or None
+        "from" in a file: the angle at which it begins, where the one before has to end.
+    to : float [m or rad]
+        Lift at its end; a dwell has none.
+    curve : str
+        A curve by its name, "dwell", "polynomial" or "b-spline".
+    at_start, at_end : tuple of float [m/rad or rad/rad, then by rad^2, ...]
+        Of a polynomial or a B-spline: first, second, ... derivative of the lift there, as far as they are given.
+    through : tuple of (angle [rad], lift [m or rad])
+        Of these: lifts on the way, at angles from the segment's start.
+    degree : int
+        Of a B-spline.
+    """
+
+    angle: Annotated[float, PlainValidator(_read_angle)]
+    start: Annotated[float | None, Field(alias="from")] = None
+    to: float | None = None
+    curve: Annotated[str, choice(*laws.SEGMENT_CURVES)]
+    at_start: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
+    at_end: Annotated[tuple[float, ...], PlainValidator(read_rates)] = ()
+    through: tuple[tuple[float, float], ...] = ()
+    degree: Annotated[int, PlainValidator(read_degree)] | None = None
+
+    @classmethod
+    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
+        """What is wrong with the keys that are given, by the rules of this part."""
+        wrong = super().key_problems(given)
+        curve = given.get("curve")
+        if curve == laws.DWELL and given.get("to") is not None:
+            wrong.append(Problem(_("a dwell stays where it is and has no `to`"), _("take it out")))
+        if curve != laws.DWELL and given.get("to") is None:
+            wrong.append(missing_key("to"))
+        return wrong + foreign_keys(given, ("at_start", "at_end", "through"))
+
+    @field_validator("start", mode="plain")
+    @classmethod
+    def _angle(cls, value: object) -> float | None:
+        return None if value is None else si(value, "angle")
+
+    @field_validator("to", mode="plain")
+    @classmethod
+    def _lift(cls, value: object) -> float | None:
+        return None if value is None else _lift_of(value)
+
+    @field_validator("through", mode="plain")
+    @classmethod
+    def _through(cls, value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...]:
+        return read_through(value, info, "angle", "[angle, lift]")
+
+    @property
+    def law(self) -> laws.Segment:
+        """The segment of the law, over angles instead of times; raises InputError where it makes none."""
+        degree = laws.DEGREE if self.degree is None else self.degree
+        return laws.Segment(self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, degree)
+
+
+def _lift_of(value: object) -> float:
+    lift = si(value, DRIVEN.get())
+    if lift < 0:
+        what = _("the lift is counted from its lowest place and not negative, got {value}")
+        raise Problem(what.format(value=shown(value)), _("let the base circle be that of the lowest place"))
+    return lift
+
+
+def lift_law(segments: Sequence[LiftSegment]) -> laws.SegmentedLaw:
+    """The lift over the angle of the cam [rad], turn after turn; raises InputError where segments make no law."""
+    parts = [segment.law for segment in segments]
+    rest = math.tau - math.fsum(part.time for part in parts[:-1])
+    if abs(rest - parts[-1].time) <= CLOSED:
+        parts[-1] = replace(parts[-1], time=rest)
+    return laws.SegmentedLaw(tuple(parts), repeat=True)
+
+
+def segment_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
+    """What is wrong with segments as the lift of a turn: gaps, overlaps, a lift that does not return."""
+    if not segments:
+        return [Problem(_("no segments are given"), _("write [[segments]] that fill a turn"), ("segments",))]
+    found = _misplaced(segments)
+    end = math.fsum(segment.angle for segment in segments)
+    if not found and end > math.tau + CLOSED:
+        what = _("the segments overlap: together they take {angle:.9g} deg, a turn has 360 deg")
+        repair = _("shorten one by {excess:.6g} deg").format(excess=math.degrees(end - math.tau))
+        found.append(Problem(what.format(angle=math.degrees(end)), repair, ("segments",)))
+    if not found and end < math.tau - CLOSED:
+        what = _("the segments leave a gap: together they take {angle:.9g} deg, a turn has 360 deg")
+        repair = _("add a dwell of {missing:.6g} deg").format(missing=math.degrees(math.tau - end))
+        found.append(Problem(what.format(angle=math.degrees(end)), repair, ("segments",)))
+    lifts = [segment.to for segment in segments if segment.to is not None]
+    if lifts and lifts[-1] != 0:
+        what = _("the lift does not return: a turn begins at 0 and ends at {lift:.9g} {unit}")
+        told = what.format(lift=lifts[-1], unit=UNITS[DRIVEN.get()])
+        found.append(Problem(told, _("let the last segment that moves go to 0"), ("segments",)))
+    if not any(lifts) and not any(_swells(segment) for segment in segments):
+        found.append(Problem(_("nothing moves: no segment lifts the follower"), at=("segments",)))
+    return found or _lawless(segments)
+
+
+def _swells(segment: LiftSegment) -> bool:
+    """Whether a segment that ends where it began is asked to move on its way."""
+    lifts = [lift for _angle, lift in segment.through]
+    return any((*lifts, *segment.at_start, *segment.at_end))
+
+
+def _reached(pieces: Sequence[tuple[float, laws.Piece]]) -> float:
+    """A bound of the lift's size: what the powers of each formula sum up to at its ends."""
+    bounds, start = [], 0.0
+    for end, piece in pieces:
+        reach = max(abs(start - piece.origin), abs(end - piece.origin)) / piece.unit
+        terms = (abs(c) * reach**k for k, c in enumerate(piece.powers, 1))
+        bounds.append(abs(piece.value) + math.fsum(terms) + abs(piece.square))
+        start = end
+    return max(bounds)
+
+
+def _misplaced(segments: Sequence[LiftSegment]) -> list[Problem]:
+    """Segments that say they begin where the one before does not end."""
+    found, end = [], 0.0
+    for number, segment in enumerate(segments):
+        if segment.start is not None and abs(segment.start - end) > CLOSED:
+            what = _("it begins at {start:.9g} deg, but the one before ends at {end:.9g} deg: they overlap")
+            if segment.start > end:
+                what = _("it begins at {start:.9g} deg, but the one before ends at {end:.9g} deg: a gap")
+            if number == 0:
+                what = _("the first segment begins at 0, not at {start:.9g} deg")
+            told = what.format(start=math.degrees(segment.start), end=math.degrees(end))
+            found.append(Problem(told, _("correct its angles, or add a dwell"), ("segments", number)))
+        end += segment.angle
+    return found
+
+
+def _lawless(segments: Sequence[LiftSegment]) -> list[Problem]:
+    """What formulas refuse: points out of order, numbers beyond reach, segments that are lost beside others."""
+    found, before = [], 0.0
+    for number, segment in enumerate(segments):
+        try:
+            _check_formulas(segment, before)
+        except Problem as problem:
+            found.append(Problem(problem.what, problem.repair, ("segments", number)))
+        before = before if segment.to is None else segment.to
+    if not found:
+        try:
+            lift_law(segments)
+        except InputError as error:
+            found.append(Problem(error.what, _("give it more of the turn"), ("segments",)))
+    return found
+
+
+def _check_formulas(segment: LiftSegment, before: float) -> None:
+    """Raise the problem of a segment that has no formulas, or such as run away."""
+    angles = (0.0, *(angle for angle, _lift in segment.through), segment.angle)
+    if not all(one < other for one, other in pairwise(angles)):
+        what = _("the angles of `through` increase and lie inside the segment, counted from its start")
+        raise Problem(what, _("correct them, or the segment's angle"))
+    try:
+        reached = _reached(segment.law.pieces(0.0, before))
+    except InputError as error:
+        raise Problem(error.what, error.repair) from None
+    if not reached <= MOST_LIFT:
+        what = _("the lift runs away: with these conditions it may reach {lift:.3g} {unit}")
+        repair = _("give smaller lifts and rates, or points that lie further apart")
+        raise Problem(what.format(lift=reached, unit=UNITS[DRIVEN.get()]), repair)

@@ -1,0 +1,170 @@
+"""The profile under a follower in words: pressure angle, curvature, undercut, face, cutter."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from centrode.cams.followers.bodies import FollowerCam
+from centrode.cams.followers.contact import Face
+from centrode.cams.followers.cutting import check_cutter
+from centrode.cams.followers.described import bounded, follower_cam, stretches_text
+from centrode.cams.followers.guidance import Oscillating
+from centrode.cams.followers.outlines import follower_outlines
+from centrode.cams.followers.tabled import follower_profile, points_dataset
+from centrode.cams.sampled import angles_of
+from centrode.errors import MotionError
+from centrode.locale import _
+from centrode.model.cams.plate import PlateCam
+from centrode.study.cams.plate_bounds import bounds_told
+from centrode.study.cams.said import Asked, CamPart, Rows, Units
+from centrode.study.scalars import Scalar
+
+
+def plate_part(cam: PlateCam, asked: Asked) -> CamPart | None:
+    """The profile that a follower asks for; nothing where neither a base radius nor bounds are given."""
+    if cam.body.base_radius is None and not bounded(cam):
+        return None
+    heading = _("Profile of the cam")
+    try:
+        body = follower_cam(cam)
+    except MotionError as refusal:
+        told = f"{refusal.what}; {refusal.repair}"
+        return CamPart(heading, [(_("base radius"), _("none"))], {}, failures=(told,))
+    cutter = None if cam.tool is None else cam.tool.radius
+    outlines = follower_outlines(body, cam.study.chord_tolerance, cutter)
+    datasets = {
+        "cam-profile": follower_profile(body, angles_of(cam, asked.samples), cutter),
+        "cam-points": points_dataset(outlines),
+    }
+    units, bounds = Units(cam), bounds_told(cam, body)
+    rows = [
+        *_size(cam, body, units),
+        *_pressure(body, units),
+        *_curvature(body, units),
+        *_undercut(body, units),
+        *_face(body, units),
+        *_cutter(cam, body, units, len(datasets["cam-points"]["sample"])),
+        *bounds.rows,
+    ]
+    return CamPart(
+        heading,
+        rows,
+        _scalars(body) | bounds.scalars,
+        datasets,
+        failures=tuple(bounds.failures),
+        objects={"plate": body, "plate_outlines": outlines},
+    )
+
+
+def _size(cam: PlateCam, body: FollowerCam, units: Units) -> Rows:
+    text = units.text(body.base_radius)
+    if cam.body.base_radius is None:
+        text = _("{radius}, the least that the bounds admit").format(radius=text)
+    return [(_("base radius"), text), (_("greatest radius"), units.text(_greatest(body), digits=5))]
+
+
+def _greatest(body: FollowerCam) -> float:
+    """The greatest polar radius of the profile among 720 places and the joints."""
+    phi = np.concatenate([np.linspace(body.edges[0], body.edges[-1], 721)[:-1], body.edges[:-1]])
+    return float(np.hypot(*body.contact(phi).place.T).max())
+
+
+def _pressure(body: FollowerCam, units: Units) -> Rows:
+    if isinstance(body.touch, Face) and not isinstance(body.guide, Oscillating):
+        return [(_("pressure angle"), _("0 deg: the face is square to its way"))]
+    found = body.pressure
+    text = _("{least} at {at_least} to {greatest} at {at_greatest}").format(
+        least=units.angle(found.least),
+        at_least=units.angle(found.at_least),
+        greatest=units.angle(found.greatest),
+        at_greatest=units.angle(found.at_greatest),
+    )
+    return [(_("pressure angle"), text)]
+
+
+def _curvature(body: FollowerCam, units: Units) -> Rows:
+    (bend, at), (hollow, there) = body.least_bend, body.greatest_cutter
+    rows, label = [], _("radius of curvature of the profile")
+    if math.isfinite(bend):
+        text = _("from {radius} where it is convex, at {at}")
+        rows.append((label, text.format(radius=units.text(bend), at=units.angle(at))))
+        label = ""
+    if 0.0 < hollow < math.inf:
+        text = _("from {radius} where it is hollow, at {at}")
+        rows.append((label, text.format(radius=units.text(hollow), at=units.angle(there))))
+    return rows
+
+
+def _undercut(body: FollowerCam, units: Units) -> Rows:
+    found = body.undercuts
+    told = _("at {stretches} deg").format(stretches=stretches_text(found)) if found else _("none")
+    rows = [(_("undercut"), told)]
+    depth, at = body.overlap
+    if depth and not found:
+        text = _("the roller at {place} overlaps the cam by {depth} across a waist")
+        shown = text.format(place=units.angle(at), depth=units.text(depth, digits=3))
+        rows.append((_("overlap"), shown))
+    most, _where = body.greatest_roller
+    if 0.0 < body.touch.roller < math.inf and 0.0 < most < math.inf:
+        text = _("below {radius} on this path of its centre").format(radius=units.text(most))
+        rows.append((_("greatest roller"), text))
+    return rows
+
+
+def _face(body: FollowerCam, units: Units) -> Rows:
+    """Where the cam touches a flat face, and how wide that is."""
+    if not isinstance(body.touch, Face):
+        return []
+    ends = body.face
+    text = _("{least} to {greatest} from the follower's axis, {width} wide")
+    if isinstance(body.guide, Oscillating):
+        text = _("{least} to {greatest} from the pivot, {width} wide")
+    least, greatest, width = (
+        units.text(one) for one in (ends.least, ends.greatest, ends.greatest - ends.least)
+    )
+    return [(_("contact on the face"), text.format(least=least, greatest=greatest, width=width))]
+
+
+def _cutter(cam: PlateCam, body: FollowerCam, units: Units, points: int) -> Rows:
+    """The tool, and the points for a machine."""
+    rows = []
+    most, _at = body.greatest_cutter
+    if cam.tool is not None:
+        check_cutter(body, cam.tool.radius)
+        text = _("radius {radius}").format(radius=units.text(cam.tool.radius))
+        if math.isfinite(most):
+            text = _("radius {radius}, at most {most}").format(
+                radius=units.text(cam.tool.radius), most=units.text(most)
+            )
+        rows.append((_("cutter"), text))
+    text = _("{count}, chords within {tolerance}")
+    tolerance = units.text(cam.study.chord_tolerance, digits=3)
+    return [*rows, (_("points"), text.format(count=points, tolerance=tolerance))]
+
+
+def _scalars(body: FollowerCam) -> dict[str, Scalar]:
+    """Numbers of the profile; what has no bound is left out."""
+    numbers: dict[str, tuple[float, str]] = {
+        "base_radius": (body.base_radius, "m"),
+        "profile_greatest_radius": (_greatest(body), "m"),
+        "undercuts": (len(body.undercuts), "1"),
+        "overlap": (body.overlap[0], "m"),
+    }
+    steep = body.pressure
+    at, value = max(
+        ((steep.at_least, -steep.least), (steep.at_greatest, steep.greatest)), key=lambda one: one[1]
+    )
+    found = {"greatest_pressure_angle": (value, at, "rad"), "least_bend": (*body.least_bend, "m")}
+    if isinstance(body.touch, Face):
+        numbers |= {"face_from": (body.face.least, "m"), "face_to": (body.face.greatest, "m")}
+    else:
+        found["greatest_roller"] = (*body.greatest_roller, "m")
+        found["greatest_cutter"] = (*body.greatest_cutter, "m")
+    for name, (number, where, unit) in found.items():
+        numbers |= {
+            name: (number, unit),
+            f"{name}_at": (where, "rad") if math.isfinite(number) else (math.inf, ""),
+        }
+    return {f"cam_{name}": Scalar(*one) for name, one in numbers.items() if math.isfinite(one[0])}

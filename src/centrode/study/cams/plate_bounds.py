@@ -1,0 +1,90 @@
+"""What is admissible of a profile under a follower: whether it is kept, the least cam, the best offset, in words."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from centrode.cams.followers.bodies import FollowerCam
+from centrode.cams.followers.described import admissible_of, bounded
+from centrode.cams.followers.layouts import layout_of
+from centrode.cams.followers.margins import exact_margin
+from centrode.cams.followers.sizing import Least, best_offset, least_base_radius
+from centrode.errors import MotionError
+from centrode.locale import _, mark
+from centrode.model.cams.plate import PlateCam
+from centrode.study.cams.said import Rows, Units
+from centrode.study.scalars import Scalar
+
+ROUNDING = 1e-9
+"""Margins that are rounding."""
+DECIDES = {"pressure angle": mark("the pressure angle"), "curvature": mark("the radius of curvature")}
+
+
+@dataclass
+class BoundsTold:
+    """Rows, numbers and failures."""
+
+    rows: Rows = field(default_factory=list)
+    scalars: dict[str, Scalar] = field(default_factory=dict)
+    failures: list[str] = field(default_factory=list)
+
+
+def bounds_told(cam: PlateCam, body: FollowerCam) -> BoundsTold:
+    """What `[bounds]` asks of the profile, the least cam that keeps it, and whether this one does."""
+    told = BoundsTold()
+    if not bounded(cam):
+        return told
+    layout, kept, units = layout_of(cam), admissible_of(cam), Units(cam)
+    told.rows.append((_("admissible"), _admissible(cam, units)))
+    least = None
+    try:
+        least = least_base_radius(layout, body.motion, kept)
+        told.rows.append((_("least base radius"), _decided(least, units)))
+        told.scalars["cam_least_base_radius"] = Scalar(least.base_radius, "m")
+        if layout.kind == "translating":
+            _offset(told, best_offset(layout, body.motion, kept), units, flat=layout.flat)
+    except MotionError as refusal:
+        told.rows.append((_("least base radius"), refusal.what))
+    margin = exact_margin(body, layout, kept)
+    if margin.least < -ROUNDING:
+        text = _("{bound} is not admissible at {at}").format(
+            bound=_(DECIDES[margin.by]), at=units.angle(margin.at)
+        )
+        if least is not None:
+            text += "; " + _("take a base radius from {least} on").format(least=units.text(least.base_radius))
+        told.failures.append(text)
+    return told
+
+
+def _admissible(cam: PlateCam, units: Units) -> str:
+    kept, given = admissible_of(cam), cam.bounds
+    texts = []
+    if given.pressure_angle is not None:
+        texts.append(_("pressure angle up to {angle}").format(angle=units.angle(kept.pressure_angle)))
+    if given.return_pressure_angle is not None:
+        texts.append(_("on the return up to {angle}").format(angle=units.angle(kept.return_angle)))
+    if given.curvature_radius is not None:
+        texts.append(_("radius of curvature from {radius}").format(radius=units.text(kept.bend)))
+    return ", ".join(texts)
+
+
+def _decided(least: Least, units: Units) -> str:
+    return _("{radius}, decided by {bound} at {at}").format(
+        radius=units.text(least.base_radius), bound=_(DECIDES[least.by]), at=units.angle(least.at % math.tau)
+    )
+
+
+def _offset(told: BoundsTold, best: Least, units: Units, *, flat: bool) -> None:
+    """The offset with which the cam may be least, or which halves the contact along a flat face."""
+    text = _("{offset}: base radius from {radius} on")
+    if flat:
+        text = _("{offset}: the face is touched as far on both sides")
+    shown = text.format(
+        offset=units.text(best.offset if abs(best.offset) > ROUNDING * best.base_radius else 0.0),
+        radius=units.text(best.base_radius),
+    )
+    told.rows.append((_("best offset"), shown))
+    told.scalars["cam_best_offset"] = Scalar(best.offset, "m")
+    if not flat:
+        told.scalars["cam_best_base_radius"] = Scalar(best.base_radius, "m")
