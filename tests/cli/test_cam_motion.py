@@ -71,6 +71,12 @@ def test_the_motion_is_printed(centrode: Centrode, cam: Path) -> None:
     assert next(line for line in lines if line[:1] == ["45"])[:3] == ["45", "12.5", "31.831"]
 
 
+def test_the_slope_of_an_angle_is_a_plain_number(centrode: Centrode, folder: Path) -> None:
+    said = centrode("cam", "indexing-cam").rows
+    # 2 times 24 deg over 110 deg.
+    assert said["greatest velocity"].startswith("-0.436364, -392.727 deg/s at 235 deg")
+
+
 def test_laws_are_compared_where_asked(centrode: Centrode, cam: Path) -> None:
     assert "Laws of motion" not in centrode("cam", "cam.toml").out
     done = centrode("cam", "cam.toml", "--laws")

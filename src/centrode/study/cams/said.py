@@ -76,9 +76,9 @@ class Units:
     cam: AnyCam
 
     def text(self, value: float, unit: str = "m", digits: int = 6) -> str:
-        """A number in SI as it is shown, with its unit."""
+        """A number in SI as it is shown, with its unit; a plain number has none."""
         factor, shown = self.shown(unit)
-        return f"{value * factor:.{digits}g} {shown}"
+        return f"{value * factor:.{digits}g}" + ("" if shown == "1" else f" {shown}")
 
     def angle(self, value: float, digits: int = 6) -> str:
         """An angle in degrees, the cam's other unit before it where it has another."""
