@@ -82,23 +82,35 @@ def output_folder(path: Path) -> Iterator[Path]:
 
 def write_file(path: Path, text: str, *, force: bool = False) -> None:
     """Write one UTF-8 file whole or not at all; InputError where it cannot be, or stands already without `force`."""
+    with output_file(path, force=force) as draft:
+        draft.write_text(text, encoding="utf-8", newline="\n")
+
+
+@contextmanager
+def output_file(path: Path, *, force: bool = False) -> Iterator[Path]:
+    """File to write, with the ending of `path`; it takes that place when the block ends, and is gone where it raises.
+
+    Raises InputError at once where `path` cannot be written, or stands already without `force`.
+    """
     with _refusals(path):
         if path.is_dir():
             raise InputError(str(path), _("is a folder"), _("name a file"))
         if path.exists() and not force:
             raise InputError(str(path), _("exists already"), _("say --force to replace it"))
         base = _existing_part(path.parent)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, draft = tempfile.mkstemp(prefix=".centrode-", dir=base)
-        try:
-            with open(handle, "w", encoding="utf-8", newline="\n") as stream:
-                stream.write(text)
-            _share(Path(draft))
+        handle, name = tempfile.mkstemp(prefix=".centrode-", suffix=path.suffix, dir=base)
+        os.close(handle)
+    draft = Path(name)
+    try:
+        yield draft
+        with _refusals(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            _share(draft)
             os.replace(draft, path)
-        except BaseException:
-            with suppress(OSError):
-                os.unlink(draft)
-            raise
+    except BaseException:
+        with suppress(OSError):
+            draft.unlink()
+        raise
 
 
 def _existing_part(path: Path) -> Path:

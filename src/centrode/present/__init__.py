@@ -13,6 +13,9 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.animations.animate import Animation, Pace, animate
+    from centrode.present.animations.given import animate_centrodes, animate_motion, animate_walking
+    from centrode.present.animations.shown import Shown
     from centrode.present.cams.bodies import cam_body_figures
     from centrode.present.cams.choice import choice_figures, trade_off_figure
     from centrode.present.cams.choice_tables import write_choice
@@ -34,11 +37,10 @@ if TYPE_CHECKING:
         write_cam_routes_csv,
         write_cam_tables,
     )
-    from centrode.present.cams.walking_animation import animate_walking
     from centrode.present.cams.walking_drawing import walking_figure
     from centrode.present.centres import centres_figure
     from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
-    from centrode.present.centrodes import animate_centrodes, centrodes_figure
+    from centrode.present.centrodes import centrodes_figure
     from centrode.present.coefficient_tables import write_coefficients_csv
     from centrode.present.curvature import curvature_figure
     from centrode.present.dark import darkened
@@ -60,7 +62,6 @@ if TYPE_CHECKING:
     from centrode.present.instant_drawing import diagram_figures
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
-    from centrode.present.motion_animation import animate_motion
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
@@ -72,6 +73,10 @@ if TYPE_CHECKING:
     from centrode.present.variant_folders import write_variants
 
 __all__ = [
+    "Animation",
+    "Pace",
+    "Shown",
+    "animate",
     "animate_centrodes",
     "animate_motion",
     "balance_figures",
@@ -149,7 +154,10 @@ _attached, __dir__, _names = lazy_loader.attach(
         "cams.tables": ["write_cam_contact_csv", "write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
-        "centrodes": ["animate_centrodes", "centrodes_figure"],
+        "animations.animate": ["Animation", "Pace", "animate"],
+        "animations.given": ["animate_centrodes", "animate_motion", "animate_walking"],
+        "animations.shown": ["Shown"],
+        "centrodes": ["centrodes_figure"],
         "curvature": ["curvature_figure"],
         "dark": ["darkened"],
         "drawing": ["draw_mechanism"],
@@ -177,14 +185,12 @@ _attached, __dir__, _names = lazy_loader.attach(
         "forces.reduction_tables": ["write_reduction_csv"],
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
-        "motion_animation": ["animate_motion"],
         "saving": ["save_figures"],
         "forces.simulation_figures": ["simulation_figures"],
         "sweep_tables": ["sweep_csv"],
         "tables": ["motion_table", "write_motion_csv", "write_motion_netcdf"],
         "transmission_curves": ["transmission_figure"],
         "variant_folders": ["write_variants"],
-        "cams.walking_animation": ["animate_walking"],
         "cams.walking_drawing": ["walking_figure"],
     },
 )

@@ -78,7 +78,9 @@ def steady_offsets(
                 for place in spots((anchors[other] + apart)[None], other, height)[0]
             ]
             near = crowding(distances(tests, segments), 0.75 * height)
-            near += crowding(gaps(tests, others), 0.9 * height) + 2.0 * crowding(gaps(tests, taken), 1.1 * height)
+            near += crowding(gaps(tests, others), 0.9 * height) + 2.0 * crowding(
+                gaps(tests, taken), 1.1 * height
+            )
             cost = cost + near / len(present)
         found[name] = candidates[int(np.argmin(np.round(cost, 6)))]
     return found

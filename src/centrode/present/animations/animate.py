@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from centrode.cams.profiles.bodies import cam_body
 from centrode.cams.profiles.tables import walking_wheel
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model.cams.description import Cam
 from centrode.present.animations.cams import TurningCamLayer, WalkingLayer
-from centrode.present.animations.captions import angle_caption, instant_captions
+from centrode.present.animations.captions import instant_captions, turned_caption
 from centrode.present.animations.encoding import Said, need_video, no_progress, write_gif, write_mp4
 from centrode.present.animations.layers import Layer
 from centrode.present.animations.motions import scene_of_film, statuses_of
@@ -24,6 +22,7 @@ from centrode.present.animations.shown import Shown, check_shown, layers_of
 from centrode.present.animations.stage import Stage
 from centrode.present.animations.timing import SIZE, Timing, kind_of, size_of, timing_of
 from centrode.present.shown import shown_as
+from centrode.study.centres import place_words
 from centrode.study.moving.courses import Course, course_of
 from centrode.study.moving.films import Film, film_of, frame_ways
 
@@ -71,6 +70,8 @@ class Animation:
         The last picture leads to the first in the same sense, or the motion runs there and back.
     notes : tuple of str
         What a reader should know: the loop, samples left out, vectors that are not drawn.
+    left_out : int
+        Samples of the range that are not reached.
     """
 
     path: Path
@@ -79,6 +80,7 @@ class Animation:
     size: tuple[int, int]
     loop: str
     notes: tuple[str, ...] = ()
+    left_out: int = 0
 
     @property
     def seconds(self) -> float:
@@ -100,8 +102,8 @@ def animate(
 ) -> Animation:
     """Write an animation, GIF or MP4 by the ending of its name, that runs on without a jump.
 
-    A drive that turns fully runs round; where the mechanism is limited, or a range is asked for that does not close, the
-    motion runs there and back. What is shown and the scales of vectors stay the same over the whole animation.
+    A drive that turns fully runs round; where the mechanism is limited, or a range is asked for that does not close,
+    the motion runs there and back. View and scales of vectors stay the same over the whole animation.
 
     Parameters
     ----------
@@ -143,8 +145,11 @@ def animate(
     pixels = size_of(size, kind, timing.frames)
     film = film_of(course, timing.frames)
     stage, notes = stage_of(film, shown, pixels, dark=dark)
-    _write(stage, path, timing, said)
-    return Animation(path, timing.frames, timing.per_second, pixels, course.loop, (*_about(course), *notes))
+    write_stage(stage, path, timing, said)
+    notes = [*_about(course), *notes]
+    return Animation(
+        path, timing.frames, timing.per_second, pixels, course.loop, tuple(notes), course.left_out
+    )
 
 
 def stage_of(
@@ -165,10 +170,6 @@ def stage_of(
 
 def write_stage(stage: Stage, path: Path, timing: Timing, said: Said = no_progress) -> None:
     """Write what a stage shows; the ending of the name decides how."""
-    _write(stage, path, timing, said)
-
-
-def _write(stage: Stage, path: Path, timing: Timing, said: Said) -> None:
     if path.suffix.lower() == ".mp4":
         write_mp4(path, stage.pictures(), stage.frames, timing.per_second, said)
     else:
@@ -179,15 +180,14 @@ def _about(course: Course) -> list[str]:
     """How it runs, and which samples are not shown."""
     found = []
     if course.left_out:
-        text = _("{n} of {all} samples are not reached from the initial position and not shown")
-        found.append(text.format(n=course.left_out, all=course.asked))
-    if course.loop == "back":
-        found.append(_("it runs there and back"))
-    elif course.turns > 1:
+        first, last = (place_words(course.mechanism, course.motion, sample) for sample in (0, -1))
+        text = _("it moves from {first} to {last}; {n} of {all} samples are not reached and not shown")
+        found.append(text.format(first=first, last=last, n=course.left_out, all=course.asked))
+    if course.turns > 1:
         found.append(
-            ngettext("{n} turn of the drive in a round", "{n} turns of the drive in a round", course.turns).format(
-                n=course.turns
-            )
+            ngettext(
+                "{n} turn of the drive in a round", "{n} turns of the drive in a round", course.turns
+            ).format(n=course.turns)
         )
     return found
 
@@ -201,7 +201,7 @@ def _animate_cam(
     timing = pace.timing(path.suffix.lower(), 1.0)
     pixels = size_of(size, path.suffix.lower(), timing.frames)
     factor = shown_as("m", cam.display)[0]
-    loop, notes = "round", []
+    loop = "round"
     layer: Layer
     if cam.mover is not None:
         wheel = walking_wheel(cam)
@@ -213,8 +213,7 @@ def _animate_cam(
         loop = "round" if last - first >= math.tau * (1.0 - 1e-9) else "back"
         angles = first + (last - first) * frame_ways("round" if loop == "round" else "back", timing.frames)
         layer = TurningCamLayer(body, angles, factor)
-        notes += [] if loop == "round" else [_("it runs there and back")]
-    caption: Callable[[int], str] = lambda frame: angle_caption(float(angles[frame]), cam)  # noqa: E731
+    caption: Callable[[int], str] = lambda frame: turned_caption(float(angles[frame]), cam.display)  # noqa: E731
     stage = Stage([layer], timing.frames, pixels, _(cam.title), caption, dark=dark)
-    _write(stage, path, timing, said)
-    return Animation(path, timing.frames, timing.per_second, pixels, loop, tuple(notes))
+    write_stage(stage, path, timing, said)
+    return Animation(path, timing.frames, timing.per_second, pixels, loop)

@@ -26,9 +26,7 @@ def arrow_outlines(starts: Array, along: Array, head: float) -> Array:
     neck = length - size
     sides = ((0.0, -SHAFT), (1.0, -SHAFT), (1.0, -BARB), (None, 0.0), (1.0, BARB), (1.0, SHAFT), (0.0, SHAFT))
     corners = [
-        starts
-        + (length if share is None else share * neck)[:, None] * unit
-        + (side * size)[:, None] * across
+        starts + (length if share is None else share * neck)[:, None] * unit + (side * size)[:, None] * across
         for share, side in sides
     ]
     return np.stack(corners, axis=1)

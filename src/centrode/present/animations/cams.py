@@ -54,10 +54,9 @@ class WalkingLayer(Layer):
         left, right = axes.get_xlim()
         hub = self.factor * float(pose.hub[0])
         axes.set_xlim(hub - (right - left) / 2.0, hub + (right - left) / 2.0)
-        for one in draw_wheel(axes, self.wheel, pose, self.factor):
-            one.set_clip_on(True)
+        draw_wheel(axes, self.wheel, pose, self.factor)
 
-    def keys(self) -> Sequence[tuple[Artist, str]]:
+    def entries(self) -> Sequence[tuple[Artist, str]]:
         """What the colours mean."""
         return wheel_keys()
 
@@ -95,8 +94,9 @@ class TurningCamLayer(Layer):
     def ground(self, axes: Axes) -> None:
         """The guide of the stem."""
         for side in (-1.0, 1.0):
-            wall = np.array([[0.45 * side, 0.0], [0.45 * side, 1.0]]) * self.roller + [0.0, self.top - self.roller]
-            signs.ground(axes, *wall, np.array([side, 0.0]), self.view.sign)
+            foot = np.array([0.45 * side * self.roller, self.top - self.roller])
+            away = np.array([side, 0.0])
+            signs.ground(axes, foot, foot + self.roller * np.array([0.0, 1.0]), away, self.view.sign)
 
     def draw(self, axes: Axes, frame: int) -> None:
         """The cam with the path of the roller's centre, the roller, its stem, and the hub."""
@@ -108,6 +108,8 @@ class TurningCamLayer(Layer):
             axes.add_patch(Polygon(shape, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
         axes.plot(*profile.T, color=CAM, linewidth=1.8, zorder=4)
         axes.plot(*path.T, color=MUTED, linewidth=0.9, linestyle=CHAIN, zorder=3)
+        mark = np.stack([np.zeros(2), profile[0]])
+        axes.plot(*mark.T, color=CAM, linewidth=1.0, zorder=3.5)  # by it the turning is seen
         x, y = self.at(self.centres[frame][None], frame)[0]
         axes.plot([x, x], [y, self.top], color=ROLLER, linewidth=2.4, zorder=5)
         axes.add_patch(
@@ -116,7 +118,7 @@ class TurningCamLayer(Layer):
         axes.plot([x], [y], marker="+", color=ROLLER, markersize=6, zorder=7)
         signs.hinge(axes, np.zeros(2), self.view.sign, GROUND)
 
-    def keys(self) -> Sequence[tuple[Artist, str]]:
+    def entries(self) -> Sequence[tuple[Artist, str]]:
         """What the colours mean."""
         return [
             (Line2D([], [], color=CAM, linewidth=1.8), _("cam")),

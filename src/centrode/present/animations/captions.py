@@ -11,7 +11,7 @@ from centrode.present.shown import drive_unit, formula, shown_as
 from centrode.quantities import QUANTITIES, status_word, typeset_unit
 
 if TYPE_CHECKING:
-    from centrode.model.cams.description import Cam
+    from centrode.model.asked import Display
     from centrode.study.moving.films import Film
 
 DIGITS = 4
@@ -40,9 +40,9 @@ def instant_captions(film: Film) -> list[str]:
     return [texts[sample] for sample in film.order]
 
 
-def angle_caption(angle: float, cam: Cam) -> str:
-    """The angle that the carrier of a cam's roller has turned by."""
-    factor, unit = shown_as("rad", cam.display)
+def turned_caption(angle: float, display: Display | None) -> str:
+    """The angle that the carrier of a cam's rollers has turned by."""
+    factor, unit = shown_as("rad", display)
     quantity = QUANTITIES["carrier_angle"]
     return f"{formula(quantity.symbol)} = {_plain(factor * angle, 1 if unit == 'deg' else 3)} {typeset_unit(unit)}"
 

@@ -37,7 +37,9 @@ TOGETHER = 0.3
 class CentresLayer(MotionLayer):
     """Instant centres of pairs of bodies, those that lie in the picture."""
 
-    def __init__(self, film: Film, scene: Scene | Globe, pairs: Sequence[tuple[str, str]] | None = None) -> None:
+    def __init__(
+        self, film: Film, scene: Scene | Globe, pairs: Sequence[tuple[str, str]] | None = None
+    ) -> None:
         super().__init__(film, scene)
         mechanism = film.mechanism
         self.bodies = (FRAME, *mechanism.link_names, *sliders_of(mechanism))
@@ -61,7 +63,7 @@ class CentresLayer(MotionLayer):
         far = FAR * float(np.max(high - low))
         places = self.places.reshape(-1, 2)
         with np.errstate(invalid="ignore"):
-            return places[((places > low - far) & (places < high + far)).all(axis=1)]
+            return np.asarray(places[((places > low - far) & (places < high + far)).all(axis=1)])
 
     def draw(self, axes: Axes, frame: int) -> None:
         """A diamond in each, and its name beside it; those in one place share a text."""
@@ -91,7 +93,7 @@ class CentresLayer(MotionLayer):
         first, second = sorted((self.bodies.index(name) for name in pair), reverse=True)
         return subscripted((first, second), len(self.bodies))
 
-    def keys(self) -> Sequence[tuple[Artist, str]]:
+    def entries(self) -> Sequence[tuple[Artist, str]]:
         """The bodies by number."""
         shown = {name for pair in self.pairs for name in pair}
         links = pens(self.film.mechanism.link_names)

@@ -63,7 +63,7 @@ class CentrodesLayer(MotionLayer):
         looks = np.unique(np.linspace(0, self.count - 1, LOOKS).astype(int)).tolist()
         places = np.concatenate([self.placed(side, look) for side in (0, 1) for look in looks])
         with np.errstate(invalid="ignore"):
-            return places[((places > low - far) & (places < high + far)).all(axis=1)]
+            return np.asarray(places[((places > low - far) & (places < high + far)).all(axis=1)])
 
     def placed(self, side: int, sample: int) -> Array:
         """The fixed (0) or the moving curve (1) as it lies at a sample; NaN where its body has no position."""
@@ -71,7 +71,7 @@ class CentrodesLayer(MotionLayer):
 
     def touching(self, sample: int) -> Array:
         """Where one rolls on the other at a sample."""
-        return self._carried(self.bodies[0], self.contact[sample][None], sample)[0]
+        return np.asarray(self._carried(self.bodies[0], self.contact[sample][None], sample)[0])
 
     def ground(self, axes: Axes) -> None:
         """The curve of the frame stands still."""
@@ -91,7 +91,7 @@ class CentrodesLayer(MotionLayer):
             axes.plot(*self.on_paper(place), marker="D", markersize=5.0, color=CENTRE,
                       markeredgecolor="white", alpha=0.45 if behind else 1.0, zorder=9.5)  # fmt: skip
 
-    def keys(self) -> Sequence[tuple[Artist, str]]:
+    def entries(self) -> Sequence[tuple[Artist, str]]:
         """Whose curves they are."""
         texts = (
             (_("fixed polode (of {name})"), _("moving polode (of {name})"))
@@ -99,7 +99,10 @@ class CentrodesLayer(MotionLayer):
             else (_("fixed centrode (of {name})"), _("moving centrode (of {name})"))
         )
         return [
-            (Line2D([], [], color=colour, linewidth=1.6), text.format(name=_("frame") if body == FRAME else body))
+            (
+                Line2D([], [], color=colour, linewidth=1.6),
+                text.format(name=_("frame") if body == FRAME else body),
+            )
             for colour, text, body in zip((FIXED, MOVING), texts, self.bodies, strict=True)
         ]
 

@@ -23,7 +23,18 @@ from centrode.present.animations.stage import Pixels
 Said = Callable[[int, int], None]
 
 _ffmpeg = functools.partial(importlib.import_module, "imageio_ffmpeg")
-X264 = ["-crf", "18", "-preset", "medium", "-movflags", "+faststart", "-fflags", "+bitexact", "-flags:v", "+bitexact"]
+X264 = [
+    "-crf",
+    "18",
+    "-preset",
+    "medium",
+    "-movflags",
+    "+faststart",
+    "-fflags",
+    "+bitexact",
+    "-flags:v",
+    "+bitexact",
+]
 
 
 def no_progress(_done: int, _of: int) -> None:
@@ -84,7 +95,13 @@ def write_gif(
     first = next(images)
     with appearing(path) as draft:
         first.save(
-            draft, format="GIF", save_all=True, append_images=images, duration=list(delays), loop=0, optimize=False
+            draft,
+            format="GIF",
+            save_all=True,
+            append_images=images,
+            duration=list(delays),
+            loop=0,
+            optimize=False,
         )
 
 

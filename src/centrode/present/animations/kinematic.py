@@ -12,7 +12,7 @@ from centrode.present.animations.vectors import VectorLayer, Vectors
 from centrode.present.scene import Scene
 from centrode.present.shown import shown_as
 from centrode.present.sphere.globe import Globe
-from centrode.quantities import QUANTITIES, typeset_unit
+from centrode.quantities import typeset_unit
 
 if TYPE_CHECKING:
     from centrode.study.moving.films import Film

@@ -84,7 +84,7 @@ class Layer:
     def draw(self, axes: Axes, frame: int) -> None:
         """Draw what moves, as it is in a frame."""
 
-    def keys(self) -> Sequence[tuple[Artist, str]]:
+    def entries(self) -> Sequence[tuple[Artist, str]]:
         """Entries of the legend."""
         return ()
 

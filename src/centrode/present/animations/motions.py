@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from centrode.study.moving.films import Film
 
 FAR = 0.5
-"""How far out of the mechanism's box other places are shown, as a part of its extent: in small links nothing is seen."""
+"""How far out of the mechanism's box other places are shown, as a part of its extent: small links show nothing."""
 
 
 class MotionLayer(Layer):

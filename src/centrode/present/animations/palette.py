@@ -62,7 +62,7 @@ class Palette:
 
     def _near(self, levels: NDArray[np.int64]) -> NDArray[np.uint8]:
         apart = ((levels[:, None] - self.chosen[None]) ** 2).sum(axis=2)
-        return np.argmin(apart, axis=1).astype(np.uint8)
+        return np.asarray(np.argmin(apart, axis=1), dtype=np.uint8)
 
 
 def _levels(colours: Packed) -> NDArray[np.int64]:

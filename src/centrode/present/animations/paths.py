@@ -44,7 +44,9 @@ class PathsLayer(MotionLayer):
     def behind(self, name: str, sample: int) -> Array:
         """The path of a point from the beginning of the course to where the point is."""
         track = self.scene.tracks[name]
-        return np.concatenate([track[self.count : self.count + int(self.passed[sample])], track[sample][None]])
+        return np.concatenate(
+            [track[self.count : self.count + int(self.passed[sample])], track[sample][None]]
+        )
 
     def _draw_path(self, axes: Axes, path: Array) -> None:
         if isinstance(self.scene, Globe):

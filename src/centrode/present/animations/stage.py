@@ -96,7 +96,9 @@ class Stage:
 
     def _prepared(self) -> tuple[Figure, Axes, Axes]:
         """The figure with its ground: axes for the layers, and axes in inches for texts."""
-        dpi = PIXELS_PER_INCH * min(self.size[0] / PIXELS_PER_INCH / PAPER[0], self.size[1] / PIXELS_PER_INCH / PAPER[1])
+        dpi = PIXELS_PER_INCH * min(
+            self.size[0] / PIXELS_PER_INCH / PAPER[0], self.size[1] / PIXELS_PER_INCH / PAPER[1]
+        )
         wide, high = self.size[0] / dpi, self.size[1] / dpi
         figure = Figure(figsize=(wide, high), dpi=dpi)
         paper = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -136,7 +138,13 @@ class Stage:
         lines = textwrap.wrap(self.title, int(wide / 0.105))[:2]
         for number, line in enumerate(lines):
             paper.text(
-                wide / 2, high - 0.1 - 0.22 * number, plain(line), ha="center", va="top", fontsize=12, color=INK
+                wide / 2,
+                high - 0.1 - 0.22 * number,
+                plain(line),
+                ha="center",
+                va="top",
+                fontsize=12,
+                color=INK,
             )
         return 0.12 + 0.22 * len(lines) + HEAD
 
@@ -152,7 +160,7 @@ class Stage:
 
     def _write_keys(self, paper: Axes, wide: float) -> float:
         """The legend at the bottom, in as many columns as fit; returns how high it and the scales stand."""
-        keys = [entry for layer in self.layers for entry in layer.keys()]
+        keys = [entry for layer in self.layers for entry in layer.entries()]
         rows = 0
         if keys:
             column = 0.75 + LETTER * max(len(text) for _handle, text in keys)

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from centrode.errors import InputError
@@ -20,7 +21,7 @@ MOST_PIXELS = 1_000_000_000
 """Of all frames together: some minutes of work."""
 LEAST_RATE = 0.1
 FASTEST = {".gif": 50.0, ".mp4": 120.0}
-"""Frames a second that players keep to; GIF counts hundredths of a second, and what is shorter than two is slowed down."""
+"""Frames a second that players keep to: of a GIF they slow down what is shorter than two hundredths of a second."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Timing:
     def delays(self) -> list[int]:
         """How long each frame of a GIF is shown [ms]: whole hundredths of a second that do not drift."""
         ends = [round(100.0 * number / self.per_second) for number in range(self.frames + 1)]
-        return [10 * (after - before) for before, after in zip(ends, ends[1:], strict=False)]
+        return [10 * (after - before) for before, after in pairwise(ends)]
 
 
 def timing_of(
@@ -73,7 +74,9 @@ def timing_of(
     if speed is not None:
         length = period / speed
         if not 0.0 < length < math.inf:
-            raise InputError("speed", _("the motion takes no time of its own"), _("ask for a duration instead"))
+            raise InputError(
+                "speed", _("the motion takes no time of its own"), _("ask for a duration instead")
+            )
     if length is None:
         return Timing(frames or FRAMES, fps or PER_SECOND)
     if frames is not None:
@@ -118,7 +121,7 @@ def _rates(kind: str) -> str:
 
 
 def kind_of(path: Path) -> str:
-    """".gif" or ".mp4", by the ending of a name; raises InputError for another."""
+    """What is written, ".gif" or ".mp4", by the ending of a name; raises InputError for another."""
     kind = path.suffix.lower()
     if kind not in FASTEST:
         raise InputError(str(path), _("an animation is a .gif or a .mp4"), _("name such a file"))

@@ -88,7 +88,7 @@ class VectorLayer(MotionLayer):
         starts, along = self.arrows(sample)
         if not len(starts):
             return
-        colours = [self.vectors.colours[k] for k in np.flatnonzero(self.shown[sample])]
+        colours = [self.vectors.colours[k] for k in np.flatnonzero(self.shown[sample]).tolist()]
         head = ARROW_HEAD * self.scene.extent / self.scene.inches
         outlines = list(arrow_outlines(starts, along, head))
         axes.add_collection(
@@ -139,4 +139,6 @@ def _greatest(sizes: Array) -> float:
 def round_down(value: float) -> float:
     """The greatest of 1, 2 and 5 times powers of ten that is not above a value."""
     power = 10.0 ** math.floor(math.log10(value))
-    return float(f"{max(step for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-12)) * power:.3g}")
+    return float(
+        f"{max(step for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-12)) * power:.3g}"
+    )

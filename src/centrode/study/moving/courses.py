@@ -139,11 +139,13 @@ def _part(whole: npt.NDArray[np.bool_], distance: Array) -> tuple[int, int]:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], whole, [False]]).astype(int)))
     rows = [(int(first), int(last) - 1) for first, last in edges.reshape(-1, 2)]
     start = int(np.argmin(distance))
-    return next((row for row in rows if row[0] <= start <= row[1]), max(rows, key=lambda row: row[1] - row[0]))
+    return next(
+        (row for row in rows if row[0] <= start <= row[1]), max(rows, key=lambda row: row[1] - row[0])
+    )
 
 
 def _swing(prepared: Ready, found: xr.Dataset) -> xr.Dataset:
-    """The same over what lies between the nearest limits on both sides of the initial position, if that is all reached."""
+    """The same between the nearest limits on both sides of the initial position, if all of that is reached."""
     path = prepared.kinematics.path
     way = np.linspace(-math.tau, math.tau, 3) if path.driven[0].drive.kind == "angle" else np.zeros(1)
     reach = solve(prepared, span_at(path, path.initial + way)).branches.reach(0)
