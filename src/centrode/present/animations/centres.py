@@ -15,7 +15,7 @@ from centrode.analysis.instant_centres.centres import instant_centres
 from centrode.locale import _
 from centrode.model.mechanism import FRAME
 from centrode.present.animations.layers import WHOLE, Array
-from centrode.present.animations.motions import FAR, MotionLayer, box_of
+from centrode.present.animations.motions import FAR, MotionLayer
 from centrode.present.scene import Scene
 from centrode.present.sphere.globe import Globe
 from centrode.present.style import pens
@@ -59,7 +59,7 @@ class CentresLayer(MotionLayer):
         """Centres that come not too far out: others leave the picture."""
         if isinstance(self.scene, Globe):
             return WHOLE
-        low, high = box_of(self.scene)
+        low, high = self.box
         far = FAR * float(np.max(high - low))
         places = self.places.reshape(-1, 2)
         with np.errstate(invalid="ignore"):

@@ -15,7 +15,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import FRAME
 from centrode.present.animations.layers import WHOLE, Array
-from centrode.present.animations.motions import FAR, MotionLayer, box_of
+from centrode.present.animations.motions import FAR, MotionLayer
 from centrode.present.scene import Scene
 from centrode.present.sphere.globe import Globe
 from centrode.present.sphere.globe_drawing import draw_line
@@ -58,7 +58,7 @@ class CentrodesLayer(MotionLayer):
         """What of both curves comes not too far out."""
         if isinstance(self.scene, Globe):
             return WHOLE
-        low, high = box_of(self.scene)
+        low, high = self.box
         far = FAR * float(np.max(high - low))
         looks = np.unique(np.linspace(0, self.count - 1, LOOKS).astype(int)).tolist()
         places = np.concatenate([self.placed(side, look) for side in (0, 1) for look in looks])

@@ -5,11 +5,12 @@ from __future__ import annotations
 import functools
 import importlib
 import os
+import subprocess
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,18 +24,12 @@ from centrode.present.animations.stage import Pixels
 Said = Callable[[int, int], None]
 
 _ffmpeg = functools.partial(importlib.import_module, "imageio_ffmpeg")
-X264 = [
-    "-crf",
-    "18",
-    "-preset",
-    "medium",
-    "-movflags",
-    "+faststart",
-    "-fflags",
-    "+bitexact",
-    "-flags:v",
-    "+bitexact",
+INPUT = ["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgba"]
+OUTPUT = [
+    *("-an", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18", "-preset", "medium", "-threads", "1"),
+    *("-movflags", "+faststart", "-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "mp4"),
 ]
+"""What every player shows; one thread and no version, so that the same pictures give the same bytes."""
 
 
 def no_progress(_done: int, _of: int) -> None:
@@ -110,20 +105,33 @@ def write_mp4(
 ) -> None:
     """Write frames as an MP4 (H.264); its sides have to be even numbers of pixels."""
     need_video()
-    ground = next(pictures)
-    high, wide = ground.shape
+    high, wide = next(pictures).shape
     with appearing(path) as draft:
-        writer: Any = _ffmpeg().write_frames(
-            str(draft), (wide, high), pix_fmt_in="rgba", pix_fmt_out="yuv420p", fps=fps, codec="libx264",
-            quality=None, macro_block_size=2, ffmpeg_log_level="error", output_params=X264,
-        )  # fmt: skip
-        writer.send(None)
-        try:
+        size = ["-s", f"{wide}x{high}", "-r", f"{fps:.9g}", "-i", "-"]
+        command = [_ffmpeg().get_ffmpeg_exe(), *INPUT, *size, *OUTPUT, str(draft)]
+        with tempfile.TemporaryFile() as told, _running(command, told) as sink:
             for number, picture in enumerate(pictures, start=1):
-                writer.send(picture.tobytes())
+                sink.write(picture.tobytes())
                 said(number, frames)
-        finally:
-            writer.close()
+
+
+@contextmanager
+def _running(command: Sequence[str], told: IO[bytes]) -> Iterator[IO[bytes]]:
+    """What a program reads; it is waited for, or ended where the block raises."""
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=told)
+    assert process.stdin is not None
+    try:
+        with suppress(BrokenPipeError), process.stdin:
+            yield process.stdin
+        code = process.wait()
+    except BaseException:
+        process.kill()
+        process.wait()
+        raise
+    if code:
+        told.seek(0)
+        reason = told.read(300).decode("utf-8", "replace").strip()
+        raise InputError("", _("ffmpeg refused: {reason}").format(reason=reason), _("write a .gif instead"))
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 
 from centrode.present import signs
 from centrode.present.animations.layers import Array, View
-from centrode.present.animations.motions import MotionLayer, box_of
+from centrode.present.animations.motions import MotionLayer
 from centrode.present.drawing import NAME_POINTS, draw_drive, draw_frame, draw_hinges, draw_links, used_points
 from centrode.present.labels import steady_offsets
 from centrode.present.obstacles import lines
@@ -33,7 +33,7 @@ class LinksLayer(MotionLayer):
 
     def reach(self) -> Array:
         """The whole motion; below hinges of the frame there is their ground."""
-        return box_of(self.scene)
+        return self.box
 
     def stand(self, view: View) -> None:
         """Names get their places once, so that none jumps."""

@@ -28,12 +28,17 @@ class MotionLayer(Layer):
     film : Film
     scene : Scene or Globe
         The frames' positions are its first samples, those of the course follow.
+    count : int
+        Positions of the frames.
+    box : (2, 2)
+        Corners of what the links need over the whole motion.
     """
 
     def __init__(self, film: Film, scene: Scene | Globe) -> None:
         self.film = film
         self.scene = scene
         self.count = len(film.places)
+        self.box = np.array([scene.low, scene.high])
 
     def stand(self, view: View) -> None:
         """Signs are as large as on any drawing."""
@@ -53,11 +58,6 @@ def scene_of_film(film: Film) -> Scene | Globe:
     if film.mechanism.space == "sphere":
         return globe_of(film.mechanism, film.together)
     return scene_of(film.mechanism, film.together)
-
-
-def box_of(scene: Scene | Globe) -> Array:
-    """Corners of what the links need over the whole motion."""
-    return np.array([scene.low, scene.high])
 
 
 def statuses_of(film: Film) -> dict[str, int]:

@@ -14,7 +14,7 @@ from matplotlib.collections import PolyCollection
 from centrode.locale import _, ngettext
 from centrode.present.animations.arrows import arrow_outlines
 from centrode.present.animations.layers import NOTHING, Array, Layer, ScaleArrow
-from centrode.present.animations.motions import MotionLayer, box_of
+from centrode.present.animations.motions import MotionLayer
 from centrode.present.animations.stage import ARROW_HEAD
 from centrode.present.scene import Scene
 from centrode.present.sphere.globe import Globe
@@ -68,7 +68,7 @@ class VectorLayer(MotionLayer):
         with np.errstate(invalid="ignore"):
             self.shown = np.isfinite(sizes) & (sizes <= self.greatest * (1.0 + 1e-12)) & (sizes > 0.0)
             self.left_out = int((sizes > self.greatest * (1.0 + 1e-12)).any(axis=1).sum())
-        extent = float(np.max(np.ptp(box_of(scene), axis=0)))
+        extent = float(np.max(np.ptp(self.box, axis=0)))
         self.scale = LONGEST * extent / self.greatest if self.greatest > 0.0 else 0.0
 
     def arrows(self, sample: int) -> tuple[Array, Array]:
