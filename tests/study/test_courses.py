@@ -110,5 +110,6 @@ def test_frames_of_given_samples(count: int, closed: bool) -> None:
 
 
 def test_what_does_not_move_is_refused() -> None:
-    with pytest.raises(ct.InputError, match="only one sample is reached: nothing moves"):
-        course_of(ct.example("crank-rocker"), start=0.5, stop=0.5, samples=1)
+    for samples in (1, 5):
+        with pytest.raises(ct.InputError, match="only one position is reached: nothing moves"):
+            course_of(ct.example("crank-rocker"), samples, 0.5, 0.5)

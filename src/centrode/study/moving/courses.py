@@ -106,12 +106,13 @@ def course_from(
         raise InputError("", _("no sample has every point in place"), _("ask for another range"))
     first, last = _part(whole, np.abs(found["time"].to_numpy()))
     part = found.isel(sample=slice(first, last + 1))
-    if len(part["sample"]) < 2:
-        raise InputError("", _("only one sample is reached: nothing moves"), _("ask for another range"))
+    places = places_of(mechanism, part)
+    if places[0] == places[-1]:
+        raise InputError("", _("only one position is reached: nothing moves"), _("ask for another range"))
     loop: Loop = "round" if whole.all() and closes(part) else "back"
     asked = asked or len(whole)
     reached = len(part["sample"]) if reached is None else reached
-    return Course(mechanism, part, places_of(mechanism, part), loop, turns, asked - reached, asked)
+    return Course(mechanism, part, places, loop, turns, asked - reached, asked)
 
 
 def usable(found: xr.Dataset) -> npt.NDArray[np.bool_]:
