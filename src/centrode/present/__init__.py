@@ -13,8 +13,9 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
-    from centrode.present.animations.animate import Animation, Pace, animate
+    from centrode.present.animations.animate import animate
     from centrode.present.animations.given import animate_centrodes, animate_motion, animate_walking
+    from centrode.present.animations.paces import Animation, Pace
     from centrode.present.animations.shown import Shown
     from centrode.present.cams.bodies import cam_body_figures
     from centrode.present.cams.choice import choice_figures, trade_off_figure
@@ -154,8 +155,9 @@ _attached, __dir__, _names = lazy_loader.attach(
         "cams.tables": ["write_cam_contact_csv", "write_cam_csv", "write_cam_routes_csv", "write_cam_tables"],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
-        "animations.animate": ["Animation", "Pace", "animate"],
+        "animations.animate": ["animate"],
         "animations.given": ["animate_centrodes", "animate_motion", "animate_walking"],
+        "animations.paces": ["Animation", "Pace"],
         "animations.shown": ["Shown"],
         "centrodes": ["centrodes_figure"],
         "curvature": ["curvature_figure"],

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.errors import Status
-from centrode.present.shown import drive_unit, formula, shown_as
+from centrode.present.shown import drive_unit, shown_as
 from centrode.quantities import QUANTITIES, status_word, typeset_unit
 
 if TYPE_CHECKING:
@@ -33,7 +33,8 @@ def instant_captions(film: Film) -> list[str]:
     greatest = float(np.nanmax(np.abs(values), initial=0.0))
     decimals = max(0, DIGITS - 1 - int(np.floor(np.log10(greatest)))) if greatest > 0.0 else 0
     decimals = min(decimals, 1) if unit == "deg" else min(decimals, 9)
-    texts = [f"{formula(symbol)} = {_plain(value, decimals)} {typeset_unit(unit)}" for value in values]
+    # plain text: mathematical text is laid out for every frame anew, at many times the cost
+    texts = [f"{symbol} = {_plain(value, decimals)} {typeset_unit(unit)}" for value in values]
     for k, status in enumerate(film.motion["status"].to_numpy().tolist()):
         if status != Status.OK:
             texts[k] += f" ({status_word(status)})"
@@ -44,7 +45,7 @@ def turned_caption(angle: float, display: Display | None) -> str:
     """The angle that the carrier of a cam's rollers has turned by."""
     factor, unit = shown_as("rad", display)
     quantity = QUANTITIES["carrier_angle"]
-    return f"{formula(quantity.symbol)} = {_plain(factor * angle, 1 if unit == 'deg' else 3)} {typeset_unit(unit)}"
+    return f"{quantity.symbol} = {_plain(factor * angle, 1 if unit == 'deg' else 3)} {typeset_unit(unit)}"
 
 
 def _plain(value: float, decimals: int) -> str:

@@ -10,12 +10,13 @@ import numpy as np
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.present.animations.animate import stage_of, write_stage
+from centrode.present.animations.animate import stage_of
 from centrode.present.animations.cams import WalkingLayer
 from centrode.present.animations.captions import turned_caption
 from centrode.present.animations.centrodes import CentrodesLayer
 from centrode.present.animations.encoding import Said, no_progress
 from centrode.present.animations.motions import scene_of_film
+from centrode.present.animations.paces import write_stage
 from centrode.present.animations.shown import Shown
 from centrode.present.animations.stage import Stage
 from centrode.present.animations.timing import SIZE, Timing

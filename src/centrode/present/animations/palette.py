@@ -61,7 +61,9 @@ class Palette:
         return np.asarray(self.nearest[np.searchsorted(self.colours, pixels)])
 
     def _near(self, levels: NDArray[np.int64]) -> NDArray[np.uint8]:
-        apart = ((levels[:, None] - self.chosen[None]) ** 2).sum(axis=2)
+        """Numbers of the nearest; squares of whole levels are exact in single precision."""
+        own, chosen = levels.astype(np.float32), self.chosen.astype(np.float32)
+        apart = (chosen**2).sum(axis=1) - 2.0 * own @ chosen.T  # less what all distances of a colour share
         return np.asarray(np.argmin(apart, axis=1), dtype=np.uint8)
 
 

@@ -69,7 +69,7 @@ def timing_of(
     InputError
         Something out of bounds, or given twice.
     """
-    _check(kind, frames, fps, duration, speed)
+    check_timing(kind, frames, fps, duration, speed)
     length = duration
     if speed is not None:
         length = period / speed
@@ -97,9 +97,10 @@ def timing_of(
     return Timing(count, rate)
 
 
-def _check(
+def check_timing(
     kind: str, frames: int | None, fps: float | None, duration: float | None, speed: float | None
 ) -> None:
+    """Refuse what is out of bounds or given twice, whatever the mechanism's own time is."""
     if duration is not None and speed is not None:
         raise InputError("speed", _("duration and speed say the same thing"), _("take one of the two out"))
     if frames is not None and fps is not None and (duration is not None or speed is not None):
