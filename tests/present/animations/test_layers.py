@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 from PIL import Image
 
@@ -20,10 +23,12 @@ from centrode.present.animations.forces import joint_layer, load_layer
 from centrode.present.animations.kinematic import point_vectors
 from centrode.present.animations.layers import Layer, View
 from centrode.present.animations.links import LinksLayer
+from centrode.present.animations.margins import write_entries
 from centrode.present.animations.motions import scene_of_film
 from centrode.present.animations.paths import PathsLayer
 from centrode.present.animations.shown import MAKERS, Shown, layers_of
 from centrode.present.animations.vectors import VectorLayer, round_down, share_scale
+from centrode.present.style import house_style
 from centrode.study.moving.courses import course_from, course_of
 from centrode.study.moving.films import Film, film_from, film_of
 
@@ -306,3 +311,39 @@ def test_given_results_run_round_or_there_and_back(tmp_path: Path) -> None:
         ct.animate_motion(linkage, motion, tmp_path / f"{name}.gif", frames=12)
         with Image.open(tmp_path / f"{name}.gif") as picture:
             assert getattr(picture, "n_frames", 1) == count
+
+
+@pytest.mark.parametrize("size", [(800, 600), (1200, 300), (300, 900)])
+@pytest.mark.parametrize("name", ["six-bar-press", "jansen-leg", "spherical-crank-rocker-rigid"])
+def test_texts_stand_in_the_picture(name: str, size: tuple[int, int]) -> None:
+    """Title, scales and legend lie inside, and the scales and the legend below the drawing."""
+    what = sorted(MAKERS) if name == "six-bar-press" else ["paths", "velocities", "accelerations", "centres"]
+    stage, _notes = stage_of(film(name, 4), Shown(what), size)
+    with house_style():
+        figure, axes, paper = stage._prepared()
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        renderer = canvas.get_renderer()
+        bottom = axes.get_window_extent(renderer).y0
+        title, *scales = paper.texts
+        legend = paper.get_legend()
+        below = [*scales, *([] if legend is None else [legend])]
+        assert len(scales) == sum(len(layer.scales()) for layer in stage.layers)
+        for artist in [title, *below]:
+            box = artist.get_window_extent(renderer)
+            assert box.x0 >= 0.0 and box.x1 <= size[0]
+            assert box.y0 >= 0.0 and box.y1 <= size[1]
+            assert artist is title or box.y1 <= bottom + 1.0  # a pixel
+        for above, lower in pairwise(below):
+            one, other = above.get_window_extent(renderer), lower.get_window_extent(renderer)
+            assert not one.overlaps(other)
+
+
+def test_a_long_legend_is_cut() -> None:
+    paper = Figure(figsize=(8, 6)).add_axes((0, 0, 1, 1))
+    paper.set_xlim(0, 8)
+    paper.set_ylim(0, 6)
+    many = [(Line2D([], []), f"{number} link") for number in range(400)]
+    assert write_entries(paper, many) == pytest.approx(0.08 + 5 * 0.2)
+    assert [text.get_text() for text in paper.get_legend().get_texts()][-2:] == ["22 link", "…"]
+    assert write_entries(paper, [(Line2D([], []), 40 * "W")] * 3) == pytest.approx(0.08 + 3 * 0.2)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -15,11 +14,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from centrode.present.animations.arrows import arrow_outlines
 from centrode.present.animations.layers import NOTHING, Array, Layer, View
+from centrode.present.animations.margins import (
+    height_of_scales,
+    write_caption,
+    write_entries,
+    write_scales,
+    write_title,
+)
 from centrode.present.dark import darkened, recolour
-from centrode.present.shown import plain
-from centrode.present.style import INK, house_style
+from centrode.present.style import house_style
 
 Pixels = NDArray[np.uint32]
 """One frame (height, width), red, green, blue and 255 in the bytes of a number."""
@@ -29,14 +33,6 @@ PAPER = (8.0, 6.0)
 PIXELS_PER_INCH = 100.0
 MARGIN = 0.07
 """Room around what the layers need, as a part of its extent."""
-LINE = 0.2
-"""Height of a line of the legend [inch]."""
-LETTER = 0.082
-"""Mean width of a letter of the legend [inch]."""
-HEAD = 0.3
-"""Height of the caption below the title [inch]."""
-ARROW_HEAD = 0.09
-"""Length of the heads of vectors [inch]."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +73,7 @@ class Stage:
             for frame in range(self.frames):
                 for layer in self.layers:
                     layer.draw(axes, frame)
-                self._say(paper, frame)
+                write_caption(paper, self.title, self.caption(frame))
                 moving = [one for one in (*axes.get_children(), *paper.get_children()) if one not in standing]
                 self._lay(canvas, ground, moving)
                 yield _pixels(canvas)
@@ -106,8 +102,10 @@ class Stage:
         paper.set_ylim(0.0, high)
         paper.set_axis_off()
         paper.patch.set_visible(False)
-        top = high - self._write_title(paper, wide, high)
-        bottom = self._write_keys(paper, wide)
+        scales = [one for layer in self.layers for one in layer.scales()]
+        top = high - write_title(paper, self.title)
+        bottom = write_entries(paper, [entry for layer in self.layers for entry in layer.entries()])
+        bottom += height_of_scales(scales, wide)
         axes = figure.add_axes((0.0, bottom / high, 1.0, (top - bottom) / high))
         axes.set_axis_off()
         axes.set_zorder(-1.0)
@@ -116,7 +114,7 @@ class Stage:
             layer.stand(view)
         for layer in self.layers:
             layer.ground(axes)
-        self._write_scales(paper, view, bottom)
+        write_scales(paper, scales, view, bottom)
         return figure, axes, paper
 
     def _view(self, axes: Axes, room: Array) -> View:
@@ -132,61 +130,6 @@ class Stage:
         axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
         axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
         return View(low, high, per_inch)
-
-    def _write_title(self, paper: Axes, wide: float, high: float) -> float:
-        """The title at the top; returns how much room it takes with the caption."""
-        lines = textwrap.wrap(self.title, int(wide / 0.105))[:2]
-        for number, line in enumerate(lines):
-            paper.text(
-                wide / 2,
-                high - 0.1 - 0.22 * number,
-                plain(line),
-                ha="center",
-                va="top",
-                fontsize=12,
-                color=INK,
-            )
-        return 0.12 + 0.22 * len(lines) + HEAD
-
-    def _say(self, paper: Axes, frame: int) -> None:
-        """The caption of a frame; it stands at the left of its own room, so that digits do not wander."""
-        text = self.caption(frame)
-        if text:
-            wide, high = paper.get_xlim()[1], paper.get_ylim()[1]
-            lines = len(textwrap.wrap(self.title, int(wide / 0.105))[:2])
-            paper.text(
-                wide / 2, high - 0.14 - 0.22 * lines, text, ha="center", va="top", fontsize=10, color=INK
-            )
-
-    def _write_keys(self, paper: Axes, wide: float) -> float:
-        """The legend at the bottom, in as many columns as fit; returns how high it and the scales stand."""
-        keys = [entry for layer in self.layers for entry in layer.entries()]
-        rows = 0
-        if keys:
-            column = 0.75 + LETTER * max(len(text) for _handle, text in keys)
-            columns = max(1, min(len(keys), int((wide - 0.2) / column)))
-            rows = -(-len(keys) // columns)
-            legend = paper.legend(
-                [handle for handle, _text in keys], [plain(text) for _handle, text in keys],
-                loc="lower center", bbox_to_anchor=(wide / 2, 0.04), bbox_transform=paper.transData,
-                ncols=columns, borderaxespad=0.0, handlelength=2.2, columnspacing=1.4, labelspacing=0.3,
-            )  # fmt: skip
-            legend.set_zorder(9.0)
-        scales = sum(len(layer.scales()) for layer in self.layers)
-        return 0.08 + LINE * rows + (0.24 if scales else 0.0)
-
-    def _write_scales(self, paper: Axes, view: View, bottom: float) -> None:
-        """Arrows that tell what the vectors are worth, side by side above the legend."""
-        scales = [one for layer in self.layers for one in layer.scales()]
-        lengths = [one.length / view.per_inch for one in scales]
-        widths = [length + 0.12 + LETTER * len(one.text) for one, length in zip(scales, lengths, strict=True)]
-        left = (paper.get_xlim()[1] - sum(widths) - 0.35 * (len(widths) - 1)) / 2.0
-        for one, length, width in zip(scales, lengths, widths, strict=True):
-            start = np.array([[left, bottom - 0.11]])
-            outline = arrow_outlines(start, np.array([[length, 0.0]]), ARROW_HEAD)[0]
-            paper.fill(*outline.T, facecolor=one.colour, edgecolor="none")
-            paper.text(left + length + 0.1, bottom - 0.11, one.text, va="center", fontsize=9, color=INK)
-            left += width + 0.35
 
 
 def _pixels(canvas: Any) -> Pixels:

@@ -14,8 +14,8 @@ from matplotlib.collections import PolyCollection
 from centrode.locale import _, ngettext
 from centrode.present.animations.arrows import arrow_outlines
 from centrode.present.animations.layers import NOTHING, Array, Layer, ScaleArrow
+from centrode.present.animations.margins import ARROW_HEAD
 from centrode.present.animations.motions import MotionLayer
-from centrode.present.animations.stage import ARROW_HEAD
 from centrode.present.scene import Scene
 from centrode.present.sphere.globe import Globe
 
