@@ -23,7 +23,7 @@ SCALE_LINE = 0.24
 """Height of a row of scales."""
 LETTER = 0.082
 """Mean width of a letter of the legend."""
-TITLE_LINE, TITLE_LETTER, CAPTION = 0.22, 0.105, 0.3
+TITLE_LINE, TITLE_LETTER, CAPTION = 0.22, 0.12, 0.3
 TITLE_LINES = 2
 ARROW_HEAD = 0.09
 """Length of the heads of vectors."""
@@ -31,6 +31,8 @@ LONGEST_ARROW = 0.18
 """Of a scale, as a part of the width: room that is kept before the view is known."""
 BETWEEN = 0.35
 MOST_ENTRIES = 24
+LEGEND = 0.35
+"""Most of the height that is legend."""
 
 
 def title_lines(title: str, wide: float) -> list[str]:
@@ -56,14 +58,13 @@ def write_caption(paper: Axes, title: str, text: str) -> None:
 
 
 def write_entries(paper: Axes, entries: Sequence[Entry]) -> float:
-    """Write the legend at the bottom, in as many columns as fit; returns its height."""
-    entries = list(entries)
+    """Write the legend at the bottom, in as many columns as fit; returns its height. Too many entries are cut."""
     if not entries:
         return 0.08
-    if len(entries) > MOST_ENTRIES:
-        entries = [*entries[: MOST_ENTRIES - 1], (Line2D([], [], linewidth=0.0), "…")]
-    wide = paper.get_xlim()[1]
+    wide, high = paper.get_xlim()[1], paper.get_ylim()[1]
+    entries = _cut(entries, MOST_ENTRIES)
     columns = _columns([text for _handle, text in entries], wide - 0.3)
+    entries = _cut(entries, max(1, int(LEGEND * high / LINE)) * columns)
     legend = paper.legend(
         [handle for handle, _text in entries], [plain(text) for _handle, text in entries],
         loc="lower center", bbox_to_anchor=(wide / 2, 0.04), bbox_transform=paper.transData,
@@ -71,6 +72,13 @@ def write_entries(paper: Axes, entries: Sequence[Entry]) -> float:
     )  # fmt: skip
     legend.set_zorder(9.0)
     return 0.08 + LINE * -(-len(entries) // columns)
+
+
+def _cut(entries: Sequence[Entry], most: int) -> list[Entry]:
+    """The entries, of too many the first and three dots."""
+    if len(entries) <= most:
+        return list(entries)
+    return [*entries[: most - 1], (Line2D([], [], linewidth=0.0), "…")]
 
 
 def _columns(texts: Sequence[str], room: float) -> int:

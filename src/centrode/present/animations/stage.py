@@ -29,8 +29,11 @@ Pixels = NDArray[np.uint32]
 """One frame (height, width), red, green, blue and 255 in the bytes of a number."""
 
 PAPER = (8.0, 6.0)
-"""Inches that every picture has at least, so that texts have the same share of it at any size."""
-PIXELS_PER_INCH = 100.0
+"""Inches that pictures have at least, so that texts have the same share of them at any size, small ones excepted."""
+LEGIBLE = 64.0
+"""Pixels to an inch below which texts are hard to read."""
+SMALLEST = (5.0, 3.75)
+"""Inches that legible pictures have at least: below that there is no room for the links."""
 MARGIN = 0.07
 """Room around what the layers need, as a part of its extent."""
 
@@ -92,9 +95,10 @@ class Stage:
 
     def _prepared(self) -> tuple[Figure, Axes, Axes]:
         """The figure with its ground: axes for the layers, and axes in inches for texts."""
-        dpi = PIXELS_PER_INCH * min(
-            self.size[0] / PIXELS_PER_INCH / PAPER[0], self.size[1] / PIXELS_PER_INCH / PAPER[1]
+        usual, least = (
+            min(self.size[0] / inches[0], self.size[1] / inches[1]) for inches in (PAPER, SMALLEST)
         )
+        dpi = max(usual, min(LEGIBLE, least))
         wide, high = self.size[0] / dpi, self.size[1] / dpi
         figure = Figure(figsize=(wide, high), dpi=dpi)
         paper = figure.add_axes((0.0, 0.0, 1.0, 1.0))
