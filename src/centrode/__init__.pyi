@@ -30,6 +30,7 @@ from .model.cams.schema import cam_schema as cam_schema
 from .model.examples.loading import load as load
 from .model.examples.loading import load_cam as load_cam
 from .model.examples.loading import example as example
+from .model.examples.loading import describes_cam as describes_cam
 from .model.examples import example_names as example_names
 from .model.examples import example_text as example_text
 from .model.classics import four_bar as four_bar
@@ -185,7 +186,7 @@ from .present import plate_curves_figure as plate_curves_figure
 from .present import walking_figure as walking_figure
 from .present import cam_body_figures as cam_body_figures
 
-# Contact of roller and cam, choice of parameters, animation
+# Contact of roller and cam, choice of parameters
 from .cams.contacts.labelled import cam_contact as cam_contact
 from .study.cams.contact import contact_rows as contact_rows
 from .cams.choosing.chosen import choose_cam as choose_cam
@@ -196,8 +197,15 @@ from .present import write_choice as write_choice
 from .present import contact_figure as contact_figure
 from .present import trade_off_figure as trade_off_figure
 from .present import choice_figures as choice_figures
-from .present import animate_walking as animate_walking
+
+# Animations
+from .present import animate as animate
+from .present import Shown as Shown
+from .present import Pace as Pace
+from .present import Animation as Animation
 from .present import animate_motion as animate_motion
+from .present import animate_centrodes as animate_centrodes
+from .present import animate_walking as animate_walking
 
 # Equations in symbols
 from .equations.derivation import equations as equations
@@ -261,7 +269,6 @@ from .present import write_centres_csv as write_centres_csv
 from .present import write_centrodes_csv as write_centrodes_csv
 from .present import centres_figure as centres_figure
 from .present import centrodes_figure as centrodes_figure
-from .present import animate_centrodes as animate_centrodes
 from .present import curvature_figure as curvature_figure
 from .present import darkened as darkened
 from .present import write_integration_csv as write_integration_csv

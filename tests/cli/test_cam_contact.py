@@ -142,7 +142,7 @@ def test_no_design_keeps_the_bounds(centrode: Centrode, pressed: Path) -> None:
 
 
 def test_the_wheel_walks(centrode: Centrode, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("centrode.present.cams.walking_animation.FRAMES", 5)
+    monkeypatch.setattr("centrode.present.animations.given.FRAMES_OF_A_STEP", 5)
     text = ct.cam_text(ct.example("walking-wheel-three-legs")).partition("[choose]")[0]
     (folder / "wheel.toml").write_text(text)
     done = centrode("cam", "wheel.toml", "--out", "w", "--animate", "--no-figures", "--samples", "5")

@@ -16,6 +16,7 @@ import click
 
 import centrode as ct
 from centrode.cli.angles import angles
+from centrode.cli.animate import animate
 from centrode.cli.balance import balance
 from centrode.cli.cam import cam
 from centrode.cli.centres import centres
@@ -47,6 +48,7 @@ from centrode.locale import _, choose_language_of_process, mark
 
 COMMANDS: tuple[click.Command, ...] = (
     run,
+    animate,
     check,
     describe,
     equations,

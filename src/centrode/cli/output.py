@@ -106,18 +106,18 @@ def output_file(path: Path, *, force: bool = False) -> Iterator[Path]:
         if path.exists() and not force:
             raise InputError(str(path), _("exists already"), _("say --force to replace it"))
         base = _existing_part(path.parent)
-        path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=".centrode-", suffix=path.suffix, dir=base)
         os.close(handle)
     draft = Path(name)
     try:
         yield draft
         with _refusals(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
             _share(draft)
             os.replace(draft, path)
     except BaseException:
         with suppress(OSError):
-            os.unlink(draft)
+            draft.unlink()
         raise
 
 

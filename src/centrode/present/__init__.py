@@ -13,6 +13,10 @@ from centrode.errors import InputError
 from centrode.locale import _
 
 if TYPE_CHECKING:
+    from centrode.present.animations.animate import animate
+    from centrode.present.animations.given import animate_centrodes, animate_motion, animate_walking
+    from centrode.present.animations.paces import Animation, Pace
+    from centrode.present.animations.shown import Shown
     from centrode.present.cams.bodies import cam_body_figures
     from centrode.present.cams.choice import choice_figures, trade_off_figure
     from centrode.present.cams.choice_tables import write_choice
@@ -42,11 +46,10 @@ if TYPE_CHECKING:
         write_cam_routes_csv,
         write_cam_tables,
     )
-    from centrode.present.cams.walking_animation import animate_walking
     from centrode.present.cams.walking_drawing import walking_figure
     from centrode.present.centres import centres_figure
     from centrode.present.centres_tables import write_centres_csv, write_centrodes_csv
-    from centrode.present.centrodes import animate_centrodes, centrodes_figure
+    from centrode.present.centrodes import centrodes_figure
     from centrode.present.coefficient_tables import write_coefficients_csv
     from centrode.present.curvature import curvature_figure
     from centrode.present.dark import darkened
@@ -73,7 +76,6 @@ if TYPE_CHECKING:
     from centrode.present.integration_tables import write_integration_csv
     from centrode.present.integrations import integration_figures
     from centrode.present.mjcf.writing import mjcf_text
-    from centrode.present.motion_animation import animate_motion
     from centrode.present.plan_drawing import plan_figure
     from centrode.present.reading import scene_of
     from centrode.present.region_tables import write_region_csv
@@ -86,6 +88,10 @@ if TYPE_CHECKING:
     from centrode.present.workbooks import workbook_of_csv, write_motion_xlsx
 
 __all__ = [
+    "Animation",
+    "Pace",
+    "Shown",
+    "animate",
     "animate_centrodes",
     "animate_motion",
     "balance_figures",
@@ -191,7 +197,11 @@ _attached, __dir__, _names = lazy_loader.attach(
         ],
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
-        "centrodes": ["animate_centrodes", "centrodes_figure"],
+        "animations.animate": ["animate"],
+        "animations.given": ["animate_centrodes", "animate_motion", "animate_walking"],
+        "animations.paces": ["Animation", "Pace"],
+        "animations.shown": ["Shown"],
+        "centrodes": ["centrodes_figure"],
         "curvature": ["curvature_figure"],
         "dark": ["darkened"],
         "decimal_comma": ["spell_with_comma"],
@@ -226,7 +236,6 @@ _attached, __dir__, _names = lazy_loader.attach(
         "region_tables": ["write_region_csv"],
         "regions": ["region_figure"],
         "mjcf.writing": ["mjcf_text"],
-        "motion_animation": ["animate_motion"],
         "saving": ["save_figures"],
         "forces.simulation_figures": ["simulation_figures"],
         "sweep_tables": ["sweep_csv"],
@@ -234,7 +243,6 @@ _attached, __dir__, _names = lazy_loader.attach(
         "transmission_curves": ["transmission_figure"],
         "variant_folders": ["write_variants"],
         "workbooks": ["workbook_of_csv", "write_motion_xlsx"],
-        "cams.walking_animation": ["animate_walking"],
         "cams.walking_drawing": ["walking_figure"],
     },
 )

@@ -1,9 +1,7 @@
-"""Centrodes as a picture and as an animation: the moving one rolls on the fixed one."""
+"""Centrodes as a picture: the moving one rolls on the fixed one."""
 
 from __future__ import annotations
 
-from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,9 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from centrode.errors import InputError
 from centrode.locale import _
-from centrode.present.animation import write_animation
 from centrode.present.curves import write_legend, write_title
 from centrode.present.drawing import draw_mechanism
 from centrode.present.obstacles import lines
@@ -36,7 +32,6 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 8.2, 5.75  # inches: A5 across
 PLACE = (0.085, 0.095, 0.66, 0.775)
 FIXED, MOVING, CENTRE = "#0072B2", "#D55E00", "#A00000"
-FRAMES = 48
 LOOKS = 9  # samples whose curves the window holds
 NAMED = 10.0
 
@@ -62,30 +57,6 @@ def centrodes_figure(
         scene = _scene(mechanism, motion, centrodes)
         number = _first_with_centre(scene, motion, centrodes) if sample is None else sample
         return _drawn(scene, motion, centrodes, number, names=True)
-
-
-def animate_centrodes(
-    mechanism: Mechanism,
-    motion: xarray.Dataset,
-    centrodes: xarray.Dataset,
-    path: Path,
-    dark: bool = False,
-) -> None:
-    """Write an animation (GIF) of one centrode rolling on the other; raises InputError where nothing rolls."""
-    pieces = centrodes["centrode_piece"].to_numpy()
-    rolling = np.flatnonzero(pieces >= 0)
-    if rolling.size < 2:
-        raise InputError(
-            "link", _("there is no centrode in this range"), _("ask for another link or another range")
-        )
-    chosen = rolling[np.linspace(0, rolling.size - 1, min(FRAMES, rolling.size)).astype(int)]
-    with house_style():
-        if mechanism.space == "sphere":
-            globe = whole(globe_of(mechanism, motion))
-            draw = partial(_on_globe, globe, motion, centrodes, names=False)
-        else:
-            draw = partial(_drawn, _scene(mechanism, motion, centrodes), motion, centrodes, names=False)
-    write_animation(path, lambda sample: draw(int(sample)), chosen, dark=dark)
 
 
 def _scene(mechanism: Mechanism, motion: xarray.Dataset, centrodes: xarray.Dataset) -> Scene:

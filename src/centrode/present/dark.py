@@ -5,6 +5,7 @@ from __future__ import annotations
 import colorsys
 from typing import Any
 
+from matplotlib.artist import Artist
 from matplotlib.collections import Collection
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
@@ -20,16 +21,21 @@ LEAST = 0.58  # lightness that a coloured line gets at least
 def darkened(figure: Figure) -> Figure:
     """Turn the colours of a figure round: greys by their lightness, colours made light enough; returns it."""
     for artist in {id(one): one for one in figure.findobj()}.values():  # some are found twice
-        if isinstance(artist, Line2D):
-            _recolour_line(artist)
-        elif isinstance(artist, Text):
-            artist.set_color(_light(artist.get_color()))
-        elif isinstance(artist, Patch):
-            _recolour_patch(artist)
-        elif isinstance(artist, Collection):
-            artist.set_edgecolor([_light(colour) for colour in artist.get_edgecolor()])
-            artist.set_facecolor([_light(colour) for colour in artist.get_facecolor()])
+        recolour(artist)
     return figure
+
+
+def recolour(artist: Artist) -> None:
+    """Turn the colours of one thing round."""
+    if isinstance(artist, Line2D):
+        _recolour_line(artist)
+    elif isinstance(artist, Text):
+        artist.set_color(_light(artist.get_color()))
+    elif isinstance(artist, Patch):
+        _recolour_patch(artist)
+    elif isinstance(artist, Collection):
+        artist.set_edgecolor([_light(colour) for colour in artist.get_edgecolor()])
+        artist.set_facecolor([_light(colour) for colour in artist.get_facecolor()])
 
 
 def _recolour_line(line: Line2D) -> None:

@@ -170,9 +170,7 @@ def draw_slot(
 
 def draw_frame(axes: Axes, scene: Scene, sample: int) -> None:
     """Hatched guides and tracks of the frame and its fixed hinges."""
-    used = {point for link in scene.mechanism.links.values() for point in link.coordinates}
-    used |= {point for drive in scene.mechanism.drives for point in drive.distance or ()}
-    places = scene.at(sample)
+    used, places = used_points(scene), scene.at(sample)
     for guide in scene.mechanism.guides:
         line = scene.guide_line(guide, sample) if guide.on == "frame" else None
         if line is not None:
@@ -185,6 +183,12 @@ def draw_frame(axes: Axes, scene: Scene, sample: int) -> None:
             signs.fixed_hinge(axes, places[name], scene.sign)
         elif name in places:
             signs.traced_point(axes, places[name], scene.sign, GROUND)
+
+
+def used_points(scene: Scene) -> set[str]:
+    """Points that links and cylinders stand on."""
+    used = {point for link in scene.mechanism.links.values() for point in link.coordinates}
+    return used | {point for drive in scene.mechanism.drives for point in drive.distance or ()}
 
 
 def draw_track(axes: Axes, scene: Scene, wheel: Rolling) -> None:

@@ -33,16 +33,11 @@ def label_places(
     given : sequence of (centre, text)
         Texts that already stand.
     """
-    turns = np.pi / 2 + 2 * np.pi * np.arange(SIDES) / SIDES
-    around = np.tile(np.stack([np.cos(turns), np.sin(turns)], axis=1), (len(RINGS), 1))
-    ring = np.repeat(RINGS, SIDES)
+    around, ring = _directions()
     taken = [spots(np.asarray(centre)[None], text, height)[0] for centre, text in given]
     places: dict[str, Array] = {}
     for name, anchor in anchors.items():
-        half = 0.5 * WIDE * height * len(name)
-        # A long name stands further off sideways than above and below.
-        reach = offset * ring + np.maximum(0.0, half - 0.3 * height) * np.abs(around[:, 0])
-        candidates = anchor + reach[:, None] * around
+        candidates = anchor + _offsets(name, offset, height)
         tests = spots(candidates, name, height)
         others = [place for other, place in anchors.items() if other != name]
         cost = 0.15 * (ring - 1.0) + crowding(distances(tests, segments), 0.75 * height)
@@ -53,6 +48,57 @@ def label_places(
         places[name] = candidates[best]
         taken.append(tests[best])
     return places
+
+
+def steady_offsets(
+    moments: Sequence[tuple[Mapping[str, Array], Sequence[tuple[Array, Array]]]], offset: float, height: float
+) -> dict[str, Array]:
+    """Where names stand beside points that move: for each point one offset that is best over all moments.
+
+    Parameters
+    ----------
+    moments : sequence of (anchors, segments)
+        Each as `label_places` takes them; a point may be missing in some.
+    offset, height : float
+        As there.
+    """
+    ring = _directions()[1]
+    found: dict[str, Array] = {}
+    for name in dict.fromkeys(name for anchors, _segments in moments for name in anchors):
+        candidates = _offsets(name, offset, height)
+        cost = 0.15 * (ring - 1.0)
+        present = [one for one in moments if name in one[0]]
+        for anchors, segments in present:
+            tests = spots(anchors[name] + candidates, name, height)
+            others = [place for other, place in anchors.items() if other != name]
+            taken = [
+                place
+                for other, apart in found.items()
+                if other in anchors
+                for place in spots((anchors[other] + apart)[None], other, height)[0]
+            ]
+            near = crowding(distances(tests, segments), 0.75 * height)
+            near += crowding(gaps(tests, others), 0.9 * height) + 2.0 * crowding(
+                gaps(tests, taken), 1.1 * height
+            )
+            cost = cost + near / len(present)
+        found[name] = candidates[int(np.argmin(np.round(cost, 6)))]
+    return found
+
+
+def _directions() -> tuple[Array, Array]:
+    """Unit vectors around a point, and which ring of distances each belongs to."""
+    turns = np.pi / 2 + 2 * np.pi * np.arange(SIDES) / SIDES
+    around = np.tile(np.stack([np.cos(turns), np.sin(turns)], axis=1), (len(RINGS), 1))
+    return around, np.repeat(RINGS, SIDES)
+
+
+def _offsets(name: str, offset: float, height: float) -> Array:
+    """Centres of a name's text about its point: a long name stands further off sideways than above and below."""
+    around, ring = _directions()
+    half = 0.5 * WIDE * height * len(name)
+    reach = offset * ring + np.maximum(0.0, half - 0.3 * height) * np.abs(around[:, 0])
+    return np.asarray(reach[:, None] * around)
 
 
 def leaving(anchor: Array, segments: Sequence[tuple[Array, Array]], slack: float) -> Array:

@@ -11,9 +11,10 @@ from centrode.model.cams.description import Cam
 from centrode.model.cams.files import AnyCam, parse_cam, read_cam
 from centrode.model.cams.plate import PlateCam
 from centrode.model.examples import example_names, example_text
-from centrode.model.files import parse_mechanism, read_mechanism
+from centrode.model.files import is_cam, parse_mechanism, read_mechanism, toml_tables
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import likely, shown
+from centrode.model.reading import read_file
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
 PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]
@@ -54,6 +55,14 @@ def load_cam(file_or_example: str | Path) -> AnyCam:
         return read_cam(path)
     name = str(file_or_example)
     return parse_cam(example_text(name), f"{name}.toml")
+
+
+def describes_cam(file_or_example: str | Path) -> bool:
+    """Whether a TOML file, or the built-in example of that name, describes a cam; raises InputError as `load` does."""
+    path = _file(file_or_example)
+    if path is None:
+        return str(file_or_example) in example_names("cam")
+    return is_cam(toml_tables(read_file(path), path.name))
 
 
 def _file(file_or_example: str | Path) -> Path | None:

@@ -1,0 +1,171 @@
+"""`centrode animate`: a mechanism or a cam in motion, as a GIF or an MP4."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import dark_option, start_option, stop_option
+from centrode.cli.centres import named_pairs
+from centrode.cli.progress import Progress
+from centrode.errors import InputError, MotionError
+from centrode.locale import _, mark, ngettext
+
+ENDINGS = (".gif", ".mp4")
+SIZE = "800x600"
+
+
+@click.command(help=mark("Animate a mechanism or a cam: GIF or MP4."))
+@click.argument(
+    "described",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in mechanism or cam."),
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("FILE"),
+    help=mark("FILE.gif or FILE.mp4; a GIF named after the mechanism if left out."),
+)
+@click.option(
+    "--show",
+    metavar=mark("NAMES"),
+    help=mark(
+        "Beside the links, with commas: paths, velocities, accelerations, centres, centrodes, forces, loads, or none;"
+        " paths if left out."
+    ),
+)
+@click.option(
+    "--points", metavar=mark("NAMES"), help=mark("Only these points, with commas; all that move if left out.")
+)
+@click.option("--growing", is_flag=True, help=mark("Paths grow behind their points."))
+@click.option(
+    "--pair",
+    "pairs",
+    multiple=True,
+    metavar=mark("LINK,LINK"),
+    help=mark('Instant centre of these two ("AC,frame"); as often as needed.'),
+)
+@click.option("--link", metavar=mark("LINK"), help=mark("The link that carries the moving centrode."))
+@click.option(
+    "--against", metavar=mark("LINK"), help=mark("The link that it rolls on; the frame if left out.")
+)
+@click.option("--size", metavar=mark("SIZE"), help=mark("Width and height in pixels; 800x600 if left out."))
+@click.option("--frames", type=int, metavar=mark("N"), help=mark("Number of frames; 60 if left out."))
+@click.option("--fps", type=float, metavar=mark("N"), help=mark("Frames a second; 20 if left out."))
+@click.option("--duration", type=float, metavar=mark("S"), help=mark("Seconds until it begins again."))
+@click.option(
+    "--speed", type=float, metavar=mark("X"), help=mark("Instead: so many times as fast as the mechanism.")
+)
+@start_option
+@stop_option
+@dark_option
+@click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
+def animate(
+    described: str,
+    out: Path | None,
+    show: str | None,
+    points: str | None,
+    growing: bool,
+    pairs: tuple[str, ...],
+    link: str | None,
+    against: str | None,
+    size: str | None,
+    frames: int | None,
+    fps: float | None,
+    duration: float | None,
+    speed: float | None,
+    start: str | None,
+    stop: str | None,
+    dark: bool,
+    force: bool,
+) -> None:
+    """Write the animation; exit code 3 if a range was asked for that is not all reached (the rest is written)."""
+    description = ct.load_cam(described) if ct.describes_cam(described) else ct.load(described)
+    path = out if out is not None else Path(f"{Path(described).stem}.gif")
+    if path.suffix.lower() not in ENDINGS:
+        raise InputError("--out", _("an animation is a .gif or a .mp4"), _("name such a file"))
+    shown = _shown(show, points, growing, pairs, link, against)
+    pace = ct.Pace(frames, fps, duration, speed)
+    first, last = _end(description, start, "--from"), _end(description, stop, "--to")
+    with output.output_file(path, force=force) as draft, Progress() as progress:
+        progress.say(_("solving"))
+
+        def said(done: int, of: int) -> None:
+            progress.say(_("drawing {name}").format(name=path.name), done, of)
+
+        with about(described):
+            made = ct.animate(
+                description,
+                draft,
+                shown,
+                pace,
+                start=first,
+                stop=last,
+                size=size or SIZE,
+                dark=dark,
+                said=said,
+            )
+    click.echo(_(description.title) or described)
+    click.echo("\n" + output.table(_rows(made)))
+    for note in made.notes:
+        click.echo(_("note: {note}").format(note=note))
+    click.echo("\n" + _("wrote {file}").format(file=path))
+    if made.left_out and (start is not None or stop is not None):
+        what = ngettext(
+            "{n} sample of the range is not reached",
+            "{n} samples of the range are not reached",
+            made.left_out,
+        )
+        raise MotionError(described, what.format(n=made.left_out), _("ask for a range between the limits"))
+
+
+def _shown(
+    show: str | None,
+    points: str | None,
+    growing: bool,
+    pairs: tuple[str, ...],
+    link: str | None,
+    against: str | None,
+) -> ct.Shown | None:
+    """What is shown; nothing where nothing is said, so that a cam can be asked for in the same words."""
+    if show is None and points is None and not growing and not pairs and link is None and against is None:
+        return None
+    return ct.Shown(
+        ("paths",) if show is None else _names(show),
+        None if points is None else _names(points),
+        growing,
+        named_pairs(pairs) or None,
+        link,
+        against or "frame",
+    )
+
+
+def _names(text: str) -> tuple[str, ...]:
+    """Names between commas; "none" names nothing."""
+    names = [name.strip() for name in text.split(",")]
+    return tuple(name for name in names if name and name != "none")
+
+
+def _end(description: ct.Mechanism | ct.Cam, text: str | None, where: str) -> float | None:
+    """An end of the range."""
+    if text is None:
+        return None
+    if isinstance(description, ct.Cam):
+        raise InputError(where, _("a cam is shown as a whole"), _("take it out"))
+    return ct.range_value(description, text, where)
+
+
+def _rows(made: ct.Animation) -> list[tuple[str, str]]:
+    """Frames, size, time and loop."""
+    loop = _("round, without a jump") if made.loop == "round" else _("there and back")
+    rate = _("{rate:.4g} a second: {seconds:.4g} s").format(rate=made.per_second, seconds=made.seconds)
+    return [
+        (_("frames"), f"{made.frames}, {rate}"),
+        (_("pixels"), "{} x {}".format(*made.size)),
+        (_("loop"), loop),
+    ]

@@ -1,0 +1,128 @@
+"""Layers of cams: a walking wheel seen from its hub, and a cam that turns below its roller."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Polygon
+
+from centrode.cams.frames import frames as frames_along
+from centrode.locale import _
+from centrode.present import signs
+from centrode.present.animations.layers import Array, Layer, View
+from centrode.present.cams.walking_drawing import draw_wheel, reach, wheel_keys
+from centrode.present.scene import turned
+from centrode.present.style import GROUND, INK, MUTED, PALETTE
+
+if TYPE_CHECKING:
+    from centrode.cams.profiles.bodies import CamBody
+    from centrode.cams.wheel.walking import Mover
+
+POINTS = 720
+CAM, ROLLER = PALETTE[0], PALETTE[1]
+CHAIN = (0, (5, 1.2, 1.2, 1.2))
+STEM = 3.0
+"""Length of the follower's stem above its highest place, in radii of the roller."""
+
+
+class WalkingLayer(Layer):
+    """A walking wheel over one step or more, seen from its hub: the ground passes by.
+
+    The carrier turns evenly; after a step the next leg stands where the last one stood and the ground has moved on by
+    the distance of two footprints, so that the last picture leads to the first.
+    """
+
+    def __init__(self, wheel: Mover, turned_by: Array, factor: float) -> None:
+        self.wheel = wheel
+        self.turned_by = turned_by
+        self.factor = factor
+
+    def reach(self) -> Array:
+        """The wheel about its hub at any instant, and the ground."""
+        far = 1.04 * reach(self.wheel)
+        return self.factor * np.array([[-far, -0.09 * far], [far, self.wheel.height + far]])
+
+    def draw(self, axes: Axes, frame: int) -> None:
+        """The whole wheel; the limits go along with the hub."""
+        pose = self.wheel.pose(float(self.turned_by[frame]))
+        left, right = axes.get_xlim()
+        hub = self.factor * float(pose.hub[0])
+        axes.set_xlim(hub - (right - left) / 2.0, hub + (right - left) / 2.0)
+        draw_wheel(axes, self.wheel, pose, self.factor)
+
+    def entries(self) -> Sequence[tuple[Artist, str]]:
+        """What the colours mean."""
+        return wheel_keys()
+
+
+class TurningCamLayer(Layer):
+    """A cam that turns about its centre below its roller, whose stem moves up and down in a guide.
+
+    The same as a roller carried round a fixed cam, seen from the carrier.
+    """
+
+    def __init__(self, body: CamBody, angles: Array, factor: float) -> None:
+        self.body = body
+        self.angles = angles
+        self.factor = factor
+        phi = np.linspace(body.closed.start, body.closed.stop, POINTS + 1)
+        self.path = factor * frames_along(body.closed, phi).place
+        self.profile = factor * body.profile(phi).place
+        self.centres = factor * frames_along(body.closed, angles).place
+        self.roller = factor * body.roller
+        self.top = float(np.hypot(*self.path.T).max()) + (1.0 + STEM) * self.roller
+
+    def reach(self) -> Array:
+        """The circle that the cam sweeps, and the stem above it."""
+        far = float(np.hypot(*np.concatenate([self.path, self.profile]).T).max())
+        return np.array([[-far, -far], [far, self.top + self.roller]])
+
+    def stand(self, view: View) -> None:
+        """Signs are as large as on any drawing."""
+        self.view = view
+
+    def at(self, places: Array, frame: int) -> Array:
+        """Where places (n, 2) in the cam's axes are in a frame."""
+        return turned(places.T, float(self.angles[frame]))
+
+    def ground(self, axes: Axes) -> None:
+        """The guide of the stem."""
+        for side in (-1.0, 1.0):
+            foot = np.array([0.45 * side * self.roller, self.top - self.roller])
+            away = np.array([side, 0.0])
+            signs.ground(axes, foot, foot + self.roller * np.array([0.0, 1.0]), away, self.view.sign)
+
+    def draw(self, axes: Axes, frame: int) -> None:
+        """The cam with the path of the roller's centre, the roller, its stem, and the hub."""
+        profile, path = self.at(self.profile, frame), self.at(self.path, frame)
+        if self.body.closed.stop - self.body.closed.start >= math.tau * (1.0 - 1e-9):
+            axes.add_patch(Polygon(profile, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
+        else:
+            shape = np.concatenate([np.zeros((1, 2)), profile])
+            axes.add_patch(Polygon(shape, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
+        axes.plot(*profile.T, color=CAM, linewidth=1.8, zorder=4)
+        axes.plot(*path.T, color=MUTED, linewidth=0.9, linestyle=CHAIN, zorder=3)
+        mark = np.stack([np.zeros(2), profile[0]])
+        axes.plot(*mark.T, color=CAM, linewidth=1.0, zorder=3.5)  # by it the turning is seen
+        x, y = self.at(self.centres[frame][None], frame)[0]
+        axes.plot([x, x], [y, self.top], color=ROLLER, linewidth=2.4, zorder=5)
+        axes.add_patch(
+            Circle((x, y), self.roller, facecolor="white", edgecolor=ROLLER, linewidth=1.6, zorder=6)
+        )
+        axes.plot([x], [y], marker="+", color=ROLLER, markersize=6, zorder=7)
+        signs.hinge(axes, np.zeros(2), self.view.sign, GROUND)
+
+    def entries(self) -> Sequence[tuple[Artist, str]]:
+        """What the colours mean."""
+        return [
+            (Line2D([], [], color=CAM, linewidth=1.8), _("cam")),
+            (Line2D([], [], color=MUTED, linewidth=0.9, linestyle=CHAIN), _("path of the roller's centre")),
+            (Line2D([], [], color=ROLLER, marker="o", markerfacecolor="white", markersize=7), _("roller")),
+            (Line2D([], [], color=INK, marker="o", markerfacecolor="white", linestyle="none"), _("hub")),
+        ]

@@ -1,0 +1,55 @@
+"""What stands below the title of a frame: the values of the drives or the time, the cam's angle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.errors import Status
+from centrode.present.shown import drive_unit, shown_as
+from centrode.quantities import QUANTITIES, status_word, typeset_unit
+
+if TYPE_CHECKING:
+    from centrode.model.asked import Display
+    from centrode.study.moving.films import Film
+
+DIGITS = 4
+SYMBOLS = {"angle": "φ", "displacement": "s", "distance": "l"}
+
+
+def instant_captions(film: Film) -> list[str]:
+    """The caption of each frame: the value of the only drive, else the time, and the status where it is not in order.
+
+    All of them have as many decimals, so that no digit jumps.
+    """
+    mechanism = film.mechanism
+    if len(mechanism.drives) == 1:
+        factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
+        symbol = SYMBOLS[mechanism.drives[0].kind]
+        values = factor * film.motion["drive_value"].isel(drive=0).to_numpy()
+    else:
+        symbol, unit, values = QUANTITIES["time"].symbol, "s", film.motion["time"].to_numpy()
+    greatest = float(np.nanmax(np.abs(values), initial=0.0))
+    decimals = max(0, DIGITS - 1 - int(np.floor(np.log10(greatest)))) if greatest > 0.0 else 0
+    decimals = min(decimals, 1) if unit == "deg" else min(decimals, 9)
+    # plain text: mathematical text is laid out for every frame anew, at many times the cost
+    texts = [f"{symbol} = {_plain(value, decimals)} {typeset_unit(unit)}" for value in values]
+    for k, status in enumerate(film.motion["status"].to_numpy().tolist()):
+        if status != Status.OK:
+            texts[k] += f" ({status_word(status)})"
+    return [texts[sample] for sample in film.order]
+
+
+def turned_caption(angle: float, display: Display | None) -> str:
+    """The angle that the carrier of a cam's rollers has turned by."""
+    factor, unit = shown_as("rad", display)
+    quantity = QUANTITIES["carrier_angle"]
+    return f"{quantity.symbol} = {_plain(factor * angle, 1 if unit == 'deg' else 3)} {typeset_unit(unit)}"
+
+
+def _plain(value: float, decimals: int) -> str:
+    text = f"{value:.{decimals}f}"
+    if float(text) == 0.0:
+        text = text.lstrip("-")
+    return text.replace("-", "−")

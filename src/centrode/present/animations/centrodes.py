@@ -1,0 +1,124 @@
+"""The layer of rolling centrodes, on the sphere of polodes: the moving one rolls on the fixed one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from centrode.analysis.instant_centres.centrodes import centrodes
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.mechanism import FRAME
+from centrode.present.animations.layers import WHOLE, Array
+from centrode.present.animations.motions import FAR, MotionLayer
+from centrode.present.scene import Scene
+from centrode.present.sphere.globe import Globe
+from centrode.present.sphere.globe_drawing import draw_line
+from centrode.present.sphere.polodes_drawing import laid
+from centrode.present.window import carried_by, within
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.study.moving.films import Film
+
+FIXED, MOVING, CENTRE = "#0072B2", "#D55E00", "#A00000"
+LOOKS = 9
+"""Positions whose curves the view holds."""
+
+
+class CentrodesLayer(MotionLayer):
+    """Both centrodes of a link against another body, laid where the bodies are."""
+
+    def __init__(
+        self,
+        film: Film,
+        scene: Scene | Globe,
+        link: str,
+        against: str = FRAME,
+        found: xarray.Dataset | None = None,
+    ) -> None:
+        super().__init__(film, scene)
+        found = centrodes(film.course.motion, link, against) if found is None else found
+        self.bodies = (str(found.attrs["against"]), str(found.attrs["link"]))
+        self.pieces = found["centrode_piece"].to_numpy()
+        if int((self.pieces >= 0).sum()) < 2:
+            raise InputError(
+                "link", _("there is no centrode in this range"), _("ask for another link or another range")
+            )
+        self.curves = [found[f"{name}_centrode"].to_numpy() for name in ("fixed", "moving")]
+        self.contact = centrodes(film.motion, self.bodies[1], self.bodies[0])["fixed_centrode"].to_numpy()
+
+    def reach(self) -> Array:
+        """What of both curves comes not too far out."""
+        if isinstance(self.scene, Globe):
+            return WHOLE
+        low, high = self.box
+        far = FAR * float(np.max(high - low))
+        looks = np.unique(np.linspace(0, self.count - 1, LOOKS).astype(int)).tolist()
+        places = np.concatenate([self.placed(side, look) for side in (0, 1) for look in looks])
+        with np.errstate(invalid="ignore"):
+            return np.asarray(places[((places > low - far) & (places < high + far)).all(axis=1)])
+
+    def placed(self, side: int, sample: int) -> Array:
+        """The fixed (0) or the moving curve (1) as it lies at a sample; NaN where its body has no position."""
+        return self._carried(self.bodies[side], self.curves[side], sample)
+
+    def touching(self, sample: int) -> Array:
+        """Where one rolls on the other at a sample."""
+        return np.asarray(self._carried(self.bodies[0], self.contact[sample][None], sample)[0])
+
+    def ground(self, axes: Axes) -> None:
+        """The curve of the frame stands still."""
+        for side in (0, 1):
+            if self.bodies[side] == FRAME:
+                self._draw_curve(axes, side, 0)
+
+    def draw(self, axes: Axes, frame: int) -> None:
+        """What rolls, and the place where it touches."""
+        sample = self.sample(frame)
+        for side in (0, 1):
+            if self.bodies[side] != FRAME:
+                self._draw_curve(axes, side, sample)
+        place = self.touching(sample)
+        if np.isfinite(place).all() and within(axes, self.on_paper(place)):
+            behind = isinstance(self.scene, Globe) and not bool(self.scene.in_front(place))
+            axes.plot(*self.on_paper(place), marker="D", markersize=5.0, color=CENTRE,
+                      markeredgecolor="white", alpha=0.45 if behind else 1.0, zorder=9.5)  # fmt: skip
+
+    def entries(self) -> Sequence[tuple[Artist, str]]:
+        """Whose curves they are."""
+        texts = (
+            (_("fixed polode (of {name})"), _("moving polode (of {name})"))
+            if isinstance(self.scene, Globe)
+            else (_("fixed centrode (of {name})"), _("moving centrode (of {name})"))
+        )
+        return [
+            (
+                Line2D([], [], color=colour, linewidth=1.6),
+                text.format(name=_("frame") if body == FRAME else body),
+            )
+            for colour, text, body in zip((FIXED, MOVING), texts, self.bodies, strict=True)
+        ]
+
+    def _carried(self, body: str, curve: Array, sample: int) -> Array:
+        if isinstance(self.scene, Globe):
+            found = laid(self.scene, body, curve, sample)
+            return np.full_like(curve, np.nan) if found is None else found
+        return carried_by(self.scene, body, curve, sample)
+
+    def _draw_curve(self, axes: Axes, side: int, sample: int) -> None:
+        """Piece by piece, so that nothing joins where the curve goes to infinity."""
+        curve, colour = self.placed(side, sample), (FIXED, MOVING)[side]
+        for piece in np.unique(self.pieces[self.pieces >= 0]):
+            own = curve[self.pieces == piece]
+            if isinstance(self.scene, Globe):
+                draw_line(axes, self.scene, own, colour, 1.6, zorder=7.2)
+                continue
+            dot: dict[str, Any] = {"marker": "o", "markersize": 2.5} if len(own) == 1 else {}
+            axes.plot(*own.T, color=colour, linewidth=1.6, zorder=7.2, scalex=False, scaley=False, **dot)

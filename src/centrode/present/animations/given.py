@@ -1,0 +1,132 @@
+"""Animations of results that are there already: a motion, centrodes, a walking wheel."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.present.animations.animate import stage_of
+from centrode.present.animations.cams import WalkingLayer
+from centrode.present.animations.captions import turned_caption
+from centrode.present.animations.centrodes import CentrodesLayer
+from centrode.present.animations.encoding import Said, no_progress
+from centrode.present.animations.motions import scene_of_film
+from centrode.present.animations.paces import write_stage
+from centrode.present.animations.shown import Shown
+from centrode.present.animations.stage import Stage
+from centrode.present.animations.timing import SIZE, Timing
+from centrode.present.shown import shown_as
+from centrode.study.moving.courses import course_from
+from centrode.study.moving.films import film_from, frame_ways
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.cams.wheel.walking import Mover
+    from centrode.model.asked import Display
+    from centrode.model.mechanism import Mechanism
+
+FRAMES = 48
+FRAMES_OF_A_STEP = 36
+PER_SECOND = 100.0 / 7.0
+
+
+def animate_motion(
+    mechanism: Mechanism,
+    dataset: xarray.Dataset,
+    path: Path,
+    *,
+    frames: int | None = None,
+    dark: bool = False,
+    said: Said = no_progress,
+) -> None:
+    """Write an animation (GIF or MP4) of a motion; where the motion does not close, it runs there and back.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+    dataset : Dataset
+        Its motion, of `motion` or of `simulate` with the motion: the frames are some of its samples. `animate` computes
+        its own, evenly spaced.
+    path : Path
+        The file.
+    frames : int
+        Of the motion one way; 48 if left out.
+    dark : bool
+        Light lines on a dark ground.
+    said : callable
+        Told after each frame how many are done, and of how many.
+
+    Raises
+    ------
+    InputError
+        No sample has every point in place.
+    """
+    film = film_from(course_from(mechanism, dataset), frames or FRAMES)
+    stage, _notes = stage_of(film, Shown(), SIZE, dark=dark)
+    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND), said)
+
+
+def animate_centrodes(
+    mechanism: Mechanism,
+    motion: xarray.Dataset,
+    centrodes: xarray.Dataset,
+    path: Path,
+    dark: bool = False,
+    *,
+    said: Said = no_progress,
+) -> None:
+    """Write an animation (GIF or MP4) of one centrode rolling on the other; raises InputError where nothing rolls."""
+    if int((centrodes["centrode_piece"].to_numpy() >= 0).sum()) < 2:
+        raise InputError(
+            "link", _("there is no centrode in this range"), _("ask for another link or another range")
+        )
+    film = film_from(course_from(mechanism, motion), FRAMES)
+    scene = scene_of_film(film)
+    rolling = CentrodesLayer(
+        film, scene, str(centrodes.attrs["link"]), str(centrodes.attrs["against"]), centrodes
+    )
+    stage, _notes = stage_of(film, Shown(()), SIZE, dark=dark, more=[rolling])
+    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND), said)
+
+
+def animate_walking(
+    wheel: Mover,
+    path: Path,
+    title: str = "",
+    display: Display | None = None,
+    *,
+    frames: int | None = None,
+    dark: bool = False,
+    said: Said = no_progress,
+) -> None:
+    """Write an animation (GIF or MP4) of one step of a walking wheel, seen from its hub.
+
+    Parameters
+    ----------
+    wheel : Mover
+        Of `walking_wheel`.
+    path : Path
+        The file.
+    title : str
+    display : Display, optional
+        Its units of length and angle; metres and radians if left out.
+    frames : int
+        Of a step; 36 if left out.
+    dark : bool
+        Light lines on a dark ground.
+    said : callable
+        Told after each frame how many are done, and of how many.
+    """
+    count = frames or FRAMES_OF_A_STEP
+    angles = -wheel.half + math.tau / wheel.legs * frame_ways("round", count)
+    layer = WalkingLayer(wheel, np.asarray(angles), shown_as("m", display)[0])
+    stage = Stage(
+        [layer], count, SIZE, title, lambda frame: turned_caption(float(angles[frame]), display), dark=dark
+    )
+    write_stage(stage, Path(path), Timing(count, PER_SECOND), said)

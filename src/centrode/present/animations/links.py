@@ -1,0 +1,93 @@
+"""Layers of the mechanism itself: frame, links, sliders, wheels, hinges, names; in the plane and on the sphere."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from centrode.present import signs
+from centrode.present.animations.layers import Array, View
+from centrode.present.animations.motions import MotionLayer
+from centrode.present.drawing import NAME_POINTS, draw_drive, draw_frame, draw_hinges, draw_links, used_points
+from centrode.present.labels import steady_offsets
+from centrode.present.obstacles import lines
+from centrode.present.scene import Scene
+from centrode.present.shown import plain
+from centrode.present.sphere.axes_drawing import arcs_on_paper
+from centrode.present.sphere.globe import Globe
+from centrode.present.sphere.globe_drawing import (
+    draw_arcs,
+    draw_circles,
+    draw_points,
+    draw_turns,
+    frame_globe,
+)
+from centrode.present.style import GROUND, INK, pens
+
+LOOKS = 12
+"""Positions over which places of names are chosen."""
+
+
+class LinksLayer(MotionLayer):
+    """A mechanism in its conventional signs, with the names of its points."""
+
+    def reach(self) -> Array:
+        """The whole motion; below hinges of the frame there is their ground."""
+        return self.box
+
+    def stand(self, view: View) -> None:
+        """Names get their places once, so that none jumps."""
+        super().stand(view)
+        self.pens = pens(self.scene.mechanism.link_names)
+        looks = np.unique(np.linspace(0, self.count - 1, LOOKS).astype(int))
+        point = view.per_inch / 72.0
+        moments = []
+        for look in looks.tolist():
+            places = {name: self.on_paper(place) for name, place in self.scene.at(look).items()}
+            moments.append((places, self._segments(look)))
+        offset = self.scene.sign + 0.85 * NAME_POINTS * point
+        self.names = steady_offsets(moments, offset, NAME_POINTS * point)
+
+    def ground(self, axes: Axes) -> None:
+        """The frame, or the sphere."""
+        if isinstance(self.scene, Globe):
+            limits = axes.get_xlim(), axes.get_ylim()
+            frame_globe(axes, self.scene)
+            axes.set_xlim(limits[0])
+            axes.set_ylim(limits[1])
+        else:
+            draw_frame(axes, self.scene, 0)
+        if self.film.course.loop == "back":  # the sense of the drive changes
+            return
+        if isinstance(self.scene, Globe):
+            draw_turns(axes, self.scene, 0)
+        else:
+            draw_drive(axes, self.scene, 0)
+
+    def draw(self, axes: Axes, frame: int) -> None:
+        """Everything that moves, and the hinges of the frame over it."""
+        sample = self.sample(frame)
+        if isinstance(self.scene, Globe):
+            draw_circles(axes, self.scene, sample, self.pens)
+            draw_arcs(axes, self.scene, sample, self.pens)
+            draw_points(axes, self.scene, sample, self.pens)
+        else:
+            draw_links(axes, self.scene, sample, self.pens)
+            draw_hinges(axes, self.scene, sample, self.pens)
+            self._draw_fixed_hinges(axes, self.scene, sample)
+        for name, place in self.scene.at(sample).items():
+            x, y = self.on_paper(place) + self.names.get(name, np.zeros(2))
+            axes.text(
+                x, y, plain(name), fontsize=NAME_POINTS, color=INK, ha="center", va="center", zorder=8
+            )  # fmt: skip
+
+    def _draw_fixed_hinges(self, axes: Axes, scene: Scene, sample: int) -> None:
+        used, places = used_points(scene), scene.at(sample)
+        for name in scene.mechanism.frame.points:
+            if name in used and name in places:
+                signs.hinge(axes, places[name], scene.sign, GROUND)
+
+    def _segments(self, sample: int) -> list[tuple[Array, Array]]:
+        if isinstance(self.scene, Globe):
+            return arcs_on_paper(self.scene, sample)
+        return lines(self.scene, sample)

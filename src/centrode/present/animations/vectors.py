@@ -1,0 +1,144 @@
+"""Layers of vectors at points: velocities, accelerations, forces; one scale over the whole animation, told below it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+
+from centrode.locale import _, ngettext
+from centrode.present.animations.arrows import arrow_outlines
+from centrode.present.animations.layers import NOTHING, Array, Layer, ScaleArrow
+from centrode.present.animations.margins import ARROW_HEAD
+from centrode.present.animations.motions import MotionLayer
+from centrode.present.scene import Scene
+from centrode.present.sphere.globe import Globe
+
+if TYPE_CHECKING:
+    from centrode.study.moving.films import Film
+
+LONGEST = 0.22
+"""Length of the longest vector, as a part of the mechanism's extent."""
+WILD = 6.0
+"""Vectors that run to infinity are drawn up to this many times the upper decile."""
+KEY = 0.8
+"""The arrow of the scale is at most this part of the longest vector."""
+
+
+@dataclass(frozen=True)
+class Vectors:
+    """Vectors at the samples of a film's frames.
+
+    Attributes
+    ----------
+    title, unit : str
+        What is shown, and the unit of the values.
+    places : (sample, vector, axis)
+        Where they begin, as the scene has it.
+    values : (sample, vector, axis)
+        In `unit`; NaN where there is none.
+    colours : sequence
+        One for each vector.
+    colour : Any
+        Of the arrow of the scale.
+    """
+
+    title: str
+    unit: str
+    places: Array
+    values: Array
+    colours: Sequence[Any]
+    colour: Any
+
+
+class VectorLayer(MotionLayer):
+    """Vectors whose lengths are everywhere the same number of drawing units to a unit of their values."""
+
+    def __init__(self, film: Film, scene: Scene | Globe, vectors: Vectors, level: float = 7.0) -> None:
+        super().__init__(film, scene)
+        self.vectors = vectors
+        self.level = level
+        sizes = np.linalg.norm(vectors.values, axis=2)
+        self.greatest = _greatest(sizes[np.isfinite(sizes)])
+        with np.errstate(invalid="ignore"):
+            self.shown = np.isfinite(sizes) & (sizes <= self.greatest * (1.0 + 1e-12)) & (sizes > 0.0)
+            self.left_out = int((sizes > self.greatest * (1.0 + 1e-12)).any(axis=1).sum())
+        extent = float(np.max(np.ptp(self.box, axis=0)))
+        self.scale = LONGEST * extent / self.greatest if self.greatest > 0.0 else 0.0
+
+    def arrows(self, sample: int) -> tuple[Array, Array]:
+        """Starts (n, 2) and components (n, 2) on paper of the vectors drawn at a sample, in drawing units."""
+        shown = self.shown[sample]
+        starts = self.on_paper(self.vectors.places[sample][shown])
+        return starts, self.scale * self.on_paper(self.vectors.values[sample][shown])
+
+    def reach(self) -> Array:
+        """All tips."""
+        found = [start + along for start, along in map(self.arrows, range(self.count))]
+        return np.concatenate([NOTHING, *found])
+
+    def draw(self, axes: Axes, frame: int) -> None:
+        """All vectors of a frame at once."""
+        sample = self.sample(frame)
+        starts, along = self.arrows(sample)
+        if not len(starts):
+            return
+        colours = [self.vectors.colours[k] for k in np.flatnonzero(self.shown[sample]).tolist()]
+        head = ARROW_HEAD * self.scene.extent / self.scene.inches
+        outlines = list(arrow_outlines(starts, along, head))
+        axes.add_collection(
+            PolyCollection(
+                outlines, facecolors=colours, edgecolors="white", linewidths=0.5, zorder=self.level
+            ),
+            autolim=False,
+        )
+
+    def scales(self) -> Sequence[ScaleArrow]:
+        """A round value not longer than the longest vector."""
+        if not self.greatest > 0.0:
+            return ()
+        value = round_down(KEY * self.greatest)
+        text = f"{self.vectors.title}: {value:g} {self.vectors.unit}"
+        return [ScaleArrow(self.scale * value, text, self.vectors.colour)]
+
+    def notes(self) -> Sequence[str]:
+        """What is not there, and what is too long to be drawn."""
+        found = []
+        if not self.greatest > 0.0:
+            found.append(_("{what}: none").format(what=self.vectors.title))
+        if self.left_out:
+            text = ngettext(
+                "{what}: too long to be drawn in {n} position", "{what}: too long to be drawn in {n} positions",
+                self.left_out,
+            )  # fmt: skip
+            found.append(text.format(what=self.vectors.title, n=self.left_out))
+        return found
+
+
+def share_scale(layers: Iterable[Layer]) -> None:
+    """Give vectors of one unit the same scale, the least of theirs: forces and loads can be compared."""
+    vectors = [one for one in layers if isinstance(one, VectorLayer) and one.scale > 0.0]
+    for layer in vectors:
+        layer.scale = min(one.scale for one in vectors if one.vectors.unit == layer.vectors.unit)
+
+
+def _greatest(sizes: Array) -> float:
+    """The length that the scale is chosen for: the greatest, unless that is far from all others."""
+    if not sizes.size:
+        return 0.0
+    usual = WILD * float(np.quantile(sizes, 0.9))
+    greatest = float(sizes.max())
+    return min(greatest, usual) if usual > 0.0 else greatest
+
+
+def round_down(value: float) -> float:
+    """The greatest of 1, 2 and 5 times powers of ten that is not above a value."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(
+        f"{max(step for step in (1.0, 2.0, 5.0) if step * power <= value * (1.0 + 1e-12)) * power:.3g}"
+    )

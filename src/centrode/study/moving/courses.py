@@ -1,0 +1,175 @@
+"""What an animation runs over: the part of a motion that is reached, and whether it runs round or there and back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.errors import InputError, Status
+from centrode.kinematics.motion import motion
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.solve import solve
+from centrode.kinematics.spans import INSIDE, is_uniform, span_at
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.study.forces.bearings import places_of
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Loop: TypeAlias = Literal["round", "back"]
+
+MOST_TURNS = 12
+"""Turns of a drive after which gears are still looked for in their first position."""
+SAMPLES_OF_TURNS = 2881
+"""Most samples of a course of several turns."""
+CLOSED = 1e-6
+"""Share of the mechanism's extent by which the last position may miss the first."""
+USABLE = (Status.OK, Status.SINGULAR)
+
+
+@dataclass(frozen=True)
+class Course:
+    """A motion to animate.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    motion : Dataset
+        Every sample of it is reached; from the first to the last it runs one way.
+    places : (sample)
+        What `ct.motion` takes as `at` for its samples.
+    loop : "round" or "back"
+        The last position is the first again, or the motion runs there and back.
+    turns : int
+        Turns of the drive in a round; 1 where that says nothing.
+    left_out : int
+        Samples of the range asked for that are not reached, or lie beyond what is not.
+    asked : int
+        All samples of that range.
+    """
+
+    mechanism: Mechanism
+    motion: xr.Dataset
+    places: Array
+    loop: Loop
+    turns: int = 1
+    left_out: int = 0
+    asked: int = 0
+
+    @property
+    def seconds(self) -> float:
+        """How long the motion takes until it begins again [s]."""
+        time = self.motion["time"].to_numpy()
+        return float(abs(time[-1] - time[0])) * (1.0 if self.loop == "round" else 2.0)
+
+
+def course_of(
+    mechanism: Mechanism,
+    samples: int | None = None,
+    start: float | None = None,
+    stop: float | None = None,
+) -> Course:
+    """The motion over a range, or over what the drive reaches if none is asked for.
+
+    A drive that turns as far as it likes runs round, with gears as many turns (at most 12) as bring them back. What is
+    limited runs between its limits, there and back.
+
+    Raises
+    ------
+    InputError
+        As `motion` does; no sample is reached.
+    """
+    prepared = ready(mechanism)
+    found = motion(mechanism, samples, start, stop)
+    free = {start, stop, mechanism.study.start, mechanism.study.stop} == {None} and is_uniform(
+        prepared.kinematics.path
+    )
+    asked, whole = found.sizes["sample"], usable(found)
+    turns = 1
+    if free and not whole.all():
+        found = _swing(prepared, found)
+    elif free and not closes(found) and mechanism.drives[0].kind == "angle":
+        found, turns = _several_turns(mechanism, found)
+    return course_from(mechanism, found, turns=turns, asked=asked, reached=int(whole.sum()))
+
+
+def course_from(
+    mechanism: Mechanism, found: xr.Dataset, *, turns: int = 1, asked: int = 0, reached: int | None = None
+) -> Course:
+    """The reached part of a motion about the initial position; of one that does not hold it, the longest part."""
+    whole = usable(found)
+    if not whole.any():
+        raise InputError("", _("no sample has every point in place"), _("ask for another range"))
+    first, last = _part(whole, np.abs(found["time"].to_numpy()))
+    part = found.isel(sample=slice(first, last + 1))
+    places = places_of(mechanism, part)
+    if places[0] == places[-1]:
+        raise InputError("", _("only one position is reached: nothing moves"), _("ask for another range"))
+    loop: Loop = "round" if whole.all() and closes(part) else "back"
+    asked = asked or len(whole)
+    reached = len(part["sample"]) if reached is None else reached
+    return Course(mechanism, part, places, loop, turns, asked - reached, asked)
+
+
+def usable(found: xr.Dataset) -> npt.NDArray[np.bool_]:
+    """Samples with a position that the drive reaches."""
+    placed = np.isfinite(found["position"].transpose("sample", "point", "axis").to_numpy()).all(axis=(1, 2))
+    return np.asarray(np.isin(found["status"].to_numpy(), USABLE) & placed)
+
+
+def closes(found: xr.Dataset) -> bool:
+    """Whether the last position is the first: every point in its place, every link turned as it was."""
+    places = found["position"].transpose("sample", "point", "axis").to_numpy()
+    known = places[np.isfinite(places).all(axis=(1, 2))]
+    extent = float(np.ptp(known, axis=(0, 1)).max()) if len(known) else 0.0
+    if not np.abs(places[-1] - places[0]).max() <= CLOSED * extent:
+        return False
+    if "angle" not in found:
+        return True
+    turned = found["angle"].isel(sample=-1).to_numpy() - found["angle"].isel(sample=0).to_numpy()
+    turned = turned[np.isfinite(turned)]
+    return bool((np.abs(np.remainder(turned + math.pi, math.tau) - math.pi) <= math.tau * CLOSED).all())
+
+
+def _part(whole: npt.NDArray[np.bool_], distance: Array) -> tuple[int, int]:
+    """First and last of the reached samples in a row about the one nearest to the start, else of the longest row."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], whole, [False]]).astype(int)))
+    rows = [(int(first), int(last) - 1) for first, last in edges.reshape(-1, 2)]
+    start = int(np.argmin(distance))
+    return next(
+        (row for row in rows if row[0] <= start <= row[1]), max(rows, key=lambda row: row[1] - row[0])
+    )
+
+
+def _swing(prepared: Ready, found: xr.Dataset) -> xr.Dataset:
+    """The same between the nearest limits on both sides of the initial position, if all of that is reached."""
+    path = prepared.kinematics.path
+    way = np.linspace(-math.tau, math.tau, 3) if path.driven[0].drive.kind == "angle" else np.zeros(1)
+    reach = solve(prepared, span_at(path, path.initial + way)).branches.reach(0)
+    low, high = (float(end) for end in reach)
+    if not (math.isfinite(low) and math.isfinite(high) and high - low < math.tau):
+        return found
+    inside = INSIDE * (high - low)
+    ends = (low + inside, high - inside)
+    if found["time"][-1] < found["time"][0] or found["drive_value"][-1, 0] < found["drive_value"][0, 0]:
+        ends = ends[::-1]
+    swung = motion(prepared.mechanism, found.sizes["sample"], *ends)
+    return swung if usable(swung).all() else found
+
+
+def _several_turns(mechanism: Mechanism, found: xr.Dataset) -> tuple[xr.Dataset, int]:
+    """The same over as many turns as bring everything back; over one if no such number is found."""
+    values = found["drive_value"].to_numpy()[:, 0]
+    first, turn = float(values[0]), float(values[-1] - values[0])
+    trial = motion(mechanism, at=first + turn * np.arange(MOST_TURNS + 1))
+    if not usable(trial).all():
+        return found, 1
+    for turns in range(2, MOST_TURNS + 1):
+        if closes(trial.isel(sample=slice(0, turns + 1))):
+            samples = min(turns * (found.sizes["sample"] - 1) + 1, SAMPLES_OF_TURNS)
+            return motion(mechanism, samples, first, first + turns * turn), turns
+    return found, 1
