@@ -108,3 +108,12 @@ def test_the_series_does_not_even_converge_at_ninety_degrees() -> None:
     assert math.radians(87.2) < radius < math.radians(87.4)
     assert errors[100][0] > 1e3 * errors[200][0] > 0
     assert not errors[500][1] < 100 * errors[100][1]  # NaN: beyond |eta| = 1
+
+
+@pytest.mark.parametrize(
+    "row",
+    [*validation.laws().rows, *validation.flat_face().rows],
+    ids=lambda row: f"{row.quantity} {row.symbol}",
+)
+def test_printed_numbers_of_plate_cams(row: Row) -> None:
+    assert row.agrees, row

@@ -15,6 +15,7 @@ What the keys mean is told in {meaning}.
 Files are TOML. A number is in SI (m, kg, s, rad, N); a text has a unit: `"28.6 deg"`, `"0.5 mm"`. Keys that are not
 here are refused.
 """
+FILES = {"Cam": "A cam from a curvature law", "PlateCam": "A plate cam under its follower"}
 NAME = 40
 """Letters of the longest name."""
 WORDS = {
@@ -29,9 +30,16 @@ def mechanisms() -> str:
 
 
 def cams() -> str:
-    """The page of cams as Markdown."""
-    head = HEAD.format(things="cams", meaning="[Cams from a curvature law](../cams.md)")
-    return _page(head, ct.cam_schema())
+    """The page of cams as Markdown: each kind of file, then their parts."""
+    schema = ct.cam_schema()
+    meaning = (
+        "[Cams from a curvature law](../cams.md),\nof plate cams in [Cams and followers](../cam-followers.md)"
+    )
+    files = [one["$ref"].rpartition("/")[2] for one in schema["anyOf"]]
+    parts = {name: part for name, part in schema["$defs"].items() if name not in files}
+    tables = [f"## {FILES[name]}\n\n{_table(schema['$defs'][name])}" for name in files]
+    head = HEAD.format(things="cams", meaning=meaning)
+    return "\n".join([head, *tables, *(_part(name, inner, schema) for name, inner in parts.items())])
 
 
 def _page(head: str, schema: Schema) -> str:
@@ -54,8 +62,8 @@ def _places(name: str, whole: Schema) -> list[str]:
                 value.get("type", ""), f"[{key}]"
             )
             if reference in _references(value):
-                found.append(spelled if not owner else f"{key} of {owner}")
-    return found
+                found.append(spelled if owner in ("", *FILES) else f"{key} of {owner}")
+    return list(dict.fromkeys(found))
 
 
 def _references(schema: Any) -> set[str]:

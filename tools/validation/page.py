@@ -21,6 +21,8 @@ SOURCES = (
     kinematics.coursework,
     machines.coursework,
     cams.paper,
+    cams.laws,
+    cams.flat_face,
     machines.thesis,
     literature.squeezer,
 )
