@@ -23,6 +23,11 @@ def with_unit(numbers: Numbers, value: float, unit: str) -> str:
     return f"{size} thin {quoted(label)}" if label else size
 
 
+def in_si(numbers: Numbers) -> Numbers:
+    """The same spelling for formulas, whose numbers have to be in units that go together."""
+    return Numbers(digits=numbers.digits)
+
+
 def sum_of(numbers: Numbers, values: Sequence[float], unit: str = "1") -> str:
     """Quantities added up, each with its sign; a long sum by its first and last terms."""
     shown = list(values) if len(values) <= LONGEST else [*values[: LONGEST - 2], values[-1]]

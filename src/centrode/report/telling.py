@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from centrode.locale import _
 from centrode.report.blocks import Check, Picture, Table, shown
 from centrode.report.figures import picture
-from centrode.report.numbers import NOTHING, respelled
+from centrode.report.numbers import NOTHING, respelled, spelled_number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,9 +48,18 @@ def numeric(cells: Sequence[Sequence[str]], columns: int) -> tuple[bool, ...]:
     )
 
 
-def checked(text: str, off: float, allowed: float) -> Check:
-    """How something was verified; a difference that is no number does not hold."""
-    return Check(told(text), bool(off <= allowed))
+def measured(text: str, off: float, size: float, allowed: float) -> Check:
+    """How something was verified: by which `share` of its size two routes differ, and whether that is rounding.
+
+    A difference that is no number does not hold; of nothing, no share can be told, and only nothing is right.
+    """
+    share = off / size if size else off
+    return Check(text.format(share=share_text(share)), bool(share <= allowed))
+
+
+def share_text(share: float) -> str:
+    """A small share as a check tells it."""
+    return spelled_number(f"{share:.1e}") if share else "0"
 
 
 def pictures(figures: Mapping[str, Figure], captions: Mapping[str, str]) -> list[Picture]:

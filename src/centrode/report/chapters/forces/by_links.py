@@ -49,6 +49,12 @@ class LinkMotion:
         along = (self.velocity.conjugate() * self.acceleration).real
         return 2.0 * (self.mass * along + self.inertia * self.turning * self.bending)
 
+    @property
+    def slope_terms(self) -> float:
+        """The greatest that the terms of that share could be."""
+        moved = self.mass * abs(self.velocity) * abs(self.acceleration)
+        return 2.0 * (moved + self.inertia * abs(self.turning * self.bending))
+
 
 def motions_of_links(mechanism: Mechanism, here: xr.Dataset) -> list[LinkMotion]:
     """Every link with mass at one sample of a motion."""

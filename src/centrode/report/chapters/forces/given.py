@@ -136,9 +136,11 @@ def _machine(mechanism: Mechanism) -> Table:
     rows = [(_("mean speed of the drive"), f"{machine.mean_speed:.6g} rad/s")]
     if machine.fluctuation is not None:
         rows.append((_("admissible coefficient of fluctuation"), f"{machine.fluctuation:.6g}"))
-    for number_, shaft in enumerate(machine.shafts, start=1):
-        label = shaft.name or _("shaft {number}").format(number=number_)
-        text = _("{inertia:.6g} kg m², turning {ratio:.6g} times as fast as the drive")
+    for number, shaft in enumerate(machine.shafts, start=1):
+        label = shaft.name or _("shaft {number}").format(number=number)
+        text = _("{inertia:.6g} kg m², {ratio:.6g} turns in a turn of the drive")
+        if shaft.ratio == 1.0:
+            text = _("{inertia:.6g} kg m², on the shaft of the drive")
         rows.append((label, text.format(inertia=shaft.inertia, ratio=shaft.ratio)))
     if machine.driving is not None:
         rows.append((_("course of the driving moment"), machine.driving))

@@ -52,9 +52,8 @@ def name_of_place(study: ReportStudy, at: float) -> str:
 
 
 def head_of_places(study: ReportStudy) -> str:
-    """Head of a column of places."""
-    name = shown(study.mechanism.drives[0].id) if by_value(study) else "$t$"
-    return study.numbers.head(name, unit_of_place(study))
+    """Head of a column of places, without the unit."""
+    return shown(study.mechanism.drives[0].id) if by_value(study) else "$t$"
 
 
 def places_of(study: ReportStudy, data: xr.Dataset) -> np.ndarray:

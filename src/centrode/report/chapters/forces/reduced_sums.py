@@ -12,8 +12,8 @@ from centrode.report.chapters.forces.by_links import LinkMotion, motions_of_link
 from centrode.report.chapters.forces.names import load_name
 from centrode.report.chapters.forces.places import instants, name_of_place, not_reached
 from centrode.report.chapters.forces.results import motion_at_instants, reduced_at_instants
-from centrode.report.formulas import factor, indexed, squared, sum_of, with_unit
-from centrode.report.telling import checked
+from centrode.report.formulas import factor, in_si, indexed, squared, sum_of, with_unit
+from centrode.report.telling import measured
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Lines = list[tuple[str, ...]]
 ROUNDINGS = 64.0
-"""Roundings in a share m v^2 + J phi^2 by either route, each of the size of the share over the sine of the sharpest angle."""
+"""Roundings in a share m v^2 + J phi^2 by either route, each of the size of its terms."""
 
 
 def sums_at_instants(study: ReportStudy) -> list[Section]:
@@ -52,7 +52,7 @@ def _at(study: ReportStudy, here: xr.Dataset, k: int) -> list[Block]:
 
 def _table_of_links(study: ReportStudy, links: list[LinkMotion]) -> Table:
     """What the sums are made of: masses and coefficients."""
-    numbers, by = study.numbers, "m" if study.mechanism.drives[0].kind != "angle" else "rad"
+    numbers, by = in_si(study.numbers), "m" if study.mechanism.drives[0].kind != "angle" else "rad"
     units = ("kg", "kg m^2", f"m/{by}" if by == "rad" else "1", "1" if by == "rad" else "rad/m")
     heads = ("$m$", "$J$", "$v'$", "$phi'$")
     columns = [tuple(shown(one.link) for one in links)]
@@ -74,7 +74,7 @@ def _table_of_links(study: ReportStudy, links: list[LinkMotion]) -> Table:
 
 def _shares(study: ReportStudy, links: list[LinkMotion]) -> Lines:
     """J of each link, with its numbers."""
-    numbers, lines = study.numbers, []
+    numbers, lines = in_si(study.numbers), []
     for one in links:
         letters, terms = [], []
         if one.mass:
@@ -91,7 +91,7 @@ def _shares(study: ReportStudy, links: list[LinkMotion]) -> Lines:
 
 
 def _totals(study: ReportStudy, here: xr.Dataset) -> Lines:
-    numbers, lines = study.numbers, []
+    numbers, lines = in_si(study.numbers), []
     for symbol, name, parts in (
         ("J", "reduced_inertia", "reduced_inertia_part"),
         ("J'", "reduced_inertia_slope", "reduced_inertia_slope_part"),
@@ -117,19 +117,13 @@ def _table_of_loads(study: ReportStudy, here: xr.Dataset) -> Table:
 
 def _checks(here: xr.Dataset, links: list[LinkMotion]) -> list[Check]:
     """The sums over the links' own motions beside the reduction."""
-    found = []
-    sizes = sum(one.reduced for one in links)
-    bends = sum(
-        2 * (one.mass * abs(one.velocity) * abs(one.acceleration) + one.inertia * abs(one.turning * one.bending))
-        for one in links
-    )
-    for name, text, value, size in (
-        ("reduced_inertia", _("$J$ as a sum over the motions of the links is off from the reduction by {share:.1e} of it"),
-         sum(one.reduced for one in links), sizes),
-        ("reduced_inertia_slope", _("$J'$ likewise, by {share:.1e} of its terms"),
-         sum(one.slope for one in links), bends),
-    ):  # fmt: skip
-        if size:
-            off = abs(value - float(here[name])) / size
-            found.append(checked(text.format(share=off), off, ROUNDINGS * float(np.finfo(float).eps)))
-    return found
+    allowed = ROUNDINGS * float(np.finfo(float).eps)
+    inertia = sum(one.reduced for one in links)
+    off = abs(inertia - float(here["reduced_inertia"]))
+    first = _("The inertia, summed up from the motion of the links, is off by {share} of it.")
+    found = [measured(first, off, inertia, allowed)]
+    slope = sum(one.slope for one in links)
+    terms = sum(one.slope_terms for one in links)
+    off = abs(slope - float(here["reduced_inertia_slope"]))
+    second = _("Its derivative, summed up likewise, is off by {share} of its greatest terms.")
+    return [*found, measured(second, off, terms, allowed)]

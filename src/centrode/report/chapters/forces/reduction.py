@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from centrode.locale import _
 from centrode.present.forces.reduction_figures import reduction_figures
 from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table
@@ -13,6 +11,7 @@ from centrode.report.chapters.forces.names import load_name
 from centrode.report.chapters.forces.places import few, head_of_places, places_of, unit_of_place
 from centrode.report.chapters.forces.reduced_sums import sums_at_instants
 from centrode.report.chapters.forces.results import has_forces, reduced
+from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.report.telling import facts, listed, pictures
 from centrode.study.forces.reducing import reduction_parts, reduction_rows
 
@@ -82,15 +81,9 @@ def _meaning(study: ReportStudy) -> tuple[Block, ...]:
 
 def _course(study: ReportStudy) -> Table:
     """A few even samples."""
-    data, numbers = reduced(study), study.numbers
-    kept = few(data.sizes["sample"])
-    columns = [numbers.column(places_of(study, data)[kept], unit_of_place(study))]
-    heads = [head_of_places(study)]
+    data = reduced(study)
+    columns = [Column(head_of_places(study), unit_of_place(study), places_of(study, data))]
     for name, symbol in COLUMNS:
-        unit = str(data[name].attrs["units"])
-        heads.append(numbers.head(f"${symbol}$", unit))
-        values = data[name].to_numpy()
-        least = float(np.nanmax(np.abs(values), initial=0.0)) * 1e-12
-        columns.append(numbers.column(values[kept], unit, least))
+        columns.append(Column(f"${symbol}$", str(data[name].attrs["units"]), data[name].to_numpy()))
     caption = _("Reduced inertia, its derivative and the reduced moment at even steps")
-    return Table(tuple(heads), tuple(zip(*columns, strict=True)), caption, (True,) * len(heads))
+    return over_samples(study.numbers, columns, few(data.sizes["sample"]), caption)
