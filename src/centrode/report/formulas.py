@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from centrode.model.asked import Display
 from centrode.present.equations.typst import quoted
 from centrode.report.numbers import Numbers
 
 LONGEST = 6
 """Terms of a sum beyond which only its first and its last ones are written."""
+
+ROUNDING = 1e-13
+"""Terms below this share of the greatest are zero."""
 
 
 def indexed(letter: str, *below: str) -> str:
@@ -25,12 +29,14 @@ def with_unit(numbers: Numbers, value: float, unit: str) -> str:
 
 def in_si(numbers: Numbers) -> Numbers:
     """The same spelling for formulas, whose numbers have to be in units that go together."""
-    return Numbers(digits=numbers.digits)
+    return Numbers(Display(), numbers.digits)
 
 
 def sum_of(numbers: Numbers, values: Sequence[float], unit: str = "1") -> str:
-    """Quantities added up, each with its sign; a long sum by its first and last terms."""
-    shown = list(values) if len(values) <= LONGEST else [*values[: LONGEST - 2], values[-1]]
+    """Quantities added up, each with its sign; a long sum by its first and last terms, what is rounding as zero."""
+    least = ROUNDING * max(map(abs, values), default=0.0)
+    values = [0.0 if abs(value) <= least else value for value in values]
+    shown = values if len(values) <= LONGEST else [*values[: LONGEST - 2], values[-1]]
     parts = [
         numbers.math(value, unit)
         if not place

@@ -35,9 +35,11 @@ def facts(rows: Iterable[tuple[str, str]], caption: str = "") -> Table:
 
 
 def listed(header: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> Table:
-    """A table of another room; columns that hold numbers only are set flush right."""
-    cells = tuple(tuple(told(cell) for cell in row) for row in rows)
-    return Table(tuple(map(told, header)), cells, caption, numeric(cells, len(header)))
+    """A table of another room; columns of numbers only are set flush right, columns of nothing are left out."""
+    cells = [[told(cell) for cell in row] for row in rows]
+    kept = [k for k in range(len(header)) if any(row[k] for row in cells)]
+    texts = tuple(tuple(row[k] for k in kept) for row in cells)
+    return Table(tuple(told(header[k]) for k in kept), texts, caption, numeric(texts, len(kept)))
 
 
 def numeric(cells: Sequence[Sequence[str]], columns: int) -> tuple[bool, ...]:

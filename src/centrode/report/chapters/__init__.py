@@ -12,6 +12,14 @@ from typing import NamedTuple
 from centrode.locale import mark
 from centrode.report.blocks import Chapter
 from centrode.report.chapters.data import data_chapter
+from centrode.report.chapters.forces.flywheel import flywheel_chapter
+from centrode.report.chapters.forces.given import masses_and_loads
+from centrode.report.chapters.forces.joints import reactions_chapter
+from centrode.report.chapters.forces.polygons import polygons_chapter
+from centrode.report.chapters.forces.real_motion import real_motion_chapter
+from centrode.report.chapters.forces.reduction import reduction_chapter
+from centrode.report.chapters.forces.running import simulation_chapter
+from centrode.report.chapters.forces.shaken import balance_chapter
 from centrode.report.study import ReportStudy
 
 
@@ -24,4 +32,12 @@ class Kind(NamedTuple):
 
 CHAPTERS: Mapping[str, Kind] = {
     "data": Kind(mark("Data"), data_chapter),
+    "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
+    "reduction": Kind(mark("Reduction to the drive"), reduction_chapter),
+    "flywheel": Kind(mark("Flywheel"), flywheel_chapter),
+    "real-motion": Kind(mark("Real motion"), real_motion_chapter),
+    "simulation": Kind(mark("Motion under loads"), simulation_chapter),
+    "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
+    "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
+    "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
 }

@@ -94,7 +94,10 @@ def _works(study: ReportStudy, found: Flywheel) -> Lines:
 def _course(study: ReportStudy) -> Table:
     """Moments, works and energies at even steps."""
     steady = machine_of(study).steady
-    columns = [Column(f"${symbol}$", str(steady[name].attrs["units"]), steady[name].to_numpy()) for name, symbol in COURSE]
+    columns = [
+        Column(f"${symbol}$", str(steady[name].attrs["units"]), steady[name].to_numpy())
+        for name, symbol in COURSE
+    ]
     caption = _("Moments, works and energies over the cycle")
     return over_samples(study.numbers, columns, few(steady.sizes["sample"]), caption)
 
@@ -136,7 +139,9 @@ def _wheel(study: ReportStudy, found: Flywheel) -> list[Block]:
             for one, other in ((letters, "i^2"), (above, f"{factor(numbers, ratio)}^2"))
         )
     lines: Lines = [("J_upright(f)", letters, above, with_unit(numbers, found.added, "kg m^2"))]
-    meaning = _("$J_upright(s)$ is the inertia of the shafts that are there, $J_upright(f)$ that of the flywheel.")
+    meaning = _(
+        "$J_upright(s)$ is the inertia of the shafts that are there, $J_upright(f)$ that of the flywheel."
+    )
     blocks: list[Block] = [Paragraph(meaning), Formula(tuple(lines))]
     for title, wheel in ((_("A rim:"), found.rim), (_("A disc:"), found.disc)):
         if wheel is not None:
@@ -147,7 +152,10 @@ def _wheel(study: ReportStudy, found: Flywheel) -> list[Block]:
 def _sizes(study: ReportStudy, wheel: Wheel, density: float) -> Lines:
     """Outer diameter, bore, width and mass, and the inertia that they have."""
     numbers = in_si(study.numbers)
-    lines: Lines = [("rho", with_unit(numbers, density, "kg/m^3")), ("D", with_unit(numbers, wheel.outer, "m"))]
+    lines: Lines = [
+        ("rho", with_unit(numbers, density, "kg/m^3")),
+        ("D", with_unit(numbers, wheel.outer, "m")),
+    ]
     if wheel.inner:
         lines.append(("d", with_unit(numbers, wheel.inner, "m")))
     lines.append(("b", with_unit(numbers, wheel.width, "m")))
@@ -165,7 +173,9 @@ def _energy_check(study: ReportStudy, found: Flywheel) -> list[Check]:
     energy = (kinetic - steady["work"]).to_numpy()
     size = float(kinetic.max())
     allowed = 2.0 * found.error / size + 64.0 * float(np.finfo(float).eps)
-    text = _("Kinetic energy at the real speed less the works stays the same over the cycle to {share} of it.")
+    text = _(
+        "Kinetic energy at the real speed less the works stays the same over the cycle to {share} of it."
+    )
     return [measured(text, float(np.ptp(energy)), size, allowed)]
 
 

@@ -52,10 +52,17 @@ def _masses(mechanism: Mechanism) -> tuple[Block, ...]:
     blocks: list[Block] = []
     if masses:
         flat = mechanism.space == "plane"
-        head = [_("link"), _("mass, kg"), _("centre of mass"), *([_("central inertia, kg m²")] if flat else [])]
+        head = [
+            _("link"),
+            _("mass, kg"),
+            _("centre of mass"),
+            *([_("central inertia, kg m²")] if flat else []),
+        ]
         rows = [[one.link, f"{float(one.mass):.6g}", _centre(mechanism, one)] for one in masses]
         if flat:
-            rows = [[*row, f"{float(one.moment_of_inertia):.6g}"] for row, one in zip(rows, masses, strict=True)]
+            rows = [
+                [*row, f"{float(one.moment_of_inertia):.6g}"] for row, one in zip(rows, masses, strict=True)
+            ]
         blocks.append(listed(head, rows))
     massless = ", ".join(massless_links(mechanism))
     if massless:

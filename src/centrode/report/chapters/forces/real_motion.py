@@ -62,7 +62,9 @@ def _meaning() -> tuple[Block, ...]:
         " from the equation of motion. To first order, as courses have it:"
     )
     then = _("The numbers below are exact; those to first order ($omega_1$, $epsilon_1$) stand beside them.")
-    links = _("Velocities and accelerations of the links follow with the derivatives by the angle of the drive:")
+    links = _(
+        "Velocities and accelerations of the links follow with the derivatives by the angle of the drive:"
+    )
     lines = (("arrow(v)", "arrow(r)' omega"), ("arrow(a)", "arrow(r)'' omega^2 + arrow(r)' epsilon"))
     return Paragraph(text), Formula((OMEGA, EPSILON)), Paragraph(then), Paragraph(links), Formula(lines)
 
@@ -95,7 +97,10 @@ def _links(study: ReportStudy, here: xr.Dataset) -> list[Block]:
     ]
     units = ("rad/s", "rad/s^2")
     values = np.array(rows)
-    heads = (_("link"), *(study.numbers.head(f"${s}$", u) for s, u in zip(("omega", "epsilon"), units, strict=True)))
+    heads = (
+        _("link"),
+        *(study.numbers.head(f"${s}$", u) for s, u in zip(("omega", "epsilon"), units, strict=True)),
+    )
     return [_named(study, list(study.mechanism.links), values, units, heads, _("Links"))]
 
 
@@ -132,7 +137,10 @@ def _named(
 
 def _course(study: ReportStudy) -> Table:
     steady = machine_of(study).steady
-    columns = [Column(f"${symbol}$", str(steady[name].attrs["units"]), steady[name].to_numpy()) for name, symbol in COURSE]
+    columns = [
+        Column(f"${symbol}$", str(steady[name].attrs["units"]), steady[name].to_numpy())
+        for name, symbol in COURSE
+    ]
     caption = _("Speed and acceleration of the drive over the cycle")
     return over_samples(study.numbers, columns, few(steady.sizes["sample"]), caption)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from centrode.locale import _
 from centrode.present.forces.reduction_figures import reduction_figures
 from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table
-from centrode.report.chapters.forces.names import load_name
+from centrode.report.chapters.forces.names import load_name, with_load_names
 from centrode.report.chapters.forces.places import few, head_of_places, places_of, unit_of_place
 from centrode.report.chapters.forces.reduced_sums import sums_at_instants
 from centrode.report.chapters.forces.results import has_forces, reduced
@@ -26,7 +26,7 @@ def reduction_chapter(study: ReportStudy) -> Chapter | None:
     if not has_forces(study):
         return None
     mechanism, data = study.mechanism, reduced(study)
-    sections = [Section("", (*_meaning(study), facts(reduction_rows(mechanism, data))))]
+    sections = [Section("", (*_meaning(study), facts(_rows(study))))]
     if "reduced_inertia" in data:
         sections += sums_at_instants(study)
         sections.append(Section(_("Over the motion"), (_course(study),)))
@@ -42,6 +42,13 @@ def reduction_chapter(study: ReportStudy) -> Chapter | None:
     drawn = pictures(reduction_figures(mechanism, data), captions)
     sections.append(Section(_("Figures"), tuple(drawn)))
     return Chapter("reduction", _("Reduction to the drive"), tuple(sections))
+
+
+def _rows(study: ReportStudy) -> list[tuple[str, str]]:
+    """What was reduced, at which speed."""
+    data = reduced(study)
+    labels = [str(label) for label in data["load"].to_numpy()]
+    return with_load_names(study.mechanism, labels, reduction_rows(study.mechanism, data))
 
 
 def _part(study: ReportStudy, label: str) -> str:

@@ -24,7 +24,9 @@ class Column(NamedTuple):
     values: np.ndarray
 
 
-def over_samples(numbers: Numbers, columns: Sequence[Column], kept: Sequence[int], caption: str = "") -> Table:
+def over_samples(
+    numbers: Numbers, columns: Sequence[Column], kept: Sequence[int], caption: str = ""
+) -> Table:
     """A table of some samples; what rounding has left of zero is shown as zero."""
     heads = tuple(numbers.head(one.head, one.unit) for one in columns)
     texts = []
