@@ -40,10 +40,11 @@ def polygons_chapter(study: ReportStudy) -> Chapter | None:
         " its outer reactions, the polygon the rest. The drawings are to the scales that they name."
     )
     sections = [Section("", (Paragraph(text),))]
-    made, refusals = 0, []
-    for number, at in enumerate(instants(study)):
+    made = 0
+    refusals: list[CentrodeError] = []
+    for at in instants(study):
         try:
-            found = study.once(("polygons", at), lambda at=at: force_polygons(study.mechanism, at))
+            found = force_polygons(study.mechanism, at)
         except CentrodeError as refusal:
             refusals.append(refusal)
             sections.append(Section(name_of_place(study, at), (Paragraph(told(str(refusal))),)))

@@ -74,7 +74,8 @@ def _table_of_links(study: ReportStudy, links: list[LinkMotion]) -> Table:
 
 def _shares(study: ReportStudy, links: list[LinkMotion]) -> Lines:
     """J of each link, with its numbers."""
-    numbers, lines = in_si(study.numbers), []
+    numbers = in_si(study.numbers)
+    lines: Lines = []
     for one in links:
         letters, terms = [], []
         if one.mass:
@@ -91,7 +92,8 @@ def _shares(study: ReportStudy, links: list[LinkMotion]) -> Lines:
 
 
 def _totals(study: ReportStudy, here: xr.Dataset) -> Lines:
-    numbers, lines = in_si(study.numbers), []
+    numbers = in_si(study.numbers)
+    lines: Lines = []
     for symbol, name, parts in (
         ("J", "reduced_inertia", "reduced_inertia_part"),
         ("J'", "reduced_inertia_slope", "reduced_inertia_slope_part"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.locale import _
 from centrode.present.forces.reduction_figures import reduction_figures
@@ -18,6 +18,7 @@ from centrode.study.forces.reducing import reduction_parts, reduction_rows
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy
 
+Lines: TypeAlias = tuple[tuple[str, ...], ...]
 COLUMNS = (("reduced_inertia", "J"), ("reduced_inertia_slope", "J'"), ("reduced_moment", "M"))
 
 
@@ -62,7 +63,7 @@ def _meaning(study: ReportStudy) -> tuple[Block, ...]:
             "With several drives the masses make an inertia matrix and the loads a generalised force of each drive:"
             " kinetic energy and power stay those of the mechanism."
         )
-        lines = (("T", "1/2 sum_(i, k) M_(i k) dot(q)_i dot(q)_k"), ("P", "sum_i Q_i dot(q)_i"))
+        lines: Lines = (("T", "1/2 sum_(i, k) M_(i k) dot(q)_i dot(q)_k"), ("P", "sum_i Q_i dot(q)_i"))
         return Paragraph(text), Formula(lines)
     text = _(
         "The mechanism is replaced by its drive alone, with an inertia $J(q)$ of the same kinetic energy and a moment"

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from centrode.dynamics.balancing.balance import Balance, balance
 from centrode.dynamics.balancing.shaking import shaking
-from centrode.dynamics.force_polygons.solving import force_polygons
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.reduction import reduce
 from centrode.dynamics.simulation.simulate import simulate
@@ -17,7 +16,6 @@ from centrode.study.forces.machines import MachineResults, machine_results
 if TYPE_CHECKING:
     import xarray as xr
 
-    from centrode.dynamics.force_polygons.result import ForcePolygons
     from centrode.report.study import ReportStudy
 
 
@@ -58,15 +56,6 @@ def reactions_of(study: ReportStudy) -> xr.Dataset:
 def reactions_at_instants(study: ReportStudy) -> xr.Dataset:
     """Forces in every joint at the instants."""
     return study.once("reactions at instants", lambda: reactions(study.mechanism, at=instants(study)))
-
-
-def polygons_of(study: ReportStudy) -> tuple[ForcePolygons, ...]:
-    """Force polygons of every instant."""
-
-    def made() -> tuple[ForcePolygons, ...]:
-        return tuple(force_polygons(study.mechanism, at) for at in instants(study))
-
-    return study.once("polygons", made)
 
 
 def simulated(study: ReportStudy) -> xr.Dataset:
