@@ -86,3 +86,16 @@ def test_the_sphere_is_refused() -> None:
     mechanism = ct.example("spherical-four-bar")
     with pytest.raises(ct.InputError, match="plane"):
         instant_of(ct.equations(mechanism), ct.motion(mechanism, 3), 0)
+
+
+def test_another_unit_of_length_changes_lengths_alone() -> None:
+    mechanism = ct.example("scissor-lift-cylinder")
+    equations, motion = ct.equations(mechanism), ct.motion(mechanism, 3)
+    metres, millimetres = (instant_of(equations, motion, 1, length) for length in (1.0, 1e3))
+    for group, one, other in zip(equations.groups, metres.velocities, millimetres.velocities, strict=True):
+        for unknown, x, y in zip(group.unknowns, one.solution, other.solution, strict=True):
+            factor = 1e3 if unknown.name.startswith("slide") else 1.0
+            assert y == pytest.approx(factor * x, rel=256 * EPS * one.condition)
+    assert [r.closed for r in rates_compared(equations, metres, motion, 1)] == [
+        r.closed for r in rates_compared(equations, millimetres, motion, 1)
+    ]

@@ -67,12 +67,14 @@ class Instant:
 
     Attributes
     ----------
-    values : number of every letter that can be told [m, rad, and by seconds]
+    values : number of every letter that can be told [rad, lengths in their unit, and by seconds]
+    length : how many of the unit of lengths make a metre
     velocities, accelerations : systems of the groups, in their order
     together : of all rates as one system, where the equations have it
     """
 
     values: Mapping[Letter, float]
+    length: float
     velocities: tuple[SolvedSystem, ...]
     accelerations: tuple[SolvedSystem, ...]
     together: SolvedSystem | None
@@ -84,23 +86,24 @@ class Instant:
             return float(total.value(np, self.values.__getitem__))
 
 
-def instant_of(equations: Equations, motion: xr.Dataset, sample: int) -> Instant:
-    """The letters at one sample of a motion, whose places are taken as they are.
+def instant_of(equations: Equations, motion: xr.Dataset, sample: int, length: float = 1.0) -> Instant:
+    """The letters at one sample of a motion, whose places are taken as they are; `length` units make a metre.
 
     Raises InputError on the sphere, where the letters have other places.
     """
     board = equations.board
     if not isinstance(board, Board):
         raise InputError("space", _("letters are told their numbers in the plane only"))
-    values = dict(board.alphabet.values)
-    values |= Standing(board, motion, sample).values()
+    meanings = board.alphabet.meanings
+    units = {letter: length if one.unit == "m" else 1.0 for letter, one in meanings.items()}
+    values = dict(board.alphabet.values) | Standing(board, motion, sample).values()
+    values = {letter: x * units[letter] for letter, x in values.items()}
     for one in equations.given.drives:
         driven = next(by for by in board.ready.kinematics.path.driven if by.drive.id == one.drive)
         jet = driven.value(JETS, Jet.variable(float(motion["time"][sample]), 2))
         orders = [jet.derivative(k) for k in range(3)] if isinstance(jet, Jet) else [jet, 0.0, 0.0]
-        values |= {
-            letter: float(x) for letter, x in zip((one.letter, one.rate, one.second), orders, strict=True)
-        }
+        letters = (one.letter, one.rate, one.second)
+        values |= {each: float(x) * units[one.letter] for each, x in zip(letters, orders, strict=True)}
     for letter, other in equations.given.names.items():
         values[other] = values[letter]
     found: list[tuple[SolvedSystem, ...]] = []
@@ -110,7 +113,7 @@ def instant_of(equations: Equations, motion: xr.Dataset, sample: int) -> Instant
     ):
         found.append(tuple(_solve(one, values) for one in solutions))
     together = None if equations.together is None else _solve(equations.together, values)
-    return Instant(values, found[0], found[1], together)
+    return Instant(values, length, found[0], found[1], together)
 
 
 @dataclass(frozen=True)
@@ -163,7 +166,8 @@ def _pairs(
                 own = motion[f"slide_{word}"].sel(guide=name)[sample]
             else:
                 continue
-            yield one, order, instant.values[letter], float(own)
+            size = instant.length if kind == "slide" else 1.0
+            yield one, order, instant.values[letter] / size, float(own)
 
 
 def _solve(solution: Solution, values: dict[Letter, float]) -> SolvedSystem:
