@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from centrode.equations.formulas import Formula
 from centrode.equations.letters import Letter, Parts, Wave
 from centrode.equations.spelling import spelled
-from centrode.equations.sums import Sum
-from centrode.present.equations.typst import TypstSpelling
+from centrode.equations.sums import Term
+from centrode.present.equations.typst import LONG, TypstSpelling, unbracketed
 from centrode.report.numbers import Numbers
 
 MOST_TERMS, MOST_NUMBERS = 6, 26
 """Terms and numbers of the longest formula that is written with its numbers: beyond them nobody follows."""
+
+NOTHING = 1e-14
+"""Part of the greatest number of its kind below which a number is rounding."""
 
 
 class NumberSpelling(TypstSpelling):
@@ -48,7 +51,10 @@ class NumberSpelling(TypstSpelling):
         return " dot.op ".join(factors)
 
     def fraction(self, above: Sequence[str], below: Sequence[str]) -> str:
-        return f"frac({self.join(above) or '1'}, {self.join(below)})"
+        top, bottom = self.join(above) or "1", self.join(below)
+        if len(top) > LONG:
+            return f"frac(1, {unbracketed(bottom)}) dot.op {top}"
+        return f"frac({unbracketed(top) if len(above) == 1 else top}, {unbracketed(bottom)})"
 
     def times(self, front: str, other: str) -> str:
         return self.join([front, other])
@@ -65,18 +71,34 @@ def _guarded(text: str) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
-def with_numbers(formula: Formula, values: Mapping[Letter, float], numbers: Numbers) -> str | None:
-    """A formula with its numbers; None where it is too long, has none, or one of them does not exist."""
-    total = formula.total
-    count = sum(len(term.letters) + sum(len(one.parts) for one, _power in term.waves) for term in total.terms)
-    if not count or formula.size > MOST_TERMS or count > MOST_NUMBERS:
+def with_numbers(
+    formula: Formula,
+    values: Mapping[Letter, float],
+    numbers: Numbers,
+    differences_first: bool = False,
+    turned: bool = False,
+) -> str | None:
+    """A formula with its numbers, spelled as `spelled` does.
+
+    None where it is too long, has no letters, or one of its numbers does not exist.
+    """
+    letters = sum(_count(term) for term in (formula.product, *formula.rest.terms))
+    if not letters or formula.size > MOST_TERMS or letters > MOST_NUMBERS:
         return None
-    if not all(math.isfinite(values.get(letter, math.nan)) for letter in total.letters):
+    if not all(math.isfinite(values.get(letter, math.nan)) for letter in formula.total.letters):
         return None
-    return spelled(formula, NumberSpelling(values, numbers))
+    return spelled(formula, NumberSpelling(values, numbers), differences_first, turned)
 
 
-def spelled_entry(total: Sum, values: Mapping[Letter, float], numbers: Numbers) -> str:
-    """An entry of a system as a number."""
-    with_zero = float(total.value(math, values.__getitem__)) if total else 0.0
-    return numbers.math(with_zero)
+def _count(term: Term) -> int:
+    return len(term.letters) + sum(len(one.parts) for one, _power in term.waves)
+
+
+def cleaned(values: Mapping[Letter, float], rates: Iterable[Letter]) -> dict[Letter, float]:
+    """Values as they are shown: rates that are nothing but the rounding of others are zero."""
+    found = dict(values)
+    sizes = [abs(values[letter]) for letter in rates if math.isfinite(values[letter])]
+    for letter in rates:
+        if abs(values[letter]) <= NOTHING * max(sizes, default=0.0):
+            found[letter] = 0.0
+    return found

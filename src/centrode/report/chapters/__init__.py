@@ -11,7 +11,17 @@ from typing import NamedTuple
 
 from centrode.locale import mark
 from centrode.report.blocks import Chapter
-from centrode.report.chapters.data import data_chapter
+from centrode.report.chapters.linkages.constraints import constraints_chapter
+from centrode.report.chapters.linkages.data import data_chapter
+from centrode.report.chapters.linkages.derivation import derivation_chapter
+from centrode.report.chapters.linkages.graphic import graphic_chapter
+from centrode.report.chapters.linkages.integration import integration_chapter
+from centrode.report.chapters.linkages.plots import plots_chapter
+from centrode.report.chapters.linkages.positions import positions_chapter
+from centrode.report.chapters.linkages.structure import structure_chapter
+from centrode.report.chapters.linkages.tables import tables_chapter
+from centrode.report.chapters.linkages.turning import turning_chapter
+from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.study import ReportStudy
 
 
@@ -24,4 +34,14 @@ class Kind(NamedTuple):
 
 CHAPTERS: Mapping[str, Kind] = {
     "data": Kind(mark("Data"), data_chapter),
+    "words": Kind(mark("How it works"), words_chapter),
+    "structure": Kind(mark("Structure"), structure_chapter),
+    "equations": Kind(mark("Constraint equations"), constraints_chapter),
+    "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
+    "tables": Kind(mark("Tables of the motion"), tables_chapter),
+    "plots": Kind(mark("Plots of the motion"), plots_chapter),
+    "positions": Kind(mark("Plan of positions"), positions_chapter),
+    "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
+    "integration": Kind(mark("Integration of the equations"), integration_chapter),
+    "rotatability": Kind(mark("Rotatability"), turning_chapter),
 }

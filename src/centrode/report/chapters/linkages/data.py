@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from centrode.locale import _
-from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Rolling
+from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling
 from centrode.report.blocks import Block, Chapter, Section, Table, shown
 from centrode.report.numbers import Numbers
 from centrode.report.study import ReportStudy
@@ -41,7 +41,7 @@ class _Data:
         """Points of the frame."""
         rows = []
         for name in self.mechanism.frame.points:
-            x, y = (float(value) for value in self.mechanism.frame.points[name])  # type: ignore[union-attr]
+            x, y = _resolved(self.mechanism.frame.points[name])
             rows.append((shown(name), self.length(x), self.length(y)))
         if rows:
             head = (_("point"), self.head("$x$", "m"), self.head("$y$", "m"))
@@ -92,7 +92,7 @@ class _Data:
         if isinstance(through, str):
             place = shown(through)
         else:
-            x, y = (float(value) for value in through)  # type: ignore[union-attr]
+            x, y = _resolved(through)
             place = f"({self.length(x)}; {self.length(y)})"
         on = _("frame") if guide.on == FRAME else shown(guide.on)
         own = "" if guide.link is None else shown(guide.link)
@@ -160,6 +160,12 @@ def _given(drive: Drive) -> str:
         return _("displacement along guide {guide}").format(guide=shown(drive.guide))
     first, second = (shown(name) for name in drive.distance or ("", ""))
     return _("distance of {first} and {second}").format(first=first, second=second)
+
+
+def _resolved(place: object) -> tuple[float, float]:
+    """Coordinates of a place, of one that the chain places those that it got."""
+    x, y = (place.at or (0.0, 0.0)) if isinstance(place, Placed) else place  # type: ignore[misc]
+    return float(x), float(y)
 
 
 def _apart(link: Link) -> float:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import degrees
+
+import numpy as np
 
 from centrode.equations.formulas import Formula as Equation
 from centrode.equations.groups import GroupEquations, Solution
@@ -16,7 +18,7 @@ from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Se
 from centrode.report.chapters.linkages.constraints import first_sections, page_sections
 from centrode.report.equation_blocks import section_of
 from centrode.report.moments import Moment, moments_of
-from centrode.report.numbered import with_numbers
+from centrode.report.numbered import NOTHING, cleaned, with_numbers
 from centrode.report.numbers import respelled
 from centrode.report.study import ReportStudy
 
@@ -62,11 +64,21 @@ class _Numbers:
         self.study = study
         self.numbers = study.numbers
         self.instant = instant
+        found = study.equations.unknowns
+        self.values = cleaned(instant.values, [one.rate for one in found])
+        self.values |= cleaned(self.values, [one.second for one in found])
         unit = study.numbers.shown("m")[1]
         self.units: dict[Letter, str] = {}
         for one in study.equations.unknowns:
             base = "rad" if not one.name.startswith("slide.") else unit
             self.units |= {one.letter: base, one.rate: f"{base}/s", one.second: f"{base}/s²"}
+
+    @property
+    def fastest(self) -> float:
+        """The greatest rate, of what the drives give included."""
+        given = self.study.equations.given.drives
+        rates = [one.rate for one in (*self.study.equations.unknowns, *given)]
+        return max((abs(self.values[rate]) for rate in rates), default=0.0)
 
     def lines(self, lines: list[tuple[str, ...]]) -> Iterator[Block]:
         if lines:
@@ -74,7 +86,7 @@ class _Numbers:
 
     def value(self, letter: Letter) -> str:
         """A number with the unit of its letter; angular rates also in degrees where these are shown."""
-        value, unit = self.instant.values[letter], self.units[letter]
+        value, unit = self.values[letter], self.units[letter]
         text = f'{self.numbers.math(value)} space "{unit}"'
         if unit.startswith("rad") and str(self.numbers.display.angle) == "deg":
             text += f' = {self.numbers.math(degrees(value))} space "{unit.replace("rad", "°")}"'
@@ -99,30 +111,37 @@ class _Numbers:
         unknowns = tuple(SPELLING.letter(letter) for letter in system.unknowns)
         if len(unknowns) == 1:
             return
-        matrix = tuple(tuple(self.numbers.math(float(x)) for x in row) for row in solved.matrix)
-        yield System(matrix, unknowns, tuple(self.numbers.math(float(x)) for x in solved.right))
+        largest = float(np.nanmax(np.abs(solved.matrix)))
+        matrix = tuple(tuple(self.short(x, largest) for x in row) for row in solved.matrix.tolist())
+        right = [self.short(x, largest * self.fastest) for x in solved.right.tolist()]
+        yield System(matrix, unknowns, tuple(right))
         if system.determinant is None or system.numerators is None:
             return
         under = SPELLING.letter(solution.under)
-        lines = [self.told(under, system.determinant, solved.determinant)]
+        size = float(np.nanmax(np.abs([solved.determinant, *solved.numerators])))
+        lines = [self.told(under, system.determinant, solved.determinant, size)]
         for letter, unknown, one, number in zip(
             system.unknowns, unknowns, system.numerators, solved.numerators, strict=True
         ):
             top = SPELLING.letter(Letter(0, f"Delta_{index_of(letter)}"))
-            lines.append(self.told(top, one, float(number)))
-            above, below = self.numbers.math(float(number)), self.numbers.math(solved.determinant)
+            lines.append(self.told(top, one, float(number), size))
+            above, below = self.short(float(number), size), self.numbers.math(solved.determinant)
             lines.append((unknown, f"frac({top}, {under})", f"frac({above}, {below})", self.value(letter)))
         yield Formula(tuple(lines))
 
-    def told(self, left: str, formula: Equation, value: float) -> tuple[str, ...]:
-        """A left side, its formula with numbers where that can be read, its value."""
-        inside = with_numbers(formula, self.instant.values, self.numbers)
-        return (left, *([inside] if inside else []), self.numbers.math(value))
+    def told(self, left: str, formula: Equation, value: float, size: float) -> tuple[str, ...]:
+        """A determinant, its formula with numbers where that can be read, its value."""
+        inside = with_numbers(formula, self.values, self.numbers, differences_first=True)
+        return (left, *([inside] if inside else []), self.short(value, size))
+
+    def short(self, value: float, size: float) -> str:
+        """A number beside others of a size; what is rounding of them is zero."""
+        return self.numbers.math(value if abs(value) > NOTHING * size else 0.0)
 
     def rates(self, group: GroupEquations) -> Iterator[tuple[str, ...]]:
         """Cauchy's normal form with numbers."""
         for unknown, formula in zip(group.unknowns, group.normal_form or (), strict=False):
-            inside = with_numbers(formula, self._under(group.velocities), self.numbers)
+            inside = with_numbers(formula, self.values, self.numbers)
             if inside:
                 yield SPELLING.letter(unknown.rate), inside, self.value(unknown.rate)
 
@@ -130,16 +149,12 @@ class _Numbers:
         """Accelerations with numbers; of long formulas the numbers alone."""
         formulas = group.seconds.formulas or (None,) * len(group.unknowns)
         for unknown, formula in zip(group.unknowns, formulas, strict=True):
-            values = self._under(group.seconds)
-            inside = None if formula is None else with_numbers(formula, values, self.numbers)
+            inside = None if formula is None else with_numbers(formula, self.values, self.numbers)
             yield (
                 SPELLING.letter(unknown.second),
                 *([inside] if inside else []),
                 self.value(unknown.second),
             )
-
-    def _under(self, solution: Solution) -> Mapping[Letter, float]:
-        return self.instant.values
 
     def velocity(self, point: str) -> Iterator[tuple[str, ...]]:
         """Components of a point's velocity, or that along its guide."""
@@ -154,7 +169,7 @@ class _Numbers:
         )
         for name, formula in parts:
             value = self.instant.number(formula)
-            inside = with_numbers(formula, self.instant.values, self.numbers)
+            inside = with_numbers(formula, self.values, self.numbers, turned=formula.single)
             number = f'{self.numbers.math(value)} space "{unit}"'
             yield (SPELLING.letter(Letter(0, name)), *([inside] if inside else []), number)
 

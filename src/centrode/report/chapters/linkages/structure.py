@@ -94,14 +94,11 @@ def _mobility(checked: Checked) -> tuple[Block, ...]:
         blocks.append(
             Paragraph(_("Redundant constraints, which only have to fit: {constraints}.").format(constraints=listed))
         )
-    blocks.append(
-        Check(
-            _("The rank of the Jacobian of all constraints at real positions gives the mobility {rank}.").format(
-                rank=checked.mobility
-            ),
-            checked.mobility == count.mobility + len(checked.redundant),
-        )
+    rank = _(
+        "The rank of the Jacobian of all constraints at real positions gives the mobility {rank}, "
+        "as many as there are drives."
     )
+    blocks.append(Check(rank.format(rank=checked.mobility), checked.mobility == len(checked.drives)))
     blocks.append(
         Paragraph(
             ngettext(
