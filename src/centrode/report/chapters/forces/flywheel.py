@@ -43,7 +43,7 @@ def flywheel_chapter(study: ReportStudy) -> Chapter | None:
         Section("", (*_meaning(found), Formula(tuple(_works(study, found))))),
         Section(_("Over the cycle"), (_course(study),)),
         Section(_("Inertia and flywheel"), _needed(study, found)),
-        Section(_("Summary"), (facts(flywheel_rows(study.mechanism, found)),)),
+        Section(_("Summary"), (facts(study.numbers, flywheel_rows(study.mechanism, found)),)),
         Section(_("Figures"), tuple(_figures(study))),
     ]
     return Chapter("flywheel", _("Flywheel"), tuple(sections))
