@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from centrode.locale import mark
 from centrode.report.blocks import Chapter
+from centrode.report.chapters.linkages.centres import centres_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
@@ -42,6 +43,7 @@ CHAPTERS: Mapping[str, Kind] = {
     "plots": Kind(mark("Plots of the motion"), plots_chapter),
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
+    "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
     "integration": Kind(mark("Integration of the equations"), integration_chapter),
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
 }
