@@ -1,8 +1,9 @@
 r"""What a report is made of: plain data, which the renderers of pages and of PDF show alike.
 
-Text is in the reader's language. In a `Paragraph`, a `Check` and the cells of a `Table` every other part between
-dollar signs is mathematics as the formula printer spells it (typst's notation); a dollar sign of the text itself is
-written `\$`. Names and titles that users chose go through `shown` first: they are shown as they are.
+Text is in the reader's language. In a `Paragraph`, `Items`, a `Check`, heads and cells of a `Table` and in captions
+every other part between dollar signs is mathematics as the formula printer spells it (typst's notation); a dollar sign
+of the text itself is written `\$`. What users named goes through `shown` first: it is shown as it is. Titles, and why a
+chapter is missing, are plain text without mathematics.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
+
+from centrode.present.equations.typst import shown as shown
 
 
 @dataclass(frozen=True)
@@ -197,8 +200,3 @@ class Report:
     subtitle: str
     language: str
     chapters: tuple[Chapter, ...] = field(default=())
-
-
-def shown(text: str) -> str:
-    """Text of a user's own, so that nothing in it is taken for mathematics."""
-    return text.replace("\\", "\\\\").replace("$", r"\$")
