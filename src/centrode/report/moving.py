@@ -14,14 +14,14 @@ from centrode.present.drawing import MARGIN, draw_mechanism
 from centrode.present.pictures import complete, initial_sample, instants_of
 from centrode.present.reading import scene_of
 from centrode.present.scene import Scene, corners
-from centrode.present.shown import drive_unit, shown_as
+from centrode.present.shown import drive_unit
 from centrode.present.sphere.globe import Globe, globe_of
 from centrode.present.sphere.globe_drawing import draw_globe
 from centrode.present.style import house_style
 from centrode.report.blocks import Moving, shown
-from centrode.report.figures import picture_of
+from centrode.report.figures import picture
 from centrode.report.moving_shapes import rings_of, shapes_of
-from centrode.report.numbers import told
+from centrode.report.numbers import NARROW, Numbers
 
 if TYPE_CHECKING:
     import xarray
@@ -32,6 +32,8 @@ Array = NDArray[np.float64]
 MOST = 720
 """Samples of a motion that are played; of more, evenly chosen ones."""
 INCHES = 5.2
+DIGITS = 4
+"""Of the drive's greatest value."""
 
 
 def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
@@ -67,7 +69,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
         drive=instants_of(motion)[chosen],
         drive_texts=tuple(drive_texts(mechanism, motion, chosen)),
         tracks=tuple(name for name in mechanism.moving_points if name in places),
-        still=picture_of(_still(scene, motion), ""),
+        still=picture(_still(scene, motion), ""),
         caption=_("Motion of {title}").format(title=shown(_(mechanism.title) or _("the mechanism"))),
         shapes=rings_of(scene, chosen) if isinstance(scene, Globe) else shapes_of(scene, chosen),
         view=scene.view if isinstance(scene, Globe) else None,
@@ -97,15 +99,15 @@ def drive_texts(mechanism: Mechanism, motion: xarray.Dataset, samples: NDArray[n
     """The value of the only drive at each sample, else the time, with symbol and unit."""
     values = instants_of(motion)[samples]
     if len(mechanism.drives) == 1:
-        factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
-        drive = mechanism.drives[0]
-        symbol = {"angle": "φ", "displacement": "s", "distance": "l"}[drive.kind]
-        name = f"{symbol} {drive.id}"
+        unit, drive = drive_unit(mechanism), mechanism.drives[0]
+        name = f"{ {'angle': 'φ', 'displacement': 's', 'distance': 'l'}[drive.kind]} ({drive.id})"
     else:
-        factor, unit, name = 1.0, "s", "t"
-    least = 1e-9 * factor * float(np.abs(values).max())
-    cleaned = [0.0 if abs(factor * value) < least else factor * float(value) for value in values]
-    return [f"{name} = {told(value, unit)}" for value in cleaned]
+        unit, name = "s", "t"
+    numbers = Numbers(mechanism.display, DIGITS)
+    label = numbers.shown(unit)[1]
+    room = "" if label.startswith("°") else NARROW
+    texts = numbers.column(values.tolist(), unit, least=1e-9 * float(np.abs(values).max()))
+    return [f"{name} = {text}{room}{label}" for text in texts]
 
 
 def _driven(mechanism: Mechanism) -> list[str]:

@@ -12,7 +12,6 @@ from centrode.locale import _, speaking
 from centrode.report.blocks import Chapter, Report
 from centrode.report.html.elements import Elements, blocks_of, formulas_in
 from centrode.report.html.mathematics import formulas_of
-from centrode.report.marked import parts_of
 
 HERE = Path(__file__).parent
 FONT = "math-font.woff2"
@@ -38,15 +37,12 @@ def html_page(report: Report) -> bytes:
 
 
 def _page(report: Report) -> str:
-    marked = [report.title, report.subtitle, *_headings(report)]
-    texts = [part.text for text in marked for part in parts_of(text) if part.mathematics]
-    blocks = [one for block in blocks_of(report) for one in formulas_in(block)]
-    formulas = formulas_of([*texts, *blocks])
+    formulas = formulas_of(one for block in blocks_of(report) for one in formulas_in(block))
     elements = Elements(formulas)
     chapters = [_chapter(chapter, k, elements) for k, chapter in enumerate(report.chapters, start=1)]
     scripts = [_data(name) for name in SCRIPTS]
-    contents = "".join(_entry(chapter, k, elements) for k, chapter in enumerate(report.chapters, start=1))
-    title = html.escape("".join(part.text for part in parts_of(report.title)))
+    contents = "".join(_entry(chapter, k) for k, chapter in enumerate(report.chapters, start=1))
+    title = html.escape(report.title)
     return (
         f'<!DOCTYPE html>\n<html lang="{html.escape(report.language)}">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(scripts)}">\n'
@@ -54,43 +50,36 @@ def _page(report: Report) -> str:
         f"<title>{title}</title>\n<style>{_style()}{formulas.style}</style>\n</head>\n<body>\n"
         f'{elements.drawings.shared()}\n<div class="sheet">\n'
         f"<nav><details open><summary>{html.escape(_('Contents'))}</summary><ol>{contents}</ol></details></nav>\n"
-        f"<main>\n<header><h1>{elements.text(report.title)}</h1>"
-        f'<p class="subtitle">{elements.text(report.subtitle)}</p></header>\n'
+        f"<main>\n<header><h1>{title}</h1>"
+        f'<p class="subtitle">{html.escape(report.subtitle)}</p></header>\n'
         f"{''.join(chapters)}</main>\n</div>\n"
         f"{''.join(f'<script>{script}</script>' for script in scripts)}\n</body>\n</html>\n"
     )
 
 
-def _headings(report: Report) -> list[str]:
-    found = []
-    for chapter in report.chapters:
-        found += [chapter.title, chapter.missing, *(section.title for section in chapter.sections)]
-    return found
-
-
 def _chapter(chapter: Chapter, number: int, elements: Elements) -> str:
     """A chapter with its sections, or why there is none."""
-    drawn = f'<h2 id="c{number}"><span class="number">{number}</span>{elements.text(chapter.title)}</h2>\n'
+    drawn = f'<h2 id="c{number}"><span class="number">{number}</span>{html.escape(chapter.title)}</h2>\n'
     if chapter.missing:
-        word = html.escape(_("This chapter could not be made."))
-        drawn += f'<p class="missing"><b>{word}</b> {elements.text(chapter.missing)}</p>\n'
+        words = _("This chapter could not be made: {reason}").format(reason=chapter.missing)
+        drawn += f'<p class="missing">{html.escape(words)}</p>\n'
     for part, section in enumerate(chapter.sections, start=1):
         if section.title:
             own = f"{number}.{part}"
-            drawn += f'<h3 id="c{number}-{part}"><span class="number">{own}</span>{elements.text(section.title)}</h3>\n'
+            drawn += f'<h3 id="c{number}-{part}"><span class="number">{own}</span>{html.escape(section.title)}</h3>\n'
         drawn += "".join(f"{elements.element(block)}\n" for block in section.blocks)
     return f"<section>{drawn}</section>\n"
 
 
-def _entry(chapter: Chapter, number: int, elements: Elements) -> str:
+def _entry(chapter: Chapter, number: int) -> str:
     """A chapter in the contents."""
     parts = "".join(
-        f'<li><a href="#c{number}-{part}"><span>{elements.text(section.title)}</span></a></li>'
+        f'<li><a href="#c{number}-{part}"><span>{html.escape(section.title)}</span></a></li>'
         for part, section in enumerate(chapter.sections, start=1)
         if section.title
     )
     below = f"<ol>{parts}</ol>" if parts else ""
-    name = f'<span class="number">{number}</span><span>{elements.text(chapter.title)}</span>'
+    name = f'<span class="number">{number}</span><span>{html.escape(chapter.title)}</span>'
     return f'<li><a href="#c{number}">{name}</a>{below}</li>'
 
 
