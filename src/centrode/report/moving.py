@@ -62,7 +62,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
     lines = {} if isinstance(scene, Globe) else {one.id: scene.guide_line(one, 0) for one in frame_guides}
     return Moving(
         places=places,
-        bodies={name: tuple(corners(link)) for name, link in mechanism.links.items()},
+        bodies=_bodies(mechanism),
         fixed=fixed,
         guides={name: np.array(line) / factor for name, line in lines.items() if line is not None},
         sliders={guide.point: guide.id for guide in frame_guides},
@@ -100,7 +100,7 @@ def drive_texts(mechanism: Mechanism, motion: xarray.Dataset, samples: NDArray[n
     values = instants_of(motion)[samples]
     if len(mechanism.drives) == 1:
         unit, drive = drive_unit(mechanism), mechanism.drives[0]
-        name = f"{ {'angle': 'φ', 'displacement': 's', 'distance': 'l'}[drive.kind]} ({drive.id})"
+        name = f"{ {'angle': 'φ', 'displacement': 's', 'distance': 'l'}[drive.kind] } ({drive.id})"
     else:
         unit, name = "s", "t"
     numbers = Numbers(mechanism.display, DIGITS)
@@ -108,6 +108,13 @@ def drive_texts(mechanism: Mechanism, motion: xarray.Dataset, samples: NDArray[n
     room = "" if label.startswith("°") else NARROW
     texts = numbers.column(values.tolist(), unit, least=1e-9 * float(np.abs(values).max()))
     return [f"{name} = {text}{room}{label}" for text in texts]
+
+
+def _bodies(mechanism: Mechanism) -> dict[str, tuple[str, ...]]:
+    """The points that each link is drawn through, and the rods of cylinders."""
+    links = {name: tuple(corners(link)) for name, link in mechanism.links.items()}
+    rods = {one.id: one.distance for one in mechanism.drives if one.distance is not None}
+    return {**links, **{name: ends for name, ends in rods.items() if name not in links}}
 
 
 def _driven(mechanism: Mechanism) -> list[str]:

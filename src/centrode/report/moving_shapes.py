@@ -59,7 +59,7 @@ def rings_of(globe: Globe, samples: Samples) -> tuple[Ring, ...]:
         pole = guide.pole
         if isinstance(pole, str):
             pole = globe.mechanism.points_of(guide.on)[pole]
-        local = np.array(unit_vector(pole))  # type: ignore[arg-type]
+        local: Array = np.array(unit_vector(pole))  # type: ignore[arg-type]
         at = samples[:1] if guide.on == "frame" else samples
         poles = [globe.carried(guide.on, local, int(sample)) for sample in at]
         colour = GROUND if guide.on == "frame" else colours[guide.on].colour

@@ -175,8 +175,8 @@
 
     shape(shape, parent) {
       const fill = shape.white ? "#ffffff" : shape.filled ? shape.colour : "none";
-      const made = make("path", { class: shape.filled && !shape.white ? "shape filled" : "shape",
-        d: shape.d, stroke: shape.colour, fill }, parent);
+      const made = make("path", { class: shape.ground ? "ground" : shape.line ? "link" : "shape", d: shape.d, stroke: shape.colour, fill,
+        "fill-opacity": shape.white ? 1 : 0.16 }, parent);
       return { made, series: new Series(shape.at, 3) };
     }
 
@@ -257,25 +257,30 @@
       this.tracked = true;
     }
 
-    // Names stand on the side away from the links of their point.
+    // Names stand where the lines of their point leave most room, and stay there while there is room enough.
     nameAll(flat) {
       flat.forEach((place, number) => {
-        const label = this.labels[number];
+        const label = this.labels[number], point = this.points[number];
         label.setAttribute("display", place ? "inline" : "none");
         if (!place) return;
-        const near = this.bodies.filter((body) => body.points.includes(number))
-          .flatMap((body) => body.points).filter((other) => other !== number && flat[other]);
-        let [x, y] = [0, this.points[number].fixed ? 0.2 : -1];
-        for (const other of near) {
-          const way = [place[0] - flat[other][0], place[1] - flat[other][1]], size = Math.hypot(...way) || 1;
-          x += way[0] / size;
-          y += way[1] / size;
+        const lines = this.bodies.filter((body) => body.points.includes(number)).flatMap((body) => body.points)
+          .filter((other) => other !== number && flat[other] && Math.hypot(flat[other][0] - place[0], flat[other][1] - place[1]) > 1)
+          .map((other) => Math.atan2(flat[other][1] - place[1], flat[other][0] - place[0]));
+        if (point.fixed && !point.dot && !this.data.view) lines.push(Math.PI / 2, Math.PI / 2 - 0.6, Math.PI / 2 + 0.6);
+        if (point.slider !== null) lines.push((point.slider * Math.PI) / 180, (point.slider * Math.PI) / 180 + Math.PI);
+        const room = (turn) => lines.reduce((least, line) => {
+          const apart = Math.abs(turn - line) % (2 * Math.PI);
+          return Math.min(least, apart, 2 * Math.PI - apart);
+        }, 1.6);
+        let best = label.turn ?? -Math.PI / 3, most = room(best) + 0.35;
+        for (let k = 0; k < 16; k += 1) {
+          const turn = -Math.PI / 3 + (k * Math.PI) / 8;
+          if (room(turn) > most) [best, most] = [turn, room(turn)];
         }
-        const size = Math.hypot(x, y) || 1;
-        if (this.points[number].fixed && y > 0.3 * size) [x, y] = [x < 0 ? -1 : 1, 0.3];
-        const far = 190 / (Math.hypot(x, y) || 1);
-        label.setAttribute("x", text(place[0] + far * x));
-        label.setAttribute("y", text(place[1] + far * y));
+        label.turn = best;
+        const far = point.slider !== null ? 250 : 185;
+        label.setAttribute("x", text(place[0] + far * Math.cos(best)));
+        label.setAttribute("y", text(place[1] + far * Math.sin(best)));
       });
     }
 

@@ -109,7 +109,7 @@ def _referenced(root: Xml.Element) -> set[str]:
 
 def _kept(element: Xml.Element, names: dict[str, str]) -> Xml.Element | None:
     """An element without anything that could act or load, with new names; nothing of what is not drawn."""
-    if not isinstance(element.tag, str) or not element.tag.startswith(NAMESPACE):
+    if not str(element.tag).startswith(NAMESPACE):
         return None
     tag = element.tag.removeprefix(NAMESPACE)
     if tag not in ELEMENTS:

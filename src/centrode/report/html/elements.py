@@ -25,6 +25,7 @@ from centrode.report.html.mathematics import Formulas
 from centrode.report.html.stage import stage_of
 from centrode.report.marked import parts_of
 
+BREAK = "<wbr>"
 LONG = 60
 """Characters of a left side from which on it is not aligned but runs on with its line."""
 
@@ -104,14 +105,14 @@ class Elements:
         aligned = all(len(line) > 1 and _length(line[0]) <= LONG for line in lines)
         drawn = []
         for line in lines:
-            right = " ".join(
+            right = BREAK.join(
                 piece for part in line[1:] for piece in self.formulas.pieces(part, relation="=")
             )
             if aligned:
                 left = self.formulas.displayed(line[0])
                 drawn.append(f'<div class="left">{left}</div><div class="right">{right}</div>')
             else:
-                drawn.append(f"<p>{' '.join(self.formulas.pieces(line[0]))} {right}</p>")
+                drawn.append(f"<p>{BREAK.join(self.formulas.pieces(line[0]))}{BREAK}{right}</p>")
         kind = "aligned" if aligned else "running"
         return f'<div class="formulas"><div class="{kind}">{"".join(drawn)}</div></div>'
 
@@ -124,7 +125,9 @@ class Elements:
             for name, kind in zip(block.head, kinds, strict=False)
         )
         rows = "".join(
-            "<tr>" + "".join(f"<td{kind}>{self.text(cell)}</td>" for cell, kind in _cells(row, kinds)) + "</tr>"
+            "<tr>"
+            + "".join(f"<td{kind}>{self.text(cell)}</td>" for cell, kind in _cells(row, kinds))
+            + "</tr>"
             for row in block.rows
         )
         caption = ""
@@ -132,9 +135,7 @@ class Elements:
             self.tables += 1
             number = html.escape(_("Table {number}").format(number=self.tables))
             caption = f"<caption><b>{number}.</b> {self.text(block.caption)}</caption>"
-        return (
-            f'<div class="table"><table>{caption}<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
-        )
+        return f'<div class="table"><table>{caption}<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
 
     def check(self, block: Check) -> str:
         """How something was verified."""
@@ -144,8 +145,8 @@ class Elements:
 
     def picture(self, block: Picture) -> str:
         """A figure with its caption."""
-        drawing = self.drawing(block)
-        return f'<figure><div class="paper" style="width:{block.width:.4g}in">{drawing}</div>{self.caption(block.caption)}</figure>'
+        paper = f'<div class="paper" style="width:{block.width:.4g}in">{self.drawing(block)}</div>'
+        return f"<figure>{paper}{self.caption(block.caption)}</figure>"
 
     def moving(self, block: Moving) -> str:
         """A motion: its first picture, until the script of the page draws it."""
@@ -164,8 +165,7 @@ class Elements:
 
 
 def _cells(row: Iterable[str], kinds: list[str]) -> Iterator[tuple[str, str]]:
-    for cell, kind in zip_longest(row, kinds, fillvalue=""):
-        yield cell, kind
+    yield from zip_longest(row, kinds, fillvalue="")
 
 
 def _length(spelled: str) -> int:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import re
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -45,15 +44,18 @@ class Formulas:
 
     def pieces(self, spelled: str, relation: str = "") -> list[str]:
         """A formula in pieces between which a line may end: each begins with a relation or a sign."""
-        groups: list[list[Xml.Element]] = [[_operator(relation)] if relation else []]
+        groups: list[list[Xml.Element]] = [[]]
         for element in self.found[spelled]:
             if _ends_piece(element, groups[-1]):
                 groups.append([])
             groups[-1].append(element)
-        return [_written(group, display=True, continued=k > 0) for k, group in enumerate(groups)]
+        first = [_operator(relation), _leading(groups[0])] if relation else groups[0]
+        return [
+            _written(group, display=True, continued=k > 0) for k, group in enumerate([first, *groups[1:]])
+        ]
 
     def system(self, matrix: Sequence[Sequence[str]], unknowns: Sequence[str], right: Sequence[str]) -> str:
-        """matrix unknowns = right."""
+        """A matrix times its unknowns = the right sides."""
         columns = [[(one,) for one in unknowns], [(one,) for one in right]]
         parts = [self._matrix(rows) for rows in (matrix, *columns)]
         return _written([*parts[:2], _operator("="), parts[2]], display=True)
@@ -85,27 +87,24 @@ def formulas_of(spelled: Iterable[str]) -> Formulas:
     page = _compiled(source)
     found = [_mended(Xml.fromstring(one)) for one in FORMULA.findall(page)]
     if len(found) != len(wanted):
-        raise InputError(
-            "", _("{count} formulas became {found}").format(count=len(wanted), found=len(found))
-        )
+        raise InputError("", _("{count} formulas became {found}").format(count=len(wanted), found=len(found)))
     style = STYLE.search(page)
     return Formulas(dict(zip(wanted, found, strict=True)), style.group(1) if style else "")
 
 
 def _compiled(source: str) -> str:
-    """The page that typst makes; it sees nothing of the machine but an empty folder."""
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            page, _warnings = typst.compile_with_warnings(
-                source.encode(), format="html", root=folder, ignore_system_fonts=True
-            )
-        except ModuleNotFoundError as missing:
-            raise InputError(
-                "", _("a report needs typst, which is not installed"), _("pip install 'centrode[documents]'")
-            ) from missing
-        except typst.TypstError as wrong:
-            raise InputError("", _("a formula cannot be laid out: {why}").format(why=wrong)) from wrong
-    return bytes(page).decode()
+    """The page that typst makes; it sees nothing of the machine."""
+    try:
+        compiler = typst.Compiler(ignore_system_fonts=True)
+        page, _warnings = compiler.compile_with_warnings(input={"main": source.encode()}, format="html")
+    except ModuleNotFoundError as missing:
+        raise InputError(
+            "", _("a report needs typst, which is not installed"), _("pip install 'centrode[documents]'")
+        ) from missing
+    except typst.TypstError as wrong:
+        raise InputError("", _("a formula cannot be laid out: {why}").format(why=wrong)) from wrong
+    assert isinstance(page, bytes)
+    return page.decode()
 
 
 def _mended(formula: Xml.Element) -> Xml.Element:
@@ -115,6 +114,15 @@ def _mended(formula: Xml.Element) -> Xml.Element:
             sign.text = DOTS[sign.text]
             sign.set("stretchy", "false")
     return formula
+
+
+def _leading(elements: Sequence[Xml.Element]) -> Xml.Element:
+    """Elements whose first sign stands before a term, not between two."""
+    row = Xml.Element("mrow")
+    row.extend(copy.deepcopy(list(elements)))
+    if len(row) and row[0].tag == "mo" and row[0].text in SIGNS:
+        row[0].set("form", "prefix")
+    return row
 
 
 def _operator(sign: str, form: str = "infix") -> Xml.Element:

@@ -86,7 +86,8 @@ def _entry(chapter: Chapter, number: int) -> str:
 def _policy(scripts: list[str]) -> str:
     """What the page may do: run its own scripts, nothing else, and load nothing."""
     sums = " ".join(
-        f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'" for script in scripts
+        f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
+        for script in scripts
     )
     return f"default-src 'none'; script-src {sums}; style-src 'unsafe-inline'; font-src data:; img-src data:"
 

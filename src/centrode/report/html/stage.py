@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.present.style import DASHES, PALETTE
+from centrode.present.style import DASHES, GROUND, PALETTE
 from centrode.report.blocks import Moving, Outline, Ring
 
 Array = NDArray[np.float64]
@@ -130,6 +130,8 @@ def _data(moving: Moving) -> dict[str, Any]:
                 "colour": one.colour,
                 "filled": one.filled,
                 "white": one.white,
+                "line": len(one.corners) == 2,
+                "ground": one.colour == GROUND,
                 "behind": one.behind,
             }
             for one in outlines
