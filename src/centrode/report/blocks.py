@@ -94,7 +94,7 @@ class Outline:
 
     Attributes
     ----------
-    corners : (n, 2) [m] in axes of its own
+    corners : (n, 2) [m] in axes of its own; a row of NaN lifts the pen
     poses : (samples, 3): where these axes are, x and y [m] and their angle [rad]; one row for what stands still
     colour : of its lines, "#RRGGBB"
     filled : lightly; then it is closed
@@ -142,7 +142,9 @@ class Moving:
     still : the first picture, for paper
     shapes : what moves beside the lines of links
     view : on the sphere (3, 3): to the right, up and towards the eye, as rows
-    driven : names of the points whose dragging turns the drive; shown by a ring
+    driven : names of the points that the drive moves
+    dots : names of the points of one link alone, where nothing is hinged
+    box : lower left and upper right corner (2, 2) [m] of what is seen; all places if None
     """
 
     places: Mapping[str, np.ndarray]
@@ -158,6 +160,8 @@ class Moving:
     shapes: tuple[Outline | Ring, ...] = ()
     view: np.ndarray | None = None
     driven: tuple[str, ...] = ()
+    dots: tuple[str, ...] = ()
+    box: np.ndarray | None = None
 
 
 Block: TypeAlias = Paragraph | Items | Formula | System | Table | Picture | Check | Moving

@@ -6,7 +6,7 @@ import re
 
 from centrode.present.equations.typst import decimal, quoted, word
 
-GREEK = {"ω": "omega", "ε": "epsilon", "μ": "mu"}
+GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
 MARKS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
 SIGNS = {
     "⊥": "perp", "∥": "parallel", "−": "-", "·": "dot.op", ":": ":", "+": "+", "-": "-", "=": "=", "(": "(", ")": ")",
@@ -43,7 +43,7 @@ def mathematics(text: str) -> str:
     position = 0
     for found in BARS.finditer(text):
         pieces.append(_tokens(text[position : found.start()], vectors))
-        pieces.append(f"abs({_tokens(found[1], vectors=True)})")
+        pieces.append(f"abs({_tokens(found[1], vectors=False)})")
         position = found.end()
     return " ".join(piece for piece in [*pieces, _tokens(text[position:], vectors)] if piece)
 

@@ -10,9 +10,10 @@ from centrode.locale import _
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import parse_cam, read_cam
 from centrode.model.examples import example_names, example_text
-from centrode.model.files import parse_mechanism, read_mechanism
+from centrode.model.files import is_cam, parse_mechanism, read_mechanism, toml_tables
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import likely, shown
+from centrode.model.reading import read_file
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
 
@@ -50,6 +51,16 @@ def load_cam(file_or_example: str | Path) -> Cam:
         return read_cam(path)
     name = str(file_or_example)
     return parse_cam(example_text(name), f"{name}.toml")
+
+
+def load_either(file_or_example: str | Path) -> Mechanism | Cam:
+    """The mechanism or the cam in a TOML file, or the built-in one of that name; InputError if there is neither."""
+    path = _file(file_or_example)
+    if path is None:
+        return example(str(file_or_example))
+    text = read_file(path)
+    reads = parse_cam if is_cam(toml_tables(text, path.name)) else parse_mechanism
+    return reads(text, path.name, path.parent)
 
 
 def _file(file_or_example: str | Path) -> Path | None:

@@ -19,6 +19,7 @@ from centrode.report.chapters.forces.real_motion import real_motion_chapter
 from centrode.report.chapters.forces.reduction import reduction_chapter
 from centrode.report.chapters.forces.running import simulation_chapter
 from centrode.report.chapters.forces.shaken import balance_chapter
+from centrode.report.chapters.linkages.centres import centres_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
@@ -52,6 +53,7 @@ CHAPTERS: Mapping[str, Kind] = {
     "plots": Kind(mark("Plots of the motion"), plots_chapter),
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
+    "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
     "integration": Kind(mark("Integration of the equations"), integration_chapter),
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
