@@ -48,9 +48,7 @@ def polygons_chapter(study: ReportStudy) -> Chapter | None:
             found = force_polygons(study.mechanism, at)
         except CentrodeError as refusal:
             refusals.append(refusal)
-            sections.append(
-                Section(title, (Paragraph(told(str(refusal), study.numbers)),))
-            )
+            sections.append(Section(title, (Paragraph(told(str(refusal), study.numbers)),)))
             continue
         made += 1
         sections += _instant(study, found, title)
