@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.present.forces.bearing_figures import bearing_figures
 from centrode.present.forces.reaction_figures import reaction_figures
 from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, shown
+from centrode.report.chapters.forces.absent import left_out
 from centrode.report.chapters.forces.inertia import inertia_at
 from centrode.report.chapters.forces.places import not_reached, titles
 from centrode.report.chapters.forces.results import has_forces, reactions_at_instants, reactions_of
@@ -29,6 +31,16 @@ def reactions_chapter(study: ReportStudy) -> Chapter | None:
     """Kinetostatics: inertia, the table of joints, reactions at instants, the worst over the motion, checks."""
     if not has_forces(study):
         return None
+    try:
+        reactions_of(study)
+    except (InputError, NotComputedYet) as reason:
+        if study.wishes.chapters is not None:
+            raise
+        return left_out("reactions", _("Reactions in the joints"), reason)
+    return _made(study)
+
+
+def _made(study: ReportStudy) -> Chapter:
     mechanism, found = study.mechanism, reactions_of(study)
     header, rows = joint_table(mechanism)
     told = _(

@@ -65,16 +65,14 @@ def _instant(study: ReportStudy, found: ForcePolygons, title: str) -> list[Secti
         facts(study.numbers, with_load_names(study.mechanism, labels, polygon_about(found)))
     ]
     for number, group in enumerate(found.groups, start=1):
-        title = told(group_title(group), study.numbers)
-        blocks += [
-            Paragraph(title + "."),
-            Items(tuple(worked(study.numbers, step) for step in group.steps), numbered=True),
-        ]
+        name = told(group_title(group), study.numbers)
+        steps = tuple(worked(study.numbers, step) for step in group.steps)
+        blocks += [Paragraph(f"{name}."), Items(steps, numbered=True)]
         blocks.append(picture(figures[f"group-{number}"], name))
     for lever in found.levers:
-        name = "lever" if len(found.levers) == 1 else f"lever-{lever.drive}"
+        page = "lever" if len(found.levers) == 1 else f"lever-{lever.drive}"
         caption = _("Zhukovsky's lever of drive {drive}").format(drive=shown(lever.drive))
-        blocks.append(picture(figures[name], caption))
+        blocks.append(picture(figures[page], caption))
     rows = polygon_rows(found)
     blocks.append(listed(study.numbers, rows[0], rows[1:], _("Forces of the polygons")))
     balance = polygon_balance_rows(found)
