@@ -10,7 +10,7 @@ GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
 MARKS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
 SIGNS = {
     "⊥": "perp", "∥": "parallel", "−": "-", "·": "dot.op", ":": ":", "+": "+", "-": "-", "=": "=", "(": "(", ")": ")",
-    "/": r"\/", "|": "|", ",": ",", "△": "triangle", "∼": "tilde.op",
+    "/": "slash", "|": "|", ",": ",", "△": "triangle", "∼": "tilde.op",
 }  # fmt: skip
 TOKEN = re.compile(
     r"(?P<letter>[vaωεμP])(?P<mark>[ⁿᵗᵏʳ]?)_(?P<name>\w[\w′’'-]*)"
