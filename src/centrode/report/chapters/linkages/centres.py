@@ -69,6 +69,8 @@ def _instant(study: ReportStudy, moment: Moment, names: tuple[str, ...]) -> Iter
 def _cell(text: str, column: int, study: ReportStudy) -> str:
     """A cell; centres by their symbols in the first column and where constructions are told."""
     cell = told(text, study.numbers)
+    if text == "0.0e+00":
+        return "0"
     if column in (0, CONSTRUCTED):
         return SYMBOL.sub(r'$P_("\1")$', cell)
     return cell
