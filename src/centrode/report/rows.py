@@ -14,6 +14,7 @@ ANGLE = re.compile(r"\bphi(\d+)")
 LONG = re.compile(r"(?<![\w.,])\d+\.\d+(?![\w.,]*\w)")
 DEGREES = re.compile(r"(?<=\d) deg\b(/?)|(?<=, )deg\b")
 
+SCALE = re.compile(r"μ_([lva])\b")
 PAIR = re.compile(r"\((-?\d[\w.+-]*), (-?\d[\w.+-]*)\)")
 
 
@@ -24,7 +25,8 @@ def told(text: str, numbers: Numbers) -> str:
         inside = ANGLE.sub(r"phi_(\1)", found[2])
         parts += [_spelled(text[position : found.start()], numbers), f"${found[1]} ({inside}) = 0$"]
         position = found.end()
-    return "".join([*parts, _spelled(text[position:], numbers)])
+    spelled = "".join([*parts, _spelled(text[position:], numbers)])
+    return SCALE.sub(r"$mu_\1$", spelled)
 
 
 def sentence(text: str, numbers: Numbers) -> str:

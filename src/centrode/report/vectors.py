@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 
 from centrode.present.equations.typst import decimal, quoted, word
+from centrode.report.numbered import in_degrees
 
 GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
 MARKS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
 SIGNS = {
     "⊥": "perp", "∥": "parallel", "−": "-", "·": "dot.op", ":": ":", "+": "+", "-": "-", "=": "=", "(": "(", ")": ")",
-    "/": r"\/", "|": "|", ",": ",", "△": "triangle", "∼": "tilde.op",
+    "/": "slash", "|": "|", ",": ",", "△": "triangle", "∼": "tilde.op",
 }  # fmt: skip
 TOKEN = re.compile(
     r"(?P<letter>[vaωεμP])(?P<mark>[ⁿᵗᵏʳ]?)_(?P<name>\w[\w′’'-]*)"
@@ -58,7 +59,7 @@ def _token(found: re.Match[str], vectors: bool) -> str:
         return symbol(found["letter"], found["name"], MARKS.get(found["mark"], ""), vector)
     if found["number"]:
         number = decimal(found["number"])
-        return f"{number} degree" if found["degree"] else number
+        return in_degrees(number) if found["degree"] else number
     if found["sine"]:
         return "sin"
     if found["word"]:

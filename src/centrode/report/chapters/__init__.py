@@ -34,6 +34,7 @@ from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
 from centrode.report.chapters.linkages.graphic import graphic_chapter
 from centrode.report.chapters.linkages.integration import integration_chapter
+from centrode.report.chapters.linkages.moving import motion_chapter
 from centrode.report.chapters.linkages.plots import plots_chapter
 from centrode.report.chapters.linkages.positions import positions_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
@@ -67,6 +68,7 @@ def either(*makers: Make) -> Make:
 
 CHAPTERS: Mapping[str, Kind] = {
     "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter)),
+    "motion": Kind(mark("Motion"), motion_chapter),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -11,8 +11,9 @@ from centrode.analysis.instant_centres.centres import instant_centres
 from centrode.analysis.instant_centres.construction import Construction
 from centrode.analysis.instant_centres.kennedy import MOST_BODIES, construct_centres
 from centrode.locale import _, ngettext
+from centrode.model.mechanism import FRAME
 from centrode.present.centres import centres_figure
-from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table
+from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
 from centrode.report.figures import picture
 from centrode.report.moments import Moment, moments_of
 from centrode.report.rows import small, told
@@ -33,7 +34,9 @@ def centres_chapter(study: ReportStudy) -> Chapter | None:
     if not study.is_planar:
         return None
     names = body_names(study.mechanism)
-    numbered = ", ".join(f"{number} {name}" for number, name in enumerate(names))
+    numbered = ", ".join(
+        f"{number} {_('frame') if name == FRAME else name}" for number, name in enumerate(names)
+    )
     first = Section("", (Paragraph(told(_("Bodies: {names}.").format(names=numbered), study.numbers)),))
     instants = [Section(moment.title, tuple(_instant(study, moment, names))) for moment in moments_of(study)]
     return Chapter("centres", _("Instant centres of velocity"), (first, *instants))
@@ -49,7 +52,15 @@ def _instant(study: ReportStudy, moment: Moment, names: tuple[str, ...]) -> Iter
     found = instant_centres(data, None if pairs <= MOST_ROWS else frame)
     made = construct_centres(data, 0) if len(names) <= MOST_BODIES else None
     rows = centres_rows(study.mechanism, found, 0, names, made)
-    cells = tuple(tuple(_cell(cell, column, study) for column, cell in enumerate(row)) for row in rows)
+    labels = [str(label).split(",") for label in found["pair"].values]
+    cells = tuple(
+        (
+            _cell(symbol, 0, study),
+            _bodies(label),
+            *(_cell(text, k, study) for k, text in enumerate(others, start=2)),
+        )
+        for label, (symbol, _said, *others) in zip(labels, rows, strict=True)
+    )
     yield Table(tuple(centres_header(found)), cells, _("Instant centres"))
     if pairs > MOST_ROWS:
         yield Paragraph(
@@ -66,9 +77,15 @@ def _instant(study: ReportStudy, moment: Moment, names: tuple[str, ...]) -> Iter
         )
 
 
+def _bodies(names: Sequence[str]) -> str:
+    return " – ".join(_("frame") if name == FRAME else shown(name) for name in names)
+
+
 def _cell(text: str, column: int, study: ReportStudy) -> str:
     """A cell; centres by their symbols in the first column and where constructions are told."""
     cell = told(text, study.numbers)
+    if text == "0.0e+00":
+        return "0"
     if column in (0, CONSTRUCTED):
         return SYMBOL.sub(r'$P_("\1")$', cell)
     return cell

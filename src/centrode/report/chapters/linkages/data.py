@@ -116,9 +116,9 @@ class _Data:
                 (False,) * 3 + (True,),
             )
         if self.mechanism.rolling:
-            head = (_("wheel"), _("rolls on"), self.head(_("radius"), "m"))
+            own = (_("wheel"), _("rolls on"), self.head(_("radius"), "m"))
             rows = tuple(self._rolling(wheel) for wheel in self.mechanism.rolling)
-            yield Table(head, rows, _("Rolling wheels"), (False, False, True))
+            yield Table(own, rows, _("Rolling wheels"), (False, False, True))
 
     def _gear(self, gear: Gear) -> tuple[str, ...]:
         links = ", ".join(_("frame") if link == FRAME else shown(link) for link in gear.links)

@@ -87,9 +87,9 @@ class _Numbers:
     def value(self, letter: Letter) -> str:
         """A number with the unit of its letter; angular rates also in degrees where these are shown."""
         value, unit = self.values[letter], self.units[letter]
-        text = f'{self.numbers.math(value)} space "{unit}"'
+        text = f'{self.numbers.math(value)} thin "{unit}"'
         if unit.startswith("rad") and str(self.numbers.display.angle) == "deg":
-            text += f' = {self.numbers.math(degrees(value))} space "{unit.replace("rad", "°")}"'
+            text += f' = {self.numbers.math(degrees(value))} thin "{unit.replace("rad", "°")}"'
         return text
 
     def angles(self) -> Block:
@@ -170,7 +170,7 @@ class _Numbers:
         for name, formula in parts:
             value = self.instant.number(formula)
             inside = with_numbers(formula, self.values, self.numbers, turned=formula.single)
-            number = f'{self.numbers.math(value)} space "{unit}"'
+            number = f'{self.numbers.math(value)} thin "{unit}"'
             yield (SPELLING.letter(Letter(0, name)), *([inside] if inside else []), number)
 
 

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.checking import CheckRow, GraphicCheck, graphic_check
 from centrode.analysis.graphic.diagrams import Diagram
 from centrode.errors import CentrodeError
 from centrode.locale import _
+from centrode.present.diagram_drawing import COLUMN, TOP
 from centrode.present.instant_drawing import diagram_figures
 from centrode.quantities import QUANTITIES
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table, shown
-from centrode.report.figures import picture
+from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Picture, Section, Table, shown
 from centrode.report.moments import Moment, moments_of
 from centrode.report.rows import rows_table, small, told
+from centrode.report.scaled import drawn_to_scale, scale_of
 from centrode.report.study import ReportStudy
 from centrode.report.vectors import symbol, vector_parts
 from centrode.study.graphic import graphic_about, sine_lines, trial_lines
@@ -43,15 +45,25 @@ def _instant(study: ReportStudy, moment: Moment) -> Iterator[Block]:
         return
     figures = diagram_figures(check.diagrams)
     yield rows_table(graphic_about(check), study.numbers, _("Scales and instant centres"))
-    yield picture(figures["mechanism"], _("Instant centres, velocities, senses of rotation"))
+    yield _drawn(study, figures["mechanism"], _("Instant centres, velocities, senses of rotation"), "m")
     for diagram, name, title in (
         (check.diagrams.velocity, "velocity", _("Velocity diagram")),
         (check.diagrams.acceleration, "acceleration", _("Acceleration diagram")),
     ):
         yield from _steps(study, diagram)
-        yield picture(figures[name], title)
+        yield _drawn(study, figures[name], title, diagram.unit, diagram.scale)
     yield _table(study, check)
     yield _judged(check)
+
+
+def _drawn(study: ReportStudy, figure: Figure, title: str, unit: str, scale: float | None = None) -> Picture:
+    """A drawing with its scale [SI by mm], that of its own axes where it is not told."""
+    factor, label = study.numbers.shown(unit)
+    by_millimetre = scale_of(figure) if scale is None else factor * scale
+    caption = _("{title}; a millimetre stands for {scale} {unit}").format(
+        title=title, scale=study.numbers.plain(by_millimetre), unit=label
+    )
+    return drawn_to_scale(figure, caption, COLUMN, TOP)
 
 
 def _steps(study: ReportStudy, diagram: Diagram) -> Iterator[Block]:

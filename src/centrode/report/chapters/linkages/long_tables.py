@@ -67,25 +67,24 @@ def long_tables(study: ReportStudy) -> Iterator[Block]:
     samples = chosen_rows(study)
     numbers, names = study.numbers, study.mechanism.link_names
     front = _front(study, study.motion.isel(sample=samples))
-    numbered = ", ".join(f"{k} {name}" for k, name in enumerate(names, start=1))
-    kinds = (
-        ("angle", "φ", _("Angles of the links ({links})")),
-        ("angular_velocity", "ω", _("Angular velocities of the links ({links})")),
-        ("angular_acceleration", "ε", _("Angular accelerations of the links ({links})")),
-    )
-    for name, letter, caption in kinds:
-        courses = [
+    groups = [
+        [
             _course(study, symbol(letter, str(k)), name, samples, link=link)
             for k, link in enumerate(names, start=1)
         ]
-        yield from _tables(numbers, front, courses, caption.format(links=numbered), len(names))
-    courses = []
+        for name, letter in (("angle", "φ"), ("angular_velocity", "ω"), ("angular_acceleration", "ε"))
+    ]
+    numbered = ", ".join(f"{k} {shown(name)}" for k, name in enumerate(names, start=1))
+    caption = _("Links: angles $phi$, angular velocities $omega$, angular accelerations $epsilon$ ({links})")
+    yield from _tables(numbers, front, groups, caption.format(links=numbered))
+    groups = []
     for point in study.points:
+        groups.append([])
         for name, letter in (("position", ""), ("velocity", "v"), ("acceleration", "a")):
             for axis in ("x", "y"):
                 head = f"{letter}_({word(point)} {axis})" if letter else symbol(axis, point)
-                courses.append(_course(study, head, name, samples, point=point, axis=axis))
-    yield from _tables(numbers, front, courses, _("Places, velocities and accelerations of points"), 6)
+                groups[-1].append(_course(study, head, name, samples, point=point, axis=axis))
+    yield from _tables(numbers, front, groups, _("Points: places, velocities, accelerations"))
 
 
 def _course(study: ReportStudy, letter: str, name: str, samples: list[int], **where: str) -> Course:
@@ -94,21 +93,26 @@ def _course(study: ReportStudy, letter: str, name: str, samples: list[int], **wh
 
 
 def _tables(
-    numbers: Numbers, front: Sequence[Column], courses: Sequence[Course], caption: str, together: int
+    numbers: Numbers, front: Sequence[Column], groups: Sequence[Sequence[Course]], caption: str
 ) -> Iterator[Block]:
-    """What moves as tables; what stays the same as a sentence."""
-    size = max((float(np.nanmax(np.abs(one.every), initial=0.0)) for one in courses), default=0.0)
-    moving, still = [], []
-    for one in courses:
-        known_values = one.every[np.isfinite(one.every)]
-        spread = float(np.ptp(known_values)) if known_values.size else np.inf
-        if spread <= STILL * size:
-            value = 0.0 if abs(known_values[0]) <= STILL * size else float(known_values[0])
-            still.append(f"${one.letter}$ = {numbers.measured(value, one.unit)}")
-        else:
-            head = numbers.head(f"${one.letter}$", one.unit)
-            moving.append(Column(head, numbers.column(one.rows, one.unit, least=STILL * size)))
-    yield from _parted(front, moving, caption, min(together, len(moving)))
+    """What moves as tables, what belongs together side by side; what stays the same as a sentence."""
+    moving: list[list[Column]] = []
+    still: list[str] = []
+    for group in groups:
+        sizes: dict[str, float] = {}
+        for one in group:
+            sizes[one.unit] = max(sizes.get(one.unit, 0.0), float(np.nanmax(np.abs(one.every), initial=0.0)))
+        moving.append([])
+        for one in group:
+            rounding = STILL * sizes[one.unit]
+            values = one.every[np.isfinite(one.every)]
+            if values.size and float(np.ptp(values)) <= rounding:
+                value = 0.0 if abs(values[0]) <= rounding else float(values[0])
+                still.append(f"${one.letter}$ = {numbers.measured(value, one.unit)}")
+            else:
+                head = numbers.head(f"${one.letter}$", one.unit)
+                moving[-1].append(Column(head, numbers.column(one.rows, one.unit, least=rounding)))
+    yield from _parted(front, moving, caption)
     if still:
         yield Paragraph(_("The same at all samples: {quantities}.").format(quantities=", ".join(still)))
 
@@ -129,16 +133,19 @@ def _front(study: ReportStudy, data: xr.Dataset) -> list[Column]:
     return found
 
 
-def _parted(
-    front: Sequence[Column], columns: Sequence[Column], caption: str, together: int
-) -> Iterator[Table]:
-    """Columns in as many tables as a page is wide for, each with the front; what belongs together is not parted."""
-    if not columns:
-        return
+def _parted(front: Sequence[Column], groups: Sequence[Sequence[Column]], caption: str) -> Iterator[Table]:
+    """Groups of columns in as few tables as a page is wide for, each with the front; long groups are cut."""
     room = max(1, WIDE - len(front))
-    step = room if together > room or not together else room - room % together
-    for first in range(0, len(columns), step):
-        part = [*front, *columns[first : first + step]]
-        rows = tuple(zip(*(column.cells for column in part), strict=True))
-        more = _("{caption} (continued)").format(caption=caption) if first else caption
-        yield Table(tuple(one.head for one in part), rows, more, tuple(one.is_number for one in part))
+    parts: list[list[Column]] = []
+    for group in groups:
+        for first in range(0, len(group), room):
+            piece = group[first : first + room]
+            if parts and len(parts[-1]) + len(piece) <= room:
+                parts[-1] += piece
+            else:
+                parts.append(list(piece))
+    for number, part in enumerate(parts):
+        columns = [*front, *part]
+        rows = tuple(zip(*(column.cells for column in columns), strict=True))
+        more = _("{caption} (continued)").format(caption=caption) if number else caption
+        yield Table(tuple(one.head for one in columns), rows, more, tuple(one.is_number for one in columns))

@@ -8,13 +8,16 @@ import xarray as xr
 from centrode.analysis.position_plan import plan_of_positions
 from centrode.errors import Status
 from centrode.locale import _
-from centrode.present.plan_drawing import plan_figure
+from centrode.present.plan_drawing import COLUMN, TOP, plan_figure
 from centrode.report.blocks import Chapter, Section, Table, shown
-from centrode.report.figures import picture
 from centrode.report.rows import rows_table
+from centrode.report.scaled import drawn_to_scale, scale_of
 from centrode.report.study import ReportStudy
 from centrode.report.vectors import symbol
 from centrode.study.positions import plan_rows
+
+SUBTITLE = 6.0
+"""From the head of a plan down to the end of what stands below it [mm]."""
 
 
 def positions_chapter(study: ReportStudy) -> Chapter | None:
@@ -24,7 +27,12 @@ def positions_chapter(study: ReportStudy) -> Chapter | None:
     mechanism = study.mechanism
     plan = plan_of_positions(mechanism)
     rows = rows_table(plan_rows(mechanism, plan), study.numbers)
-    drawn = picture(plan_figure(mechanism, plan), _("Plan of positions"))
+    figure = plan_figure(mechanism, plan)
+    unit = study.numbers.shown("m")[1]
+    caption = _("Plan of positions; a millimetre stands for {scale} {unit}").format(
+        scale=study.numbers.plain(scale_of(figure)), unit=unit
+    )
+    drawn = drawn_to_scale(figure, caption, COLUMN, TOP - SUBTITLE)
     return Chapter(
         "positions", _("Plan of positions"), (Section("", (rows, drawn, _table(study, plan.positions))),)
     )
