@@ -73,11 +73,12 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as SVG, with its caption and its natural width [inches]."""
+    """A figure as SVG, with its caption and its natural width [inches]; `to_scale` is kept at that width on paper."""
 
     svg: bytes
     caption: str
     width: float
+    to_scale: bool = False
 
 
 @dataclass(frozen=True)

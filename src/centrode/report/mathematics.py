@@ -7,13 +7,14 @@ from itertools import pairwise
 
 _STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
 _CODE = re.compile(r'[#$@`"\\&]|//|/\*')
+_ESCAPED = re.compile(r"\\[/()|,;]")
 _NAME = re.compile(r"[\w.]$")
 _WAVES = ("sin", "cos", "tan", "arcsin", "arccos", "arctan", "exp", "ln")
 
 
 def checked(formula: str) -> str:
     """The formula; ValueError, which is a fault of whoever made it, for what only code or text could need."""
-    if _CODE.search(_STRING.sub("x", formula)):
+    if _CODE.search(_ESCAPED.sub("x", _STRING.sub("x", formula))):
         raise ValueError(f"not a formula: {formula!r}")
     return formula
 

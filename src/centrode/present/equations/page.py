@@ -176,13 +176,13 @@ def _solved(solution: Solution, spelling: Spelling) -> list[Entry]:
     delta = spelling.letter(solution.under)
     lines.append(Relation((delta, spelled(system.determinant, spelling, differences_first=True))))
     for letter, unknown, one in zip(system.unknowns, unknowns, system.numerators, strict=True):
-        top = spelling.letter(Letter(0, f"Delta_{_index(letter)}"))
+        top = spelling.letter(Letter(0, f"Delta_{index_of(letter)}"))
         lines.append(Relation((top, spelled(one, spelling, differences_first=True))))
         lines.append(Relation((unknown, spelling.fraction([top], [delta]))))
     return lines
 
 
-def _index(letter: Letter) -> str:
+def index_of(letter: Letter) -> str:
     """What stands below a rate: the determinant of its column has the same index."""
     name = letter.name
     return name.removeprefix("omega").removeprefix("gamma").removesuffix("_dot").lstrip("_")

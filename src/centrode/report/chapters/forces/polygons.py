@@ -1,0 +1,91 @@
+"""The chapter of force polygons: reactions as they are found on a drawing board, and Zhukovsky's lever."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.dynamics.force_polygons.solving import force_polygons
+from centrode.errors import CentrodeError
+from centrode.locale import _
+from centrode.present.forces.polygon_drawing import polygon_figures
+from centrode.report.blocks import Block, Chapter, Check, Items, Paragraph, Section
+from centrode.report.chapters.forces.names import with_load_names
+from centrode.report.chapters.forces.places import instants, name_of_place
+from centrode.report.chapters.forces.results import has_forces
+from centrode.report.figures import picture
+from centrode.report.telling import facts, listed, measured, told, worked
+from centrode.study.forces.force_polygons import (
+    group_title,
+    polygon_about,
+    polygon_balance_rows,
+    polygon_rows,
+)
+
+if TYPE_CHECKING:
+    from centrode.dynamics.force_polygons.result import ForcePolygons
+    from centrode.report.study import ReportStudy
+
+ROUNDINGS = 1e4
+"""Roundings that the routes may differ by: the square of the condition of some well turned mechanism."""
+
+
+def polygons_chapter(study: ReportStudy) -> Chapter | None:
+    """Force polygons of the instants of a planar linkage."""
+    if not has_forces(study) or not study.is_planar:
+        return None
+    text = _(
+        "Groups are taken in reverse order: each is freed from its neighbours, moments give the tangential parts of"
+        " its outer reactions, the polygon the rest. The drawings are to the scales that they name."
+    )
+    sections = [Section("", (Paragraph(text),))]
+    made = 0
+    refusals: list[CentrodeError] = []
+    for at in instants(study):
+        try:
+            found = force_polygons(study.mechanism, at)
+        except CentrodeError as refusal:
+            refusals.append(refusal)
+            sections.append(Section(name_of_place(study, at), (Paragraph(told(str(refusal))),)))
+            continue
+        made += 1
+        sections += _instant(study, found, at)
+    if not made and refusals:
+        raise refusals[0]
+    return Chapter("force-polygons", _("Force polygons"), tuple(sections))
+
+
+def _instant(study: ReportStudy, found: ForcePolygons, at: float) -> list[Section]:
+    """An instant: what is what, group by group with its drawing, all forces, the balancing moment."""
+    figures = polygon_figures(found)
+    labels = [one.label for one in found.outer]
+    blocks: list[Block] = [facts(with_load_names(study.mechanism, labels, polygon_about(found)))]
+    for number, group in enumerate(found.groups, start=1):
+        title = told(group_title(group))
+        blocks += [Paragraph(title + "."), Items(tuple(worked(step) for step in group.steps), numbered=True)]
+        blocks.append(picture(figures[f"group-{number}"], title))
+    for lever in found.levers:
+        name = "lever" if len(found.levers) == 1 else f"lever-{lever.drive}"
+        caption = _("Zhukovsky's lever of drive {drive}").format(drive=told(lever.drive))
+        blocks.append(picture(figures[name], caption))
+    rows = polygon_rows(found)
+    blocks.append(listed(rows[0], rows[1:], _("Forces of the polygons")))
+    balance = polygon_balance_rows(found)
+    blocks.append(listed(balance[0], balance[1:], _("Balancing moment or force by three routes")))
+    return [Section(name_of_place(study, at), tuple([*blocks, *_checks(found)]))]
+
+
+def _checks(found: ForcePolygons) -> list[Check]:
+    """The polygons beside lever and virtual work."""
+    levers = {lever.drive: lever.balancing for lever in found.levers}
+    size = max((abs(force) for force in found.reactions.values()), default=0.0)
+    allowed, checks = ROUNDINGS * float(np.finfo(float).eps), []
+    for drive in found.mechanism.drives:
+        own = found.balancing[drive.id]
+        others = [value for value in (levers.get(drive.id), found.work.get(drive.id)) if value is not None]
+        text = _("Drive {drive}: polygons, lever and virtual work agree to {share}.")
+        said = text.replace("{drive}", told(drive.id).replace("{", "{{").replace("}", "}}"))
+        off = max((abs(own - value) for value in others), default=0.0)
+        checks.append(measured(said, off, max(size, abs(own)), allowed))
+    return checks

@@ -1,0 +1,111 @@
+"""The graph-analytic check: diagrams of velocities and accelerations, and what they give beside the other routes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from centrode.analysis.graphic.checking import CheckRow, GraphicCheck, graphic_check
+from centrode.analysis.graphic.diagrams import Diagram
+from centrode.errors import CentrodeError
+from centrode.locale import _
+from centrode.present.instant_drawing import diagram_figures
+from centrode.quantities import QUANTITIES
+from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table, shown
+from centrode.report.figures import picture
+from centrode.report.moments import Moment, moments_of
+from centrode.report.numbers import respelled
+from centrode.report.rows import rows_table, told
+from centrode.report.study import ReportStudy
+from centrode.report.vectors import symbol, vector_parts
+from centrode.study.graphic import graphic_about, sine_lines, trial_lines
+
+TOLERANCE = 1e-9
+"""Part of the greatest number of its kind up to which a drawing that is read exactly agrees with the closed form."""
+
+
+def graphic_chapter(study: ReportStudy) -> Chapter | None:
+    """For each instant the drawing, what was done, and the comparison of three routes."""
+    if not study.is_planar:
+        return None
+    sections = tuple(Section(moment.title, tuple(_instant(study, moment))) for moment in moments_of(study))
+    return Chapter("graphic", _("Graph-analytic check"), sections)
+
+
+def _instant(study: ReportStudy, moment: Moment) -> Iterator[Block]:
+    if not moment.reached:
+        yield Paragraph(moment.missing)
+        return
+    try:
+        check = graphic_check(study.mechanism, moment.at)
+    except CentrodeError as failure:
+        yield Paragraph(_("It cannot be drawn: {reason}").format(reason=told(str(failure))))
+        return
+    figures = diagram_figures(check.diagrams)
+    yield rows_table(graphic_about(check), (_("what"), _("value")), _("Scales and instant centres"))
+    yield picture(figures["mechanism"], _("Instant centres, velocities, senses of rotation"))
+    for diagram, name, title in (
+        (check.diagrams.velocity, "velocity", _("Velocity diagram")),
+        (check.diagrams.acceleration, "acceleration", _("Acceleration diagram")),
+    ):
+        yield from _steps(diagram)
+        yield picture(figures[name], title)
+    yield _table(study, check)
+    yield _judged(check)
+
+
+def _steps(diagram: Diagram) -> Iterator[Block]:
+    """Vector equations, false positions and the law of sines, group by group."""
+    yield Paragraph(_("Velocities, group by group:") if diagram.order == 1 else _("Accelerations, group by group:"))
+    for step in diagram.steps:
+        yield Paragraph(shown(step.group))
+        lines = [*step.equations]
+        yield Formula(tuple(vector_parts(line) for line in lines))
+        for line in trial_lines(step, diagram.order):
+            yield Paragraph(told(line))
+        sines = sine_lines(step)
+        if sines:
+            yield Formula(tuple(vector_parts(line) for line in sines))
+
+
+def _table(study: ReportStudy, check: GraphicCheck) -> Table:
+    """By the drawing, by integration, by the closed form; the rows of one kind with the same decimals."""
+    numbers = study.numbers
+    rows: list[tuple[str, ...]] = []
+    for quantity in dict.fromkeys(row.quantity for row in check.rows):
+        own = [row for row in check.rows if row.quantity == quantity]
+        unit = own[0].unit
+        size = max(abs(row.closed) for row in own)
+        drawn, integrated, closed = (
+            numbers.column(values, unit, least=1e-12 * size)
+            for values in (
+                [row.graphic for row in own],
+                [np.nan if row.integrated is None else row.integrated for row in own],
+                [row.closed for row in own],
+            )
+        )
+        off = [respelled(f"{row.difference * numbers.shown(unit)[0]:.1e}") if row.difference else "0" for row in own]
+        names = [f"${_symbol(row)}$" for row in own]
+        units = [numbers.shown(unit)[1]] * len(own)
+        rows += list(zip(names, units, drawn, integrated, closed, off, strict=True))
+    head = (_("quantity"), _("unit"), _("drawn"), _("integrated"), _("closed form"), _("difference"))
+    caption = _("Comparison of the routes: by drawing, by integration of the equations, in closed form")
+    return Table(head, tuple(rows), caption, (False, False, True, True, True, True))
+
+
+def _symbol(row: CheckRow) -> str:
+    letter = QUANTITIES[row.quantity].symbol
+    text = symbol(letter, row.name)
+    return text if row.quantity.startswith("angular") else f"abs({text})"
+
+
+def _judged(check: GraphicCheck) -> Check:
+    """The greatest difference of the drawing from the closed forms, over the greatest number of its kind."""
+    worst = 0.0
+    for quantity in dict.fromkeys(row.quantity for row in check.rows):
+        own = [row for row in check.rows if row.quantity == quantity]
+        size = max(abs(row.closed) for row in own)
+        worst = max([worst, *(abs(row.difference) / size for row in own if size)])
+    text = _("The drawing, read exactly, agrees with the closed forms: the greatest difference is {off} of the greatest number of its kind.")
+    return Check(text.format(off=respelled(f"{worst:.1e}") if worst else "0"), worst <= TOLERANCE)
