@@ -1,4 +1,4 @@
-"""Equations spelled for a page as blocks of a report: the same relations and systems that `centrode equations` prints."""
+"""Equations spelled for a page as blocks of a report: the relations and systems that `centrode equations` prints."""
 
 from __future__ import annotations
 

@@ -63,7 +63,12 @@ class NumberSpelling(TypstSpelling):
         degrees = str(self.numbers.display.angle) != "rad"
         value = self.values[letter]
         text = self.numbers.math(math.degrees(value) if degrees else value)
-        return f"{text} degree" if degrees else text
+        return in_degrees(text) if degrees else text
+
+
+def in_degrees(number: str) -> str:
+    """A number as mathematics with the sign of degrees close behind it."""
+    return f'{number[:-1]}°"' if number.endswith('"') else f"{number} degree"
 
 
 def _guarded(text: str) -> str:

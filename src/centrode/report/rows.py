@@ -5,27 +5,61 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
+from centrode.locale import _
 from centrode.report.blocks import Table, shown
-from centrode.report.numbers import respelled
+from centrode.report.numbers import Numbers, respelled
 
 CONDITION = re.compile(r"\b(sin|cos)\(([^()]*\bphi\d+[^()]*)\) = 0")
 ANGLE = re.compile(r"\bphi(\d+)")
+LONG = re.compile(r"(?<![\w.,])\d+\.\d+(?![\w.,]*\w)")
+DEGREES = re.compile(r"(?<=\d) deg\b(/?)|(?<=, )deg\b")
+
+SCALE = re.compile(r"μ_([lva])\b")
+PAIR = re.compile(r"\((-?\d[\w.+-]*), (-?\d[\w.+-]*)\)")
 
 
-def told(text: str) -> str:
-    """A sentence of results for a cell: numbers in the language's spelling, conditions on angles as mathematics."""
+def told(text: str, numbers: Numbers) -> str:
+    """A sentence of results for a cell: digits and decimal mark of the report, conditions on angles as mathematics."""
     parts, position = [], 0
     for found in CONDITION.finditer(text):
         inside = ANGLE.sub(r"phi_(\1)", found[2])
-        parts += [_spelled(text[position : found.start()]), f"${found[1]} ({inside}) = 0$"]
+        parts += [_spelled(text[position : found.start()], numbers), f"${found[1]} ({inside}) = 0$"]
         position = found.end()
-    return "".join([*parts, _spelled(text[position:])])
+    spelled = "".join([*parts, _spelled(text[position:], numbers)])
+    return SCALE.sub(r"$mu_\1$", spelled)
 
 
-def _spelled(text: str) -> str:
-    return respelled(shown(text))
+def sentence(text: str, numbers: Numbers) -> str:
+    """A clause of results as a sentence of its own."""
+    text = told(text, numbers)
+    return f"{text[:1].upper()}{text[1:]}."
 
 
-def rows_table(rows: Iterable[Sequence[str]], head: tuple[str, str], caption: str = "") -> Table:
+def _spelled(text: str, numbers: Numbers) -> str:
+    apart = PAIR.sub(r"(\1; \2)", text)  # a comma would be taken for a decimal mark
+    short = LONG.sub(lambda found: _rounded(found[0], numbers.digits), apart)
+    return respelled(shown(DEGREES.sub(lambda found: f" °{found[1]}" if found[1] else "°", short)))
+
+
+def _rounded(text: str, digits: int) -> str:
+    """A decimal with at most so many digits; its whole part stays."""
+    whole = len(text.partition(".")[0])
+    if len(text.replace(".", "").lstrip("0")) <= digits:
+        return text
+    if whole >= digits:
+        return f"{float(text):.0f}"
+    value = f"{float(text):.{digits}g}"
+    return text if "e" in value else value
+
+
+def rows_table(
+    rows: Iterable[Sequence[str]], numbers: Numbers, caption: str = "", head: tuple[str, str] | None = None
+) -> Table:
     """Rows of a label and a text; a row without a label goes on with the one above."""
-    return Table(head, tuple((told(label), told(text)) for label, text in rows), caption, (False, False))
+    cells = tuple((told(label, numbers), told(text, numbers)) for label, text in rows)
+    return Table(head or (_("what"), _("value")), cells, caption, (False, False))
+
+
+def small(value: float) -> str:
+    """A difference in two figures; nothing as nothing."""
+    return respelled(f"{value:.1e}") if value else "0"

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 
 from centrode.present.equations.typst import decimal, quoted, word
+from centrode.report.numbered import in_degrees
 
-GREEK = {"ω": "omega", "ε": "epsilon", "μ": "mu"}
+GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
 MARKS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
 SIGNS = {
     "⊥": "perp", "∥": "parallel", "−": "-", "·": "dot.op", ":": ":", "+": "+", "-": "-", "=": "=", "(": "(", ")": ")",
-    "/": r"\/", "|": "|", ",": ",", "△": "triangle", "∼": "tilde.op",
+    "/": "slash", "|": "|", ",": ",", "△": "triangle", "∼": "tilde.op",
 }  # fmt: skip
 TOKEN = re.compile(
     r"(?P<letter>[vaωεμP])(?P<mark>[ⁿᵗᵏʳ]?)_(?P<name>\w[\w′’'-]*)"
@@ -43,7 +44,7 @@ def mathematics(text: str) -> str:
     position = 0
     for found in BARS.finditer(text):
         pieces.append(_tokens(text[position : found.start()], vectors))
-        pieces.append(f"abs({_tokens(found[1], vectors=True)})")
+        pieces.append(f"abs({_tokens(found[1], vectors=False)})")
         position = found.end()
     return " ".join(piece for piece in [*pieces, _tokens(text[position:], vectors)] if piece)
 
@@ -58,7 +59,7 @@ def _token(found: re.Match[str], vectors: bool) -> str:
         return symbol(found["letter"], found["name"], MARKS.get(found["mark"], ""), vector)
     if found["number"]:
         number = decimal(found["number"])
-        return f"{number} degree" if found["degree"] else number
+        return in_degrees(number) if found["degree"] else number
     if found["sine"]:
         return "sin"
     if found["word"]:

@@ -19,11 +19,13 @@ from centrode.report.chapters.forces.real_motion import real_motion_chapter
 from centrode.report.chapters.forces.reduction import reduction_chapter
 from centrode.report.chapters.forces.running import simulation_chapter
 from centrode.report.chapters.forces.shaken import balance_chapter
+from centrode.report.chapters.linkages.centres import centres_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
 from centrode.report.chapters.linkages.graphic import graphic_chapter
 from centrode.report.chapters.linkages.integration import integration_chapter
+from centrode.report.chapters.linkages.moving import motion_chapter
 from centrode.report.chapters.linkages.plots import plots_chapter
 from centrode.report.chapters.linkages.positions import positions_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
@@ -44,6 +46,7 @@ class Kind(NamedTuple):
 
 CHAPTERS: Mapping[str, Kind] = {
     "data": Kind(mark("Data"), data_chapter),
+    "motion": Kind(mark("Motion"), motion_chapter),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), constraints_chapter),
@@ -52,6 +55,7 @@ CHAPTERS: Mapping[str, Kind] = {
     "plots": Kind(mark("Plots of the motion"), plots_chapter),
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
+    "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
     "integration": Kind(mark("Integration of the equations"), integration_chapter),
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),

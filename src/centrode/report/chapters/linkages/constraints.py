@@ -11,7 +11,7 @@ from centrode.present.equations import page
 from centrode.present.equations.typst import TypstSpelling
 from centrode.report.blocks import Block, Chapter, Check, Section
 from centrode.report.equation_blocks import section_of
-from centrode.report.numbers import respelled
+from centrode.report.rows import small
 from centrode.report.study import ReportStudy
 
 EPS = float(np.finfo(float).eps)
@@ -55,18 +55,22 @@ def _check(study: ReportStudy) -> Block | None:
         worst = max(worst, *(abs(instant.number(one.residual)) for one in conditions))
         allowed = max(allowed, 64 * EPS * scale)
     text = _(
-        "With the angles and displacements of the motion in closed form put in, both sides of every constraint agree to "
-        "{worst} at {count} positions; rounding allows {allowed} (lengths in m, angles in rad)."
+        "With the angles and displacements of the motion in closed form put in, both sides of every constraint "
+        "agree to {worst} at {count} positions; rounding allows {allowed} (lengths in m, angles in rad)."
     )
     return Check(
-        text.format(worst=respelled(f"{worst:.1e}"), count=len(chosen), allowed=respelled(f"{allowed:.1e}")),
+        text.format(worst=small(worst), count=len(chosen), allowed=small(allowed)),
         worst <= allowed,
     )
 
 
 def _scale(instant: Instant) -> float:
     """Size of what is added up in a constraint: lengths times angles, which carry a rounding of their own size."""
-    sizes = [abs(value) for letter, value in instant.values.items() if np.isfinite(value) and not _is_rate(letter.name)]
+    sizes = [
+        abs(value)
+        for letter, value in instant.values.items()
+        if np.isfinite(value) and not _is_rate(letter.name)
+    ]
     return max(1.0, *sizes) ** 2
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from centrode.locale import _
-from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling
+from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
 from centrode.report.blocks import Block, Chapter, Section, Table, shown
 from centrode.report.numbers import Numbers
 from centrode.report.study import ReportStudy
@@ -110,12 +110,15 @@ class _Data:
         if self.mechanism.gears:
             head = (_("gear"), _("links"), _("carrier"), _("ratio"))
             yield Table(
-                head, tuple(self._gear(gear) for gear in self.mechanism.gears), _("Gears"), (False,) * 3 + (True,)
+                head,
+                tuple(self._gear(gear) for gear in self.mechanism.gears),
+                _("Gears"),
+                (False,) * 3 + (True,),
             )
         if self.mechanism.rolling:
-            head = (_("wheel"), _("rolls on"), self.head(_("radius"), "m"))
+            own = (_("wheel"), _("rolls on"), self.head(_("radius"), "m"))
             rows = tuple(self._rolling(wheel) for wheel in self.mechanism.rolling)
-            yield Table(head, rows, _("Rolling wheels"), (False, False, True))
+            yield Table(own, rows, _("Rolling wheels"), (False, False, True))
 
     def _gear(self, gear: Gear) -> tuple[str, ...]:
         links = ", ".join(_("frame") if link == FRAME else shown(link) for link in gear.links)
@@ -162,9 +165,10 @@ def _given(drive: Drive) -> str:
     return _("distance of {first} and {second}").format(first=first, second=second)
 
 
-def _resolved(place: object) -> tuple[float, float]:
+def _resolved(place: Vector | Placed | None) -> tuple[float, float]:
     """Coordinates of a place, of one that the chain places those that it got."""
-    x, y = (place.at or (0.0, 0.0)) if isinstance(place, Placed) else place  # type: ignore[misc]
+    at = place.at if isinstance(place, Placed) else place
+    x, y = at or (0.0, 0.0)
     return float(x), float(y)
 
 

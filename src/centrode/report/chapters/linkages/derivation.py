@@ -19,7 +19,7 @@ from centrode.report.chapters.linkages.constraints import first_sections, page_s
 from centrode.report.equation_blocks import section_of
 from centrode.report.moments import Moment, moments_of
 from centrode.report.numbered import NOTHING, cleaned, with_numbers
-from centrode.report.numbers import respelled
+from centrode.report.rows import small
 from centrode.report.study import ReportStudy
 
 SPELLING = TypstSpelling()
@@ -76,8 +76,8 @@ class _Numbers:
     @property
     def fastest(self) -> float:
         """The greatest rate, of what the drives give included."""
-        given = self.study.equations.given.drives
-        rates = [one.rate for one in (*self.study.equations.unknowns, *given)]
+        rates = [one.rate for one in self.study.equations.unknowns]
+        rates += [one.rate for one in self.study.equations.given.drives]
         return max((abs(self.values[rate]) for rate in rates), default=0.0)
 
     def lines(self, lines: list[tuple[str, ...]]) -> Iterator[Block]:
@@ -87,9 +87,9 @@ class _Numbers:
     def value(self, letter: Letter) -> str:
         """A number with the unit of its letter; angular rates also in degrees where these are shown."""
         value, unit = self.values[letter], self.units[letter]
-        text = f'{self.numbers.math(value)} space "{unit}"'
+        text = f'{self.numbers.math(value)} thin "{unit}"'
         if unit.startswith("rad") and str(self.numbers.display.angle) == "deg":
-            text += f' = {self.numbers.math(degrees(value))} space "{unit.replace("rad", "°")}"'
+            text += f' = {self.numbers.math(degrees(value))} thin "{unit.replace("rad", "°")}"'
         return text
 
     def angles(self) -> Block:
@@ -170,21 +170,21 @@ class _Numbers:
         for name, formula in parts:
             value = self.instant.number(formula)
             inside = with_numbers(formula, self.values, self.numbers, turned=formula.single)
-            number = f'{self.numbers.math(value)} space "{unit}"'
+            number = f'{self.numbers.math(value)} thin "{unit}"'
             yield (SPELLING.letter(Letter(0, name)), *([inside] if inside else []), number)
 
 
 def _check(study: ReportStudy, instant: Instant, moment: Moment) -> Block:
     """Rates and accelerations of the systems beside those of the motion in closed form."""
     rates = rates_compared(study.equations, instant, moment.data, moment.sample)
-    worst = max(rates, key=lambda rate: abs(rate.solved - rate.closed) / max(rate.allowed, 1e-300), default=None)
+    worst = max(
+        rates, key=lambda rate: abs(rate.solved - rate.closed) / max(rate.allowed, 1e-300), default=None
+    )
     if worst is None:
         return Paragraph(_("The motion in closed form has no rates to compare these with."))
     text = _(
-        "The systems give the same rates and accelerations as the motion in closed form: the difference is at most {worst}, "
-        "rounding and the condition of the systems allow {allowed} (rad or m, by s or s²)."
+        "The systems give the same rates and accelerations as the motion in closed form: the difference is at most "
+        "{worst}, rounding and the condition of the systems allow {allowed} (rad or m, by s or s²)."
     )
-    off = respelled(f"{abs(worst.solved - worst.closed):.1e}")
-    return Check(
-        text.format(worst=off, allowed=respelled(f"{worst.allowed:.1e}")), all(rate.agrees for rate in rates)
-    )
+    off = small(abs(worst.solved - worst.closed))
+    return Check(text.format(worst=off, allowed=small(worst.allowed)), all(rate.agrees for rate in rates))

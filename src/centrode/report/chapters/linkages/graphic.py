@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.checking import CheckRow, GraphicCheck, graphic_check
 from centrode.analysis.graphic.diagrams import Diagram
 from centrode.errors import CentrodeError
 from centrode.locale import _
+from centrode.present.diagram_drawing import COLUMN, TOP
 from centrode.present.instant_drawing import diagram_figures
 from centrode.quantities import QUANTITIES
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table, shown
-from centrode.report.figures import picture
+from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Picture, Section, Table, shown
 from centrode.report.moments import Moment, moments_of
-from centrode.report.numbers import respelled
-from centrode.report.rows import rows_table, told
+from centrode.report.rows import rows_table, small, told
+from centrode.report.scaled import drawn_to_scale, scale_of
 from centrode.report.study import ReportStudy
 from centrode.report.vectors import symbol, vector_parts
 from centrode.study.graphic import graphic_about, sine_lines, trial_lines
@@ -40,30 +41,42 @@ def _instant(study: ReportStudy, moment: Moment) -> Iterator[Block]:
     try:
         check = graphic_check(study.mechanism, moment.at)
     except CentrodeError as failure:
-        yield Paragraph(_("It cannot be drawn: {reason}").format(reason=told(str(failure))))
+        yield Paragraph(_("It cannot be drawn: {reason}").format(reason=told(str(failure), study.numbers)))
         return
     figures = diagram_figures(check.diagrams)
-    yield rows_table(graphic_about(check), (_("what"), _("value")), _("Scales and instant centres"))
-    yield picture(figures["mechanism"], _("Instant centres, velocities, senses of rotation"))
+    yield rows_table(graphic_about(check), study.numbers, _("Scales and instant centres"))
+    yield _drawn(study, figures["mechanism"], _("Instant centres, velocities, senses of rotation"), "m")
     for diagram, name, title in (
         (check.diagrams.velocity, "velocity", _("Velocity diagram")),
         (check.diagrams.acceleration, "acceleration", _("Acceleration diagram")),
     ):
-        yield from _steps(diagram)
-        yield picture(figures[name], title)
+        yield from _steps(study, diagram)
+        yield _drawn(study, figures[name], title, diagram.unit, diagram.scale)
     yield _table(study, check)
     yield _judged(check)
 
 
-def _steps(diagram: Diagram) -> Iterator[Block]:
+def _drawn(study: ReportStudy, figure: Figure, title: str, unit: str, scale: float | None = None) -> Picture:
+    """A drawing with its scale [SI by mm], that of its own axes where it is not told."""
+    factor, label = study.numbers.shown(unit)
+    by_millimetre = scale_of(figure) if scale is None else factor * scale
+    caption = _("{title}; a millimetre stands for {scale} {unit}").format(
+        title=title, scale=study.numbers.plain(by_millimetre), unit=label
+    )
+    return drawn_to_scale(figure, caption, COLUMN, TOP)
+
+
+def _steps(study: ReportStudy, diagram: Diagram) -> Iterator[Block]:
     """Vector equations, false positions and the law of sines, group by group."""
-    yield Paragraph(_("Velocities, group by group:") if diagram.order == 1 else _("Accelerations, group by group:"))
+    yield Paragraph(
+        _("Velocities, group by group:") if diagram.order == 1 else _("Accelerations, group by group:")
+    )
     for step in diagram.steps:
         yield Paragraph(shown(step.group))
         lines = [*step.equations]
         yield Formula(tuple(vector_parts(line) for line in lines))
         for line in trial_lines(step, diagram.order):
-            yield Paragraph(told(line))
+            yield Paragraph(told(line, study.numbers))
         sines = sine_lines(step)
         if sines:
             yield Formula(tuple(vector_parts(line) for line in sines))
@@ -85,7 +98,7 @@ def _table(study: ReportStudy, check: GraphicCheck) -> Table:
                 [row.closed for row in own],
             )
         )
-        off = [respelled(f"{row.difference * numbers.shown(unit)[0]:.1e}") if row.difference else "0" for row in own]
+        off = [small(row.difference * numbers.shown(unit)[0]) if row.difference else "0" for row in own]
         names = [f"${_symbol(row)}$" for row in own]
         units = [numbers.shown(unit)[1]] * len(own)
         rows += list(zip(names, units, drawn, integrated, closed, off, strict=True))
@@ -107,5 +120,8 @@ def _judged(check: GraphicCheck) -> Check:
         own = [row for row in check.rows if row.quantity == quantity]
         size = max(abs(row.closed) for row in own)
         worst = max([worst, *(abs(row.difference) / size for row in own if size)])
-    text = _("The drawing, read exactly, agrees with the closed forms: the greatest difference is {off} of the greatest number of its kind.")
-    return Check(text.format(off=respelled(f"{worst:.1e}") if worst else "0"), worst <= TOLERANCE)
+    text = _(
+        "The drawing, read exactly, agrees with the closed forms: the greatest difference is {off} "
+        "of the greatest number of its kind."
+    )
+    return Check(text.format(off=small(worst)), worst <= TOLERANCE)

@@ -9,8 +9,7 @@ from centrode.locale import _
 from centrode.present.integrations import integration_figures
 from centrode.report.blocks import Block, Chapter, Check, Section
 from centrode.report.figures import picture
-from centrode.report.numbers import respelled
-from centrode.report.rows import rows_table
+from centrode.report.rows import rows_table, small
 from centrode.report.study import ReportStudy
 from centrode.study.integrating import closed_motion, integration_rows
 
@@ -24,18 +23,21 @@ def integration_chapter(study: ReportStudy) -> Chapter | None:
         return None
     mechanism = study.mechanism
     found = integrate(mechanism, "adaptive")
-    rows = rows_table(integration_rows(mechanism, found), (_("what"), _("value")))
+    rows = rows_table(integration_rows(mechanism, found), study.numbers)
     worst = float(np.nanmax(np.abs(found["angle_difference"].to_numpy()), initial=0.0))
     check = Check(
         _(
             "Where the equations can be integrated, they give the angles of the closed forms: "
-            "the greatest difference is {worst} rad, a part of the motion that was integrated with a tolerance of {tolerance} "
-            "for each step."
-        ).format(worst=respelled(f"{worst:.1e}"), tolerance=respelled(f"{found.attrs['tolerance']:.1e}")),
+            "the greatest difference is {worst} rad, at a tolerance of {tolerance} for each step."
+        ).format(worst=small(worst), tolerance=small(found.attrs["tolerance"])),
         worst <= AGREE,
     )
     blocks: list[Block] = [rows, check]
     figures = integration_figures(mechanism, found, closed_motion(mechanism, found))
     if "integration-errors" in figures:
-        blocks.append(picture(figures["integration-errors"], _("Difference of the integrated motion from the closed forms")))
+        blocks.append(
+            picture(
+                figures["integration-errors"], _("Difference of the integrated motion from the closed forms")
+            )
+        )
     return Chapter("integration", _("Integration of the equations"), (Section("", tuple(blocks)),))

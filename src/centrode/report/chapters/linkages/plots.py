@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from centrode.locale import _, mark
 from centrode.present.figures import motion_figures
+from centrode.present.pictures import instants_of
 from centrode.report.blocks import Chapter, Section
 from centrode.report.figures import picture
+from centrode.report.moments import moments_of
 from centrode.report.study import ReportStudy
 
 CAPTIONS = {
@@ -25,6 +27,8 @@ def plots_chapter(study: ReportStudy) -> Chapter | None:
     """The figures that `centrode run` draws."""
     if not study.is_planar:
         return None
-    figures = motion_figures(study.mechanism, study.motion, study.wishes.instants)
+    exact = moments_of(study)[0].data if study.wishes.instants else None
+    instants = [] if exact is None else instants_of(exact).tolist()
+    figures = motion_figures(study.mechanism, study.motion, instants, exact)
     blocks = tuple(picture(figure, _(CAPTIONS[name])) for name, figure in figures.items())
     return Chapter("plots", _("Plots of the motion"), (Section("", blocks),))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.report.blocks import Block, Chapter, Check, Formula, Items, Paragraph, Section, Table, shown
-from centrode.report.numbers import respelled
+from centrode.report.rows import small
 from centrode.report.study import ReportStudy
 from centrode.structure.assur import AssurGroup
 from centrode.structure.mobility import is_bare, slider_of
@@ -83,16 +83,18 @@ def _mobility(checked: Checked) -> tuple[Block, ...]:
     numbers = f"3 dot.op {count.moving_links} - 2 dot.op {count.lower_pairs} - {count.higher_pairs}"
     blocks: list[Block] = [
         Paragraph(
-            _("Moving links: $n = {n}$; pairs of class 5: $p_5 = {lower}$; pairs of class 4: $p_4 = {higher}$.").format(
-                n=count.moving_links, lower=count.lower_pairs, higher=count.higher_pairs
-            )
+            _(
+                "Moving links: $n = {n}$; pairs of class 5: $p_5 = {lower}$; pairs of class 4: $p_4 = {higher}$."
+            ).format(n=count.moving_links, lower=count.lower_pairs, higher=count.higher_pairs)
         ),
         Formula((("W", "3 n - 2 p_5 - p_4", numbers, str(count.mobility)),)),
     ]
     if checked.redundant:
         listed = shown(", ".join(checked.redundant))
         blocks.append(
-            Paragraph(_("Redundant constraints, which only have to fit: {constraints}.").format(constraints=listed))
+            Paragraph(
+                _("Redundant constraints, which only have to fit: {constraints}.").format(constraints=listed)
+            )
         )
     rank = _(
         "The rank of the Jacobian of all constraints at real positions gives the mobility {rank}, "
@@ -102,7 +104,9 @@ def _mobility(checked: Checked) -> tuple[Block, ...]:
     blocks.append(
         Paragraph(
             ngettext(
-                "There is {n} independent closed loop.", "There are {n} independent closed loops.", count.loops
+                "There is {n} independent closed loop.",
+                "There are {n} independent closed loops.",
+                count.loops,
             ).format(n=count.loops)
         )
     )
@@ -112,9 +116,11 @@ def _mobility(checked: Checked) -> tuple[Block, ...]:
 def _groups(checked: Checked) -> tuple[Block, ...]:
     rows = tuple(_group(group) for group in checked.groups)
     head = (_("group"), _("class"), _("order"), _("kind"))
-    residual = respelled(f"{checked.initial_residual:.1e}")
+    residual = small(checked.initial_residual)
     return (
-        Paragraph(_("Structural formula: {formula}").format(formula=shown(checked.formula.replace("->", "→")))),
+        Paragraph(
+            _("Structural formula: {formula}").format(formula=shown(checked.formula.replace("->", "→")))
+        ),
         Table(head, rows, _("Groups in the order of solving"), (False, False, True, False)),
         Items(tuple(shown(step) for step in checked.plan), numbered=True),
         Check(

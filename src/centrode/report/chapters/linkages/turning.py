@@ -4,13 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import xarray as xr
+
 from centrode.analysis.repair import Repair, repair
+from centrode.analysis.transmission import transmission_angles
 from centrode.errors import CentrodeError
 from centrode.locale import _
-from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section
+from centrode.present.transmission_curves import transmission_figure
+from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table
+from centrode.report.figures import picture
 from centrode.report.rows import rows_table, told
 from centrode.report.study import ReportStudy
 from centrode.study.repairing import repair_rows
+from centrode.study.transmission import transmission_rows
 from centrode.study.turning import rotatability_rows
 
 
@@ -19,11 +25,25 @@ def turning_chapter(study: ReportStudy) -> Chapter | None:
     if not study.is_planar:
         return None
     found = study.rotatability
-    rows = rows_table(rotatability_rows(study.mechanism, found), (_("what"), _("value")))
+    rows = rows_table(rotatability_rows(study.mechanism, found), study.numbers)
     sections = [Section("", (rows,))]
+    angles = transmission_angles(study.mechanism)
+    if angles.sizes["group"]:
+        sections.append(Section(_("Transmission angles"), tuple(_transmission(study, angles))))
     if found.turns_fully is False and len(study.mechanism.drives) == 1:
         sections.append(Section(_("Repair"), tuple(_repair(study))))
     return Chapter("rotatability", _("Rotatability"), tuple(sections))
+
+
+def _transmission(study: ReportStudy, angles: xr.Dataset) -> Iterator[Block]:
+    """Extremes over the motion, and the curves."""
+    head, *rows = transmission_rows(angles)
+    cells = tuple(tuple(told(cell, study.numbers) for cell in row) for row in rows)
+    caption = _("Transmission and pressure angles of the groups")
+    yield Table(
+        tuple(told(text, study.numbers) for text in head), cells, caption, (False, *(True,) * (len(head) - 1))
+    )
+    yield picture(transmission_figure(study.mechanism, angles), caption)
 
 
 def _repair(study: ReportStudy) -> Iterator[Block]:
@@ -31,10 +51,12 @@ def _repair(study: ReportStudy) -> Iterator[Block]:
     try:
         found: Repair = study.once("repair", lambda: repair(study.mechanism))
     except CentrodeError as failure:
-        yield Paragraph(_("No repair was looked for: {reason}").format(reason=told(str(failure))))
+        yield Paragraph(
+            _("No repair was looked for: {reason}").format(reason=told(str(failure), study.numbers))
+        )
         return
     yield Paragraph(_("The smallest change of the description after which the drive turns fully:"))
-    yield rows_table(repair_rows(study.mechanism, found), (_("what"), _("value")))
+    yield rows_table(repair_rows(study.mechanism, found), study.numbers)
     if found.mechanism is not None:
         turns = study.once("rotatability after repair", lambda: _turns(found))
         yield Check(_("The changed mechanism was analysed again: its drive turns fully."), turns)
