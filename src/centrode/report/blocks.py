@@ -73,11 +73,12 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as SVG, with its caption and its natural width [inches]."""
+    """A figure as SVG, with its caption and its natural width [inches]; `to_scale` is kept at that width on paper."""
 
     svg: bytes
     caption: str
     width: float
+    to_scale: bool = False
 
 
 @dataclass(frozen=True)
@@ -144,6 +145,7 @@ class Moving:
     view : on the sphere (3, 3): to the right, up and towards the eye, as rows
     driven : names of the points that the drive moves
     dots : names of the points of one link alone, where nothing is hinged
+    start : the sample shown first
     box : lower left and upper right corner (2, 2) [m] of what is seen; all places if None
     """
 
@@ -161,6 +163,7 @@ class Moving:
     view: np.ndarray | None = None
     driven: tuple[str, ...] = ()
     dots: tuple[str, ...] = ()
+    start: int = 0
     box: np.ndarray | None = None
 
 

@@ -13,10 +13,10 @@ from centrode.present.style import house_style
 from centrode.report.blocks import Picture
 
 
-def picture(figure: Figure, caption: str) -> Picture:
-    """A figure as a block, with its caption."""
+def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
+    """A figure as a block, with its caption; one `to_scale` (at most as wide as A4) keeps its size on paper."""
     with house_style():
         stream = io.BytesIO()
         canvas: Any = FigureCanvasSVG(figure)
         canvas.print_svg(stream, metadata=METADATA["svg"])
-    return Picture(stream.getvalue(), caption, float(figure.get_figwidth()))
+    return Picture(stream.getvalue(), caption, float(figure.get_figwidth()), to_scale)

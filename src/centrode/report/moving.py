@@ -75,6 +75,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
         view=scene.view if isinstance(scene, Globe) else None,
         driven=tuple(_driven(mechanism)),
         dots=tuple(_dots(mechanism)),
+        start=int(np.argmin(np.abs(chosen - initial_sample(scene, motion)))),
         box=np.array([scene.low, scene.high]) / factor,
     )
 

@@ -6,40 +6,36 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from centrode.locale import _
-from centrode.report.blocks import Check, Picture, Table, shown
+from centrode.report.blocks import Check, Picture, Table
 from centrode.report.figures import picture
-from centrode.report.numbers import NOTHING, respelled, spelled_number
+from centrode.report.numbers import NOTHING, Numbers, spelled_number
+from centrode.report.rows import rows_table, told
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _OPERATOR = re.compile(r"(?<= )-(?= )")
-_NUMBER = re.compile(rf"[-−+±]?[\d.,]+(·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?( ?%)?|[-–−{NOTHING}]?")
+_NUMBER = re.compile(rf"[-−+±]?[\d.,]+(·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?( ?%|°)?|[-–−{NOTHING}]?")
 
 
-def told(text: str) -> str:
-    """A sentence of another room: its numbers spelled as in the rest of a report, and nothing in it mathematics."""
-    return shown(respelled(text))
+def worked(numbers: Numbers, text: str) -> str:
+    """A line of sums of another room, in which a hyphen between spaces is a minus."""
+    return told(_OPERATOR.sub("−", text), numbers)
 
 
-def worked(text: str) -> str:
-    """The same of a line of sums, in which a hyphen between spaces is a minus."""
-    return told(_OPERATOR.sub("−", text))
-
-
-def facts(rows: Iterable[tuple[str, str]], caption: str = "") -> Table:
+def facts(numbers: Numbers, rows: Iterable[tuple[str, str]], caption: str = "") -> Table:
     """Rows of a label and what is told of it."""
-    cells = tuple((told(label), told(text)) for label, text in rows)
-    return Table((_("what"), _("value")), cells, caption)
+    return rows_table(rows, numbers, caption)
 
 
-def listed(header: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "") -> Table:
+def listed(
+    numbers: Numbers, header: Sequence[str], rows: Iterable[Sequence[str]], caption: str = ""
+) -> Table:
     """A table of another room; columns of numbers only are set flush right, columns of nothing are left out."""
-    cells = [[told(cell) for cell in row] for row in rows]
+    cells = [[told(cell, numbers) for cell in row] for row in rows]
     kept = [k for k in range(len(header)) if any(row[k] for row in cells)]
     texts = tuple(tuple(row[k] for k in kept) for row in cells)
-    return Table(tuple(told(header[k]) for k in kept), texts, caption, numeric(texts, len(kept)))
+    return Table(tuple(told(header[k], numbers) for k in kept), texts, caption, numeric(texts, len(kept)))
 
 
 def numeric(cells: Sequence[Sequence[str]], columns: int) -> tuple[bool, ...]:

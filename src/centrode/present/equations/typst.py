@@ -85,7 +85,9 @@ def shown(text: str) -> str:
 def quoted(text: str) -> str:
     """Text that typst shows as it is, wherever a string may stand."""
     safe = "".join(letter if letter.isprintable() else " " for letter in text)
-    return '"' + safe.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    for letter, code in (("\\", "\\\\"), ('"', '\\"'), ("$", r"\u{24}")):  # mathematics ends at a dollar sign
+        safe = safe.replace(letter, code)
+    return f'"{safe}"'
 
 
 def word(text: str) -> str:

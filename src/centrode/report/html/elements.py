@@ -21,9 +21,10 @@ from centrode.report.blocks import (
     Table,
 )
 from centrode.report.html.drawings import Drawings
-from centrode.report.html.mathematics import Formulas
+from centrode.report.html.mathematics import Formulas, fragments_of
 from centrode.report.html.stage import stage_of
 from centrode.report.marked import parts_of
+from centrode.report.mathematics import checked
 
 BREAK = "<wbr>"
 LONG = 60
@@ -38,16 +39,18 @@ def blocks_of(report: Report) -> Iterator[Block]:
 
 
 def formulas_in(block: Block) -> Iterator[str]:
-    """The mathematics of a block, as it is spelled."""
+    """The mathematics of a block, as it is spelled; ValueError, which is a fault, for what is none."""
     if isinstance(block, Formula):
         for line in block.lines:
-            yield from line
+            yield from line[:1]
+            for part in line:
+                yield from fragments_of(part)
     elif isinstance(block, System):
         for row in (*block.matrix, block.unknowns, block.right):
-            yield from row
+            yield from map(checked, row)
     else:
         for text in _texts(block):
-            yield from (part.text for part in parts_of(text) if part.mathematics)
+            yield from (checked(part.text) for part in parts_of(text) if part.mathematics)
 
 
 def _texts(block: Block) -> Iterator[str]:

@@ -6,25 +6,20 @@ import copy
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 from xml.etree import ElementTree as Xml
 
-import lazy_loader as lazy
+import typst
 
-from centrode.errors import InputError
-from centrode.locale import _
-
-if TYPE_CHECKING:
-    import typst
-else:
-    typst = lazy.load("typst")
+from centrode.report.mathematics import checked, pieces_of
 
 FORMULA = re.compile(r"<math\b.*?</math>", re.DOTALL)
 STYLE = re.compile(r"<style>(.*?)</style>", re.DOTALL)
 DOTS = {"\u0307": "\u02d9", "\u0308": "\u00a8"}
 """Combining dots stand left of their letter in browsers; the spacing ones stand above it."""
 SIGNS = {"+", "\u2212", "-", "±", "∓"}
-RELATIONS = {"=", "≈", "<", ">", "≤", "≥", "≠", "≡", "≪", "≫", "∈", "→", "⇒"}
+LONG = 90
+"""Letters of typst in a piece beyond which it is cut further."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +39,11 @@ class Formulas:
 
     def pieces(self, spelled: str, relation: str = "") -> list[str]:
         """A formula in pieces between which a line may end: each begins with a relation or a sign."""
-        groups: list[list[Xml.Element]] = [[]]
-        for element in self.found[spelled]:
-            if _ends_piece(element, groups[-1]):
-                groups.append([])
-            groups[-1].append(element)
-        first = [_operator(relation), _leading(groups[0])] if relation else groups[0]
+        first, *others = (list(self.found[one]) for one in fragments_of(spelled))
+        start = [_operator(relation), _leading(first)] if relation else first
         return [
-            _written(group, display=True, continued=k > 0) for k, group in enumerate([first, *groups[1:]])
+            _written(start, display=True),
+            *(_written(one, display=True, continued=True) for one in others),
         ]
 
     def system(self, matrix: Sequence[Sequence[str]], unknowns: Sequence[str], right: Sequence[str]) -> str:
@@ -72,14 +64,16 @@ class Formulas:
         return whole
 
 
-def formulas_of(spelled: Iterable[str]) -> Formulas:
-    """Lay out formulas in typst's notation, each of them once.
+def fragments_of(spelled: str) -> list[str]:
+    """The pieces that a formula is laid out in; long ones are cut inside of their bracket as well."""
+    found = []
+    for piece in pieces_of(checked(spelled)):
+        found += pieces_of(piece, depth=1) if len(piece) > LONG else [piece]
+    return found
 
-    Raises
-    ------
-    InputError
-        typst is not installed, or a formula is not in its notation.
-    """
+
+def formulas_of(spelled: Iterable[str]) -> Formulas:
+    """Lay out formulas in typst's notation, which were `checked`, each of them once."""
     wanted = list(dict.fromkeys(spelled))
     if not wanted:
         return Formulas({}, "")
@@ -87,22 +81,16 @@ def formulas_of(spelled: Iterable[str]) -> Formulas:
     page = _compiled(source)
     found = [_mended(Xml.fromstring(one)) for one in FORMULA.findall(page)]
     if len(found) != len(wanted):
-        raise InputError("", _("{count} formulas became {found}").format(count=len(wanted), found=len(found)))
+        raise ValueError(f"{len(wanted)} formulas became {len(found)}")
     style = STYLE.search(page)
     return Formulas(dict(zip(wanted, found, strict=True)), style.group(1) if style else "")
 
 
 def _compiled(source: str) -> str:
     """The page that typst makes; it sees nothing of the machine."""
-    try:
-        compiler = typst.Compiler(ignore_system_fonts=True)
-        page, _warnings = compiler.compile_with_warnings(input={"main": source.encode()}, format="html")
-    except ModuleNotFoundError as missing:
-        raise InputError(
-            "", _("a report needs typst, which is not installed"), _("pip install 'centrode[documents]'")
-        ) from missing
-    except typst.TypstError as wrong:
-        raise InputError("", _("a formula cannot be laid out: {why}").format(why=wrong)) from wrong
+    files: Any = {"main": source.encode()}
+    compiler = typst.Compiler(ignore_system_fonts=True)
+    page, _warnings = compiler.compile_with_warnings(input=files, format="html")
     assert isinstance(page, bytes)
     return page.decode()
 
@@ -129,15 +117,6 @@ def _operator(sign: str, form: str = "infix") -> Xml.Element:
     made = Xml.Element("mo", {"form": form})
     made.text = sign
     return made
-
-
-def _ends_piece(element: Xml.Element, before: Sequence[Xml.Element]) -> bool:
-    """Whether a new piece begins: at a relation, and at a sign that stands between two terms."""
-    if element.tag != "mo" or not before:
-        return False
-    last = before[-1]
-    after_operator = last.tag == "mo" and last.text in SIGNS | RELATIONS
-    return not after_operator and element.text in SIGNS | RELATIONS
 
 
 def _written(elements: Sequence[Xml.Element], display: bool = False, continued: bool = False) -> str:

@@ -15,7 +15,7 @@ from centrode.report.html.mathematics import formulas_of
 
 HERE = Path(__file__).parent
 FONT = "math-font.woff2"
-SCRIPTS = ("page.js", "animation.js")
+SCRIPTS = (("page.js",), ("space.js", "picture.js", "animation.js"))
 STYLE = "page.css"
 
 
@@ -40,7 +40,7 @@ def _page(report: Report) -> str:
     formulas = formulas_of(one for block in blocks_of(report) for one in formulas_in(block))
     elements = Elements(formulas)
     chapters = [_chapter(chapter, k, elements) for k, chapter in enumerate(report.chapters, start=1)]
-    scripts = [_data(name) for name in SCRIPTS]
+    scripts = [_script(names) for names in SCRIPTS]
     contents = "".join(_entry(chapter, k) for k, chapter in enumerate(report.chapters, start=1))
     title = html.escape(report.title)
     return (
@@ -90,6 +90,12 @@ def _policy(scripts: list[str]) -> str:
         for script in scripts
     )
     return f"default-src 'none'; script-src {sums}; style-src 'unsafe-inline'; font-src data:; img-src data:"
+
+
+@cache
+def _script(names: tuple[str, ...]) -> str:
+    """One script of several files, whose names nothing else on the page sees."""
+    return "".join(['(() => {\n"use strict";\n', *(_data(name) for name in names), "})();"])
 
 
 @cache

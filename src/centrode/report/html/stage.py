@@ -92,7 +92,7 @@ def _controls(moving: Moving) -> str:
         f'<button type="button" data-do="back" title="{back}" aria-label="{back}">\u2039</button>'
         f'<button type="button" data-do="on" title="{on}" aria-label="{on}">\u203a</button>'
         f'<input type="range" data-do="seek" min="0" max="1" step="any" aria-label="{word(_("Position"))}">'
-        f"<output>{word(moving.drive_texts[0] if moving.drive_texts else '')}</output>"
+        f"<output>{word(moving.drive_texts[moving.start] if moving.drive_texts else '')}</output>"
         f'<label>{word(_("speed"))} <input type="range" data-do="speed" min="-3" max="2" step="0.5" value="0"></label>'
         f'<label><input type="checkbox" data-do="paths" checked> {word(_("paths"))}</label>'
         f'<label><input type="checkbox" data-do="names" checked> {word(_("names"))}</label></div>'
@@ -107,7 +107,7 @@ def _data(moving: Moving) -> dict[str, Any]:
     outlines = [one for one in moving.shapes if isinstance(one, Outline)]
     found: dict[str, Any] = {
         "samples": samples,
-        "start": 0,
+        "start": moving.start,
         "axes": 3 if moving.view is not None else 2,
         "loop": _closed(moving),
         "size": sheet.size,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import singledispatchmethod
 
 from centrode.locale import _
@@ -27,6 +28,7 @@ from centrode.report.mathematics import checked, pieces_of
 
 TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
 """Inches that a picture may fill of a page, its caption left out."""
+PAPER_WIDTH = 8.268
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 _SIZE = re.compile(
@@ -110,9 +112,7 @@ class Source:
 
     @_shown.register
     def _moving(self, block: Moving) -> str:
-        return self._picture(
-            Picture(block.still.svg, block.caption or block.still.caption, block.still.width)
-        )
+        return self._picture(replace(block.still, caption=block.caption or block.still.caption))
 
     @_shown.register
     def _check(self, block: Check) -> str:
@@ -203,7 +203,9 @@ def _words(text: str) -> list[str]:
 
 
 def _width(picture: Picture) -> float:
-    """Width [in] of a picture, reduced where it would be wider or higher than a page."""
+    """Width [in] of a picture, reduced where it would be wider or higher than a page, or the paper if it is to scale."""
+    if picture.to_scale:
+        return min(picture.width, PAPER_WIDTH)
     found = _SIZE.search(picture.svg[:2000])
     if found is None:
         return min(picture.width, TEXT_WIDTH)

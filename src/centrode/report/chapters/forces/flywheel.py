@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.errors import MotionError, NotComputedYet
 from centrode.locale import _, ngettext
 from centrode.present.forces.machine_figures import machine_figures
 from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table
+from centrode.report.chapters.forces.absent import left_out
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.results import has_forces, machine_of
 from centrode.report.chapters.forces.tables import Column, over_samples
@@ -37,13 +39,23 @@ def flywheel_chapter(study: ReportStudy) -> Chapter | None:
     """Energies of the machine over a cycle, and the flywheel that keeps its speed as even as asked."""
     if not has_forces(study) or study.mechanism.machine is None:
         return None
+    try:
+        machine_of(study)
+    except (MotionError, NotComputedYet) as reason:
+        if study.wishes.chapters is not None:
+            raise
+        return left_out("flywheel", _("Flywheel"), reason)
+    return _made(study)
+
+
+def _made(study: ReportStudy) -> Chapter:
     machine = machine_of(study)
     found = machine.flywheel
     sections = [
         Section("", (*_meaning(found), Formula(tuple(_works(study, found))))),
         Section(_("Over the cycle"), (_course(study),)),
         Section(_("Inertia and flywheel"), _needed(study, found)),
-        Section(_("Summary"), (facts(flywheel_rows(study.mechanism, found)),)),
+        Section(_("Summary"), (facts(study.numbers, flywheel_rows(study.mechanism, found)),)),
         Section(_("Figures"), tuple(_figures(study))),
     ]
     return Chapter("flywheel", _("Flywheel"), tuple(sections))

@@ -10,12 +10,14 @@ from centrode.locale import _, mark
 from centrode.quantities import display_unit
 from centrode.report.blocks import Block, Chapter, Paragraph, Section, Table
 from centrode.report.chapters.forces.names import KINDS
-from centrode.report.telling import facts, listed, told
+from centrode.report.rows import told
+from centrode.report.telling import facts, listed
 
 if TYPE_CHECKING:
     from centrode.dynamics.bodies import Mass
     from centrode.model.loads import Load
     from centrode.model.mechanism import Mechanism
+    from centrode.report.numbers import Numbers
     from centrode.report.study import ReportStudy
 
 AMOUNTS = (
@@ -39,15 +41,15 @@ def masses_and_loads(study: ReportStudy) -> Chapter | None:
     if study.is_cam or not has_masses(study.mechanism):
         return None
     mechanism = study.mechanism
-    sections = [Section(_("Masses of the links"), _masses(mechanism))]
+    sections = [Section(_("Masses of the links"), _masses(mechanism, study.numbers))]
     if mechanism.loads or mechanism.gravity:
-        sections.append(Section(_("Loads"), _loads(mechanism)))
+        sections.append(Section(_("Loads"), _loads(mechanism, study.numbers)))
     if mechanism.machine is not None:
-        sections.append(Section(_("Machine"), (_machine(mechanism),)))
+        sections.append(Section(_("Machine"), (_machine(mechanism, study.numbers),)))
     return Chapter("masses-and-loads", _("Masses and loads"), tuple(sections))
 
 
-def _masses(mechanism: Mechanism) -> tuple[Block, ...]:
+def _masses(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
     masses = masses_of(mechanism)
     blocks: list[Block] = []
     if masses:
@@ -63,10 +65,10 @@ def _masses(mechanism: Mechanism) -> tuple[Block, ...]:
             rows = [
                 [*row, f"{float(one.moment_of_inertia):.6g}"] for row, one in zip(rows, masses, strict=True)
             ]
-        blocks.append(listed(head, rows))
+        blocks.append(listed(numbers, head, rows))
     massless = ", ".join(massless_links(mechanism))
     if massless:
-        blocks.append(Paragraph(told(_("Without mass: {links}.").format(links=massless))))
+        blocks.append(Paragraph(told(_("Without mass: {links}.").format(links=massless), numbers)))
     return tuple(blocks)
 
 
@@ -89,15 +91,17 @@ def _centre(mechanism: Mechanism, one: Mass) -> str:
     )
 
 
-def _loads(mechanism: Mechanism) -> tuple[Block, ...]:
+def _loads(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
     blocks: list[Block] = []
     if mechanism.gravity:
         vector = "; ".join(f"{x:.6g}" for x in mechanism.gravity)
-        blocks.append(Paragraph(told(_("Weights act with g = ({vector}) m/s².").format(vector=vector))))
+        blocks.append(
+            Paragraph(told(_("Weights act with g = ({vector}) m/s².").format(vector=vector), numbers))
+        )
     if mechanism.loads:
         head = (_("load"), _("kind"), _("acts on"), _("amount (SI)"))
         rows = [(_name(one), _(KINDS[one.kind]), _acts_on(one), _amount(one)) for one in mechanism.loads]
-        blocks.append(listed(head, rows))
+        blocks.append(listed(numbers, head, rows))
     return tuple(blocks)
 
 
@@ -137,7 +141,7 @@ def _text(value: float | str) -> str:
     return value if isinstance(value, str) else f"{value:.6g}"
 
 
-def _machine(mechanism: Mechanism) -> Table:
+def _machine(mechanism: Mechanism, numbers: Numbers) -> Table:
     machine = mechanism.machine
     assert machine is not None
     rows = [(_("mean speed of the drive"), f"{machine.mean_speed:.6g} rad/s")]
@@ -151,4 +155,4 @@ def _machine(mechanism: Mechanism) -> Table:
         rows.append((label, text.format(inertia=shaft.inertia, ratio=shaft.ratio)))
     if machine.driving is not None:
         rows.append((_("course of the driving moment"), machine.driving))
-    return facts(rows)
+    return facts(numbers, rows)

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
 from centrode.present.forces.bearing_figures import bearing_figures
 from centrode.present.forces.reaction_figures import reaction_figures
 from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, shown
+from centrode.report.chapters.forces.absent import left_out
 from centrode.report.chapters.forces.inertia import inertia_at
-from centrode.report.chapters.forces.places import instants, name_of_place, not_reached
+from centrode.report.chapters.forces.places import not_reached, titles
 from centrode.report.chapters.forces.results import has_forces, reactions_at_instants, reactions_of
 from centrode.report.chapters.forces.virtual_work import by_virtual_work
 from centrode.report.telling import facts, listed, measured, pictures
@@ -29,6 +31,16 @@ def reactions_chapter(study: ReportStudy) -> Chapter | None:
     """Kinetostatics: inertia, the table of joints, reactions at instants, the worst over the motion, checks."""
     if not has_forces(study):
         return None
+    try:
+        reactions_of(study)
+    except (InputError, NotComputedYet) as reason:
+        if study.wishes.chapters is not None:
+            raise
+        return left_out("reactions", _("Reactions in the joints"), reason)
+    return _made(study)
+
+
+def _made(study: ReportStudy) -> Chapter:
     mechanism, found = study.mechanism, reactions_of(study)
     header, rows = joint_table(mechanism)
     told = _(
@@ -36,12 +48,12 @@ def reactions_chapter(study: ReportStudy) -> Chapter | None:
         " equations of equilibrium of the links."
     )
     sections = [
-        Section("", (*_meaning(study), facts(reaction_rows(mechanism, found)[: -len(CHECKS)]))),
-        Section(_("Table of joints"), (Paragraph(told), listed(header, rows))),
+        Section(
+            "", (*_meaning(study), facts(study.numbers, reaction_rows(mechanism, found)[: -len(CHECKS)]))
+        ),
+        Section(_("Table of joints"), (Paragraph(told), listed(study.numbers, header, rows))),
     ]
-    sections += [
-        Section(name_of_place(study, at), tuple(_at(study, k))) for k, at in enumerate(instants(study))
-    ]
+    sections += [Section(title, tuple(_at(study, k))) for k, title in enumerate(titles(study))]
     sections.append(Section(_("Greatest reactions"), _greatest(study)))
     sections.append(Section(_("Checks"), tuple(_checks(study))))
     sections.append(Section(_("Figures"), tuple(_figures(study))))
@@ -76,7 +88,7 @@ def _at(study: ReportStudy, k: int) -> list[Block]:
     header, rows = reactions_at_instant(mechanism, data, k)
     return [
         *inertia_at(study, k),
-        listed(header, rows, _("Reactions")),
+        listed(study.numbers, header, rows, _("Reactions")),
         *by_virtual_work(study, k),
     ]
 
@@ -89,11 +101,13 @@ def _greatest(study: ReportStudy) -> tuple[Block, ...]:
         loads = study.once("bearing loads", lambda: bearing_loads(mechanism, found))
     header, rows = bearing_load_rows(mechanism, loads)
     blocks: list[Block] = [
-        listed(header, rows, _("Extremes are found between the samples too; means are over time."))
+        listed(
+            study.numbers, header, rows, _("Extremes are found between the samples too; means are over time.")
+        )
     ]
     losses = friction_losses(found)
     if losses is not None:
-        blocks.append(listed(losses[0], losses[1], _("What friction takes")))
+        blocks.append(listed(study.numbers, losses[0], losses[1], _("What friction takes")))
     return tuple(blocks)
 
 

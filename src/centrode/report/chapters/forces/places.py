@@ -9,7 +9,7 @@ import numpy as np
 from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.report.blocks import shown
-from centrode.study.centres import initial_place
+from centrode.report.moments import moments_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,17 +27,8 @@ def by_value(study: ReportStudy) -> bool:
 
 
 def instants(study: ReportStudy) -> tuple[float, ...]:
-    """Values of the drive (by a law or with several drives, times) that are shown; the initial place if nobody chose.
-
-    Where a law passes a value more than once, the nearest sample of the motion has to do.
-    """
-    wished = study.wishes.instants
-    if not wished:
-        return (initial_place(study.mechanism),)
-    if by_value(study) or len(study.mechanism.drives) > 1:
-        return wished
-    values, time = study.motion["drive_value"].to_numpy()[:, 0], study.motion["time"].to_numpy()
-    return tuple(float(time[np.argmin(np.abs(values - one))]) for one in wished)
+    """The instants that are shown: values of the drive; by a law or with several drives times."""
+    return tuple(moment.at for moment in moments_of(study))
 
 
 def unit_of_place(study: ReportStudy) -> str:
@@ -45,10 +36,9 @@ def unit_of_place(study: ReportStudy) -> str:
     return unit_of_value(study.mechanism, study.mechanism.drives[0]) if by_value(study) else "s"
 
 
-def name_of_place(study: ReportStudy, at: float) -> str:
-    """A place as a title names it: "OA = 120°", "t = 1.5 s"."""
-    name = study.mechanism.drives[0].id if by_value(study) else "t"
-    return f"{name} = {study.numbers.measured(at, unit_of_place(study))}"
+def titles(study: ReportStudy) -> tuple[str, ...]:
+    """How titles name the instants: "OA = 120°"."""
+    return tuple(moment.title for moment in moments_of(study))
 
 
 def head_of_places(study: ReportStudy) -> str:

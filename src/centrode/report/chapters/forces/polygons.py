@@ -10,12 +10,13 @@ from centrode.dynamics.force_polygons.solving import force_polygons
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.forces.polygon_drawing import polygon_figures
-from centrode.report.blocks import Block, Chapter, Check, Items, Paragraph, Section
+from centrode.report.blocks import Block, Chapter, Check, Items, Paragraph, Section, shown
 from centrode.report.chapters.forces.names import with_load_names
-from centrode.report.chapters.forces.places import instants, name_of_place
+from centrode.report.chapters.forces.places import instants, titles
 from centrode.report.chapters.forces.results import has_forces
 from centrode.report.figures import picture
-from centrode.report.telling import facts, listed, measured, told, worked
+from centrode.report.rows import told
+from centrode.report.telling import facts, listed, measured, worked
 from centrode.study.forces.force_polygons import (
     group_title,
     polygon_about,
@@ -42,38 +43,43 @@ def polygons_chapter(study: ReportStudy) -> Chapter | None:
     sections = [Section("", (Paragraph(text),))]
     made = 0
     refusals: list[CentrodeError] = []
-    for at in instants(study):
+    for at, title in zip(instants(study), titles(study), strict=True):
         try:
             found = force_polygons(study.mechanism, at)
         except CentrodeError as refusal:
             refusals.append(refusal)
-            sections.append(Section(name_of_place(study, at), (Paragraph(told(str(refusal))),)))
+            sections.append(Section(title, (Paragraph(told(str(refusal), study.numbers)),)))
             continue
         made += 1
-        sections += _instant(study, found, at)
+        sections += _instant(study, found, title)
     if not made and refusals:
         raise refusals[0]
     return Chapter("force-polygons", _("Force polygons"), tuple(sections))
 
 
-def _instant(study: ReportStudy, found: ForcePolygons, at: float) -> list[Section]:
+def _instant(study: ReportStudy, found: ForcePolygons, title: str) -> list[Section]:
     """An instant: what is what, group by group with its drawing, all forces, the balancing moment."""
     figures = polygon_figures(found)
     labels = [one.label for one in found.outer]
-    blocks: list[Block] = [facts(with_load_names(study.mechanism, labels, polygon_about(found)))]
+    blocks: list[Block] = [
+        facts(study.numbers, with_load_names(study.mechanism, labels, polygon_about(found)))
+    ]
     for number, group in enumerate(found.groups, start=1):
-        title = told(group_title(group))
-        blocks += [Paragraph(title + "."), Items(tuple(worked(step) for step in group.steps), numbered=True)]
-        blocks.append(picture(figures[f"group-{number}"], title))
+        name = told(group_title(group), study.numbers)
+        steps = tuple(worked(study.numbers, step) for step in group.steps)
+        blocks += [Paragraph(f"{name}."), Items(steps, numbered=True)]
+        blocks.append(picture(figures[f"group-{number}"], name))
     for lever in found.levers:
-        name = "lever" if len(found.levers) == 1 else f"lever-{lever.drive}"
-        caption = _("Zhukovsky's lever of drive {drive}").format(drive=told(lever.drive))
-        blocks.append(picture(figures[name], caption))
+        page = "lever" if len(found.levers) == 1 else f"lever-{lever.drive}"
+        caption = _("Zhukovsky's lever of drive {drive}").format(drive=shown(lever.drive))
+        blocks.append(picture(figures[page], caption))
     rows = polygon_rows(found)
-    blocks.append(listed(rows[0], rows[1:], _("Forces of the polygons")))
+    blocks.append(listed(study.numbers, rows[0], rows[1:], _("Forces of the polygons")))
     balance = polygon_balance_rows(found)
-    blocks.append(listed(balance[0], balance[1:], _("Balancing moment or force by three routes")))
-    return [Section(name_of_place(study, at), tuple([*blocks, *_checks(found)]))]
+    blocks.append(
+        listed(study.numbers, balance[0], balance[1:], _("Balancing moment or force by three routes"))
+    )
+    return [Section(title, tuple([*blocks, *_checks(found)]))]
 
 
 def _checks(found: ForcePolygons) -> list[Check]:
@@ -85,7 +91,7 @@ def _checks(found: ForcePolygons) -> list[Check]:
         own = found.balancing[drive.id]
         others = [value for value in (levers.get(drive.id), found.work.get(drive.id)) if value is not None]
         text = _("Drive {drive}: polygons, lever and virtual work agree to {share}.")
-        said = text.replace("{drive}", told(drive.id).replace("{", "{{").replace("}", "}}"))
+        said = text.replace("{drive}", shown(drive.id).replace("{", "{{").replace("}", "}}"))
         off = max((abs(own - value) for value in others), default=0.0)
         checks.append(measured(said, off, max(size, abs(own)), allowed))
     return checks

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.errors import MotionError, NotComputedYet
 from centrode.locale import _
 from centrode.present.forces.machine_figures import machine_figures
 from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table, shown
-from centrode.report.chapters.forces.places import few, name_of_place
-from centrode.report.chapters.forces.results import has_forces, machine_of
+from centrode.report.chapters.forces.absent import left_out
+from centrode.report.chapters.forces.places import few, titles
+from centrode.report.chapters.forces.results import has_forces, machine_of, steady_at_instants
 from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.report.formulas import factor, in_si, squared, with_unit
 from centrode.report.telling import pictures
@@ -44,13 +46,21 @@ def real_motion_chapter(study: ReportStudy) -> Chapter | None:
     """Real speed of the drive, and real velocities and accelerations at the instants."""
     if not has_forces(study) or study.mechanism.machine is None:
         return None
-    machine = machine_of(study)
+    try:
+        machine_of(study)
+    except (MotionError, NotComputedYet) as reason:
+        if study.wishes.chapters is not None:
+            raise
+        return left_out("real-motion", _("Real motion"), reason)
+    return _made(study)
+
+
+def _made(study: ReportStudy) -> Chapter:
     sections = [Section("", _meaning())]
-    if machine.instants is not None:
-        sections += [
-            Section(name_of_place(study, at), tuple(_at(study, machine.instants.isel(sample=k))))
-            for k, at in enumerate(machine.instants["drive_value"].to_numpy()[:, 0].tolist())
-        ]
+    steady = steady_at_instants(study)
+    sections += [
+        Section(title, tuple(_at(study, steady.isel(sample=k)))) for k, title in enumerate(titles(study))
+    ]
     sections.append(Section(_("Over the cycle"), (_course(study),)))
     sections.append(Section(_("Figures"), tuple(_figures(study))))
     return Chapter("real-motion", _("Real motion"), tuple(sections))

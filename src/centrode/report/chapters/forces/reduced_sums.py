@@ -10,7 +10,7 @@ from centrode.locale import _
 from centrode.report.blocks import Block, Check, Formula, Paragraph, Section, Table, shown
 from centrode.report.chapters.forces.by_links import LinkMotion, motions_of_links
 from centrode.report.chapters.forces.names import load_name
-from centrode.report.chapters.forces.places import instants, name_of_place, not_reached
+from centrode.report.chapters.forces.places import not_reached, titles
 from centrode.report.chapters.forces.results import motion_at_instants, reduced_at_instants
 from centrode.report.formulas import factor, in_si, indexed, squared, sum_of, with_unit
 from centrode.report.telling import measured
@@ -29,8 +29,7 @@ def sums_at_instants(study: ReportStudy) -> list[Section]:
     """A section for each instant."""
     data = reduced_at_instants(study)
     return [
-        Section(name_of_place(study, at), tuple(_at(study, data.isel(sample=k), k)))
-        for k, at in enumerate(instants(study))
+        Section(title, tuple(_at(study, data.isel(sample=k), k))) for k, title in enumerate(titles(study))
     ]
 
 

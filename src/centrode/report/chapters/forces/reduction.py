@@ -27,13 +27,13 @@ def reduction_chapter(study: ReportStudy) -> Chapter | None:
     if not has_forces(study):
         return None
     mechanism, data = study.mechanism, reduced(study)
-    sections = [Section("", (*_meaning(study), facts(_rows(study))))]
+    sections = [Section("", (*_meaning(study), facts(study.numbers, _rows(study))))]
     if "reduced_inertia" in data:
         sections += sums_at_instants(study)
         sections.append(Section(_("Over the motion"), (_course(study),)))
     header, rows = reduction_parts(data)
     own = [[_part(study, cells[0]), *cells[1:]] for cells in rows]
-    sections.append(Section(_("Extremes and means"), (listed(header, own),)))
+    sections.append(Section(_("Extremes and means"), (listed(study.numbers, header, own),)))
     captions = {
         "reduced-inertia": _("Reduced inertia with the parts of the links, and its derivative"),
         "reduced-moment": _("Reduced moment with the parts of the loads"),

@@ -42,10 +42,9 @@ def simulation_chapter(study: ReportStudy) -> Chapter | None:
         "The drive is not led: its motion follows from the reduced inertia and the reduced moments of drive and loads."
     )
     line = ("J dot.double(q) + 1/2 J' dot(q)^2", "M_upright(d) + M")
+    first = facts(study.numbers, simulation_rows(mechanism, found))
     sections = [
-        Section(
-            "", (Paragraph(text), Formula((line,)), facts(simulation_rows(mechanism, found)), *_energy(study))
-        ),
+        Section("", (Paragraph(text), Formula((line,)), first, *_energy(study))),
         Section(_("Over time"), (_course(study),)),
     ]
     regime = _regime(study)
@@ -100,4 +99,4 @@ def _regime(study: ReportStudy) -> tuple[Block, ...]:
         regime = study.once("regime", lambda: steady_regime(mechanism))
     except CentrodeError as failure:
         return (Paragraph(_("None is found: {reason}.").format(reason=failure.what)),)
-    return (facts(regime_rows(mechanism, regime)),)
+    return (facts(study.numbers, regime_rows(mechanism, regime)),)

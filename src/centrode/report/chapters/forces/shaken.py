@@ -11,7 +11,8 @@ from centrode.locale import _
 from centrode.present.forces.balance_figures import balance_figures
 from centrode.report.blocks import Block, Chapter, Formula, Items, Paragraph, Section, Table
 from centrode.report.chapters.forces.results import balanced, has_forces, shaken
-from centrode.report.telling import facts, listed, measured, pictures, told
+from centrode.report.rows import told
+from centrode.report.telling import facts, listed, measured, pictures
 from centrode.study.forces.balancing import balance_effects, balance_rows, balance_steps
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def balance_chapter(study: ReportStudy) -> Chapter | None:
     lines = (("arrow(F)", "-sum_k m_k arrow(a)_k"), ("M", "-frac(d K, d t)"))
     blocks: list[Block] = [Paragraph(text), Formula(lines)]
     if "greatest_shaking_force" in data.attrs:
-        blocks.append(facts(_greatest(data)))
+        blocks.append(facts(study.numbers, _greatest(data)))
     sections = [Section("", tuple(blocks))]
     if "force_harmonic_amplitude" in data:
         sections.append(Section(_("Harmonics"), (_harmonics(study, data),)))
@@ -80,12 +81,15 @@ def _balance(study: ReportStudy) -> tuple[Block, ...]:
     try:
         found = balanced(study)
     except CentrodeError as refusal:
-        return (Paragraph(told(str(refusal))),)
+        return (Paragraph(told(str(refusal), study.numbers)),)
     header, rows = balance_effects(found)
-    blocks: list[Block] = [facts(balance_rows(found)), listed(header, rows)]
+    blocks: list[Block] = [facts(study.numbers, balance_rows(found)), listed(study.numbers, header, rows)]
     steps = balance_steps(found)
     if steps:
-        blocks += [Paragraph(_("Masses replaced at the joints:")), Items(tuple(map(told, steps)))]
+        blocks += [
+            Paragraph(_("Masses replaced at the joints:")),
+            Items(tuple(told(step, study.numbers) for step in steps)),
+        ]
     before, after = (float(one.attrs["greatest_shaking_force"]) for one in (found.before, found.after))
     allowed = 1e4 * float(np.finfo(float).eps)
     text = _("With the counterweights {share} of the greatest shaking force is left.")
