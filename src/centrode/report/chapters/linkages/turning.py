@@ -27,12 +27,20 @@ def turning_chapter(study: ReportStudy) -> Chapter | None:
     found = study.rotatability
     rows = rows_table(rotatability_rows(study.mechanism, found), study.numbers)
     sections = [Section("", (rows,))]
-    angles = transmission_angles(study.mechanism)
-    if angles.sizes["group"]:
+    angles = _angles(study)
+    if angles is not None:
         sections.append(Section(_("Transmission angles"), tuple(_transmission(study, angles))))
     if found.turns_fully is False and len(study.mechanism.drives) == 1:
         sections.append(Section(_("Repair"), tuple(_repair(study))))
     return Chapter("rotatability", _("Rotatability"), tuple(sections))
+
+
+def _angles(study: ReportStudy) -> xr.Dataset | None:
+    """Transmission angles over the motion; None where no group has one."""
+    try:
+        return transmission_angles(study.mechanism)
+    except CentrodeError:
+        return None
 
 
 def _transmission(study: ReportStudy, angles: xr.Dataset) -> Iterator[Block]:
