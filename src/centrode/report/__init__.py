@@ -15,9 +15,10 @@ if TYPE_CHECKING:
     from centrode.report.blocks import Report
     from centrode.report.making import report
     from centrode.report.options import ReportOptions
+    from centrode.report.variants.writing import write_variant_reports
     from centrode.report.writing import write_report
 
-__all__ = ["Report", "ReportOptions", "report", "write_report"]
+__all__ = ["Report", "ReportOptions", "report", "write_report", "write_variant_reports"]
 
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
@@ -25,6 +26,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "blocks": ["Report"],
         "making": ["report"],
         "options": ["ReportOptions"],
+        "variants.writing": ["write_variant_reports"],
         "writing": ["write_report"],
     },
 )

@@ -66,7 +66,7 @@ def write_report(
         for kind in dict.fromkeys(formats):
             if said is not None:
                 said(f"{name}.{kind}")
-            documents[f"{name}.{kind}"] = _document(report, kind)
+            documents[f"{name}.{kind}"] = document(report, kind)
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -97,7 +97,8 @@ def lacking(library: str) -> InputError:
     return InputError("", what, _('install what they need with pip install "centrode[documents,figures]"'))
 
 
-def _document(report: Report, kind: str) -> bytes:
+def document(report: Report, kind: str) -> bytes:
+    """A report as the bytes of a document; InputError where a library is missing."""
     try:
         return FORMATS[kind](report)
     except ModuleNotFoundError as missing:

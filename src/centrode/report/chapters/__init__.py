@@ -15,6 +15,7 @@ from centrode.report.chapters.cams.chapters import (
     cam_choice_chapter,
     cam_contact_chapter,
     cam_data_chapter,
+    cam_motion_chapter,
     cam_path_chapter,
     cam_profile_chapter,
     cam_routes_chapter,
@@ -68,7 +69,7 @@ def either(*makers: Make) -> Make:
 
 CHAPTERS: Mapping[str, Kind] = {
     "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter)),
-    "motion": Kind(mark("Motion"), motion_chapter),
+    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter)),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),

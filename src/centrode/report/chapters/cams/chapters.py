@@ -16,6 +16,7 @@ from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Se
 from centrode.report.chapters.cams.given import given_of
 from centrode.report.chapters.cams.parts import cam_of, course, part_of, sections_of, told_part
 from centrode.report.figures import picture
+from centrode.report.moving_wheel import moving_wheel
 from centrode.report.telling import measured
 
 if TYPE_CHECKING:
@@ -30,6 +31,15 @@ def cam_data_chapter(study: ReportStudy) -> Chapter | None:
     if not study.is_cam:
         return None
     return Chapter("data", _("Data"), (Section("", given_of(study)),))
+
+
+def cam_motion_chapter(study: ReportStudy) -> Chapter | None:
+    """The wheel that walks, which a page plays."""
+    part = part_of(study, "walking") if study.is_cam and study.cam.mover is not None else None
+    if part is None or "wheel" not in part.objects:
+        return None
+    moving = moving_wheel(part.objects["wheel"], _(study.cam.title))
+    return Chapter("motion", _("Motion"), (Section("", (moving,)),))
 
 
 def cam_path_chapter(study: ReportStudy) -> Chapter | None:

@@ -52,10 +52,10 @@ def _listed(study: ReportStudy, table: Told) -> Table:
 def course(study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]], caption: str) -> Table:
     """Variables of a dataset over the angle of the carrier, at even steps."""
     found = [Column("$phi$", "rad", data["carrier_angle"].to_numpy())]
-    found += [
-        Column(f"${letter}$", str(data[name].attrs["units"]), data[name].to_numpy())
-        for name, letter in columns
-    ]
+    for name, letter in columns:
+        values, unit = data[name].to_numpy(), str(data[name].attrs["units"])
+        scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
+        found.append(Column(f"${letter}$", shown_unit, scale * values))
     return over_samples(study.numbers, found, few(data.sizes["sample"]), caption)
 
 
