@@ -43,7 +43,17 @@ def drawn(wide: float = 3.0) -> bytes:
 def test_nothing_acts_or_loads() -> None:
     drawings = Drawings()
     element = drawings.embedded(HOSTILE, 'a "label" <b>')
-    for word in ("script>", "alert", "onload", "onclick", "example", "import", "foreignObject", "svg+xml", "javascript"):
+    for word in (
+        "script>",
+        "alert",
+        "onload",
+        "onclick",
+        "example",
+        "import",
+        "foreignObject",
+        "svg+xml",
+        "javascript",
+    ):
         assert word not in element.replace("&lt;script&gt;", ""), word
     root = Xml.fromstring(element)
     assert root.get("aria-label") == 'a "label" <b>'
@@ -72,7 +82,11 @@ def test_the_picture_is_what_it_was() -> None:
     """Every number of every line is the one that was drawn, to half a hundredth of a point."""
     before = Xml.fromstring(drawn())
     after = Xml.fromstring(Drawings().embedded(drawn(), ""))
-    lines = [one.get("d", "") for one in before.iter("{http://www.w3.org/2000/svg}path") if "clip-path" in one.attrib]
+    lines = [
+        one.get("d", "")
+        for one in before.iter("{http://www.w3.org/2000/svg}path")
+        if "clip-path" in one.attrib
+    ]
     found = [one.get("d", "") for one in after.iter("path") if "clip-path" in one.attrib]
     assert len(lines) == len(found) > 3
     for line, same in zip(lines, found, strict=True):

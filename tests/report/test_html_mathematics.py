@@ -98,7 +98,10 @@ def test_a_system_keeps_rows_and_columns() -> None:
     formulas = formulas_of(["a", "-b, c", "0", "d", "x", "y", "1", "2"])
     element = Xml.fromstring(formulas.system(matrix, ("x", "y"), ("1", "2")))
     tables = list(element.iter("mtable"))
-    cells = [[[text for text in map("".join, (cell.itertext() for cell in row))] for row in table] for table in tables]
+    cells = [
+        [[text for text in map("".join, (cell.itertext() for cell in row))] for row in table]
+        for table in tables
+    ]
     assert cells == [[["𝑎", "−𝑏,𝑐"], ["0", "𝑑"]], [["𝑥"], ["𝑦"]], [["1"], ["2"]]]
 
 

@@ -39,7 +39,11 @@ def test_its_licence_stands_beside_it(font: TTFont) -> None:
 
 @pytest.mark.parametrize("language", ["en", "ru", "uk"])
 def test_it_has_every_letter_of_names_and_words(font: TTFont, language: str) -> None:
-    alphabets = {"en": "abcdefghijklmnopqrstuvwxyz", "ru": "абвгдеёжзийклмнопрстуфхцчшщъыьэюя", "uk": "ґєіїщ’"}
+    alphabets = {
+        "en": "abcdefghijklmnopqrstuvwxyz",
+        "ru": "абвгдеёжзийклмнопрстуфхцчшщъыьэюя",
+        "uk": "ґєіїщ’",
+    }
     known = font.getBestCmap()
     missing = {one for one in alphabets[language] + alphabets[language].upper() if ord(one) not in known}
     assert not missing
@@ -55,6 +59,8 @@ def test_it_has_every_letter_of_formulas(font: TTFont, name: str, language: str)
         spelled = [part for one in relations for part in one.parts]
         formulas = formulas_of(spelled)
     text = "".join("".join(Xml.fromstring(formulas.displayed(one)).itertext()) for one in spelled)
-    missing = {one for one in text if ord(one) not in known and not unicodedata.category(one).startswith(("Z", "C"))}
+    missing = {
+        one for one in text if ord(one) not in known and not unicodedata.category(one).startswith(("Z", "C"))
+    }
     assert len(text) > 50
     assert not missing

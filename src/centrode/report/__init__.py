@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import lazy_loader
 
-from centrode.errors import InputError
-from centrode.locale import _
+from centrode.report.writing import lacking
 
 if TYPE_CHECKING:
     from centrode.report.blocks import Report
@@ -41,8 +40,4 @@ def __getattr__(name: str) -> Any:
         library = (missing.name or "").partition(".")[0]
         if library != "matplotlib":
             raise
-        raise InputError(
-            "",
-            _("reports need {library}, which is not installed").format(library=library),
-            _('install what they need with pip install "centrode[documents,figures]"'),
-        ) from missing
+        raise lacking(library) from missing

@@ -36,10 +36,10 @@ def turning_chapter(study: ReportStudy) -> Chapter | None:
 
 
 def _angles(study: ReportStudy) -> xr.Dataset | None:
-    """Transmission angles; none where no group has any, as with gears alone."""
+    """Transmission angles over the motion; None where no group has one."""
     try:
         return transmission_angles(study.mechanism)
-    except InputError:
+    except CentrodeError:
         return None
 
 
