@@ -93,7 +93,7 @@ class TypstReader:
             power = self.power()
             return WAVES[token](self.factor()) ** power
         if NUMBER.fullmatch(token):
-            return mpmath.mpf(token.strip('"').replace(",", "."))
+            return mpmath.mpf(token.strip('"').replace(",", ".")) ** self.power()
         name = token
         if token in ("dot", "dot.double", "italic"):
             name += f"({self.inside()})"

@@ -51,7 +51,7 @@ def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Pi
         vectors.print_figure(
             stream, format="svg", bbox_inches=Bbox([low, high]), metadata=METADATA["svg"], facecolor="white"
         )
-    return Picture(stream.getvalue(), caption, float(high[0] - low[0]))
+    return Picture(stream.getvalue(), caption, float(high[0] - low[0]), to_scale=True)
 
 
 def _is_overlay(axes: Any, figure: Figure) -> bool:

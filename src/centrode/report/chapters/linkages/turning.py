@@ -8,7 +8,7 @@ import xarray as xr
 
 from centrode.analysis.repair import Repair, repair
 from centrode.analysis.transmission import transmission_angles
-from centrode.errors import CentrodeError
+from centrode.errors import CentrodeError, InputError
 from centrode.locale import _
 from centrode.present.transmission_curves import transmission_figure
 from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table
@@ -22,17 +22,25 @@ from centrode.study.turning import rotatability_rows
 
 def turning_chapter(study: ReportStudy) -> Chapter | None:
     """What `centrode rotatability` tells; of a mechanism that does not turn fully, the repair."""
-    if not study.is_planar:
+    if study.is_cam:
         return None
     found = study.rotatability
     rows = rows_table(rotatability_rows(study.mechanism, found), study.numbers)
     sections = [Section("", (rows,))]
-    angles = transmission_angles(study.mechanism)
-    if angles.sizes["group"]:
+    angles = _angles(study)
+    if angles is not None and angles.sizes["group"]:
         sections.append(Section(_("Transmission angles"), tuple(_transmission(study, angles))))
     if found.turns_fully is False and len(study.mechanism.drives) == 1:
         sections.append(Section(_("Repair"), tuple(_repair(study))))
     return Chapter("rotatability", _("Rotatability"), tuple(sections))
+
+
+def _angles(study: ReportStudy) -> xr.Dataset | None:
+    """Transmission angles over the motion; None where no group has one."""
+    try:
+        return transmission_angles(study.mechanism)
+    except CentrodeError:
+        return None
 
 
 def _transmission(study: ReportStudy, angles: xr.Dataset) -> Iterator[Block]:
