@@ -203,7 +203,7 @@ def _words(text: str) -> list[str]:
 
 
 def _width(picture: Picture) -> float:
-    """Width [in] of a picture, reduced where it would be wider or higher than a page, or the paper if it is to scale."""
+    """Width [in] of a picture, reduced where a page has not the room for it; of one to scale, where paper has not."""
     if picture.to_scale:
         return min(picture.width, PAPER_WIDTH)
     found = _SIZE.search(picture.svg[:2000])

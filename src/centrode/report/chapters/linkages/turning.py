@@ -8,7 +8,7 @@ import xarray as xr
 
 from centrode.analysis.repair import Repair, repair
 from centrode.analysis.transmission import transmission_angles
-from centrode.errors import CentrodeError, InputError
+from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.transmission_curves import transmission_figure
 from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table
