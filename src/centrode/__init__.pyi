@@ -248,6 +248,7 @@ from .present import save_figures as save_figures
 # Reports
 from .report import report as report
 from .report import write_report as write_report
+from .report import write_variant_reports as write_variant_reports
 from .report import ReportOptions as ReportOptions
 
 # Words, failures, language

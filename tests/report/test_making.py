@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 
 import centrode as ct
@@ -161,3 +164,9 @@ def test_what_is_computed_is_computed_once() -> None:
         with pytest.raises(MotionError):
             study.once("fails", fails)
     assert calls == [1]
+
+
+def test_every_chapter_is_told() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "report.md").read_text(encoding="utf-8")
+    told = re.findall(r"^\| `([\w-]+)` \| ", page.partition("## Chapters")[2], re.MULTILINE)
+    assert told == list(CHAPTERS)

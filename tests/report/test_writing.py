@@ -47,6 +47,12 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path, monkeypatch: p
     assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [("report.pdf", b"old")]
 
 
+def test_without_typst_nothing_is_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(writing, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match="reports need typst, which is not installed"):
+        writing.check_formats(("pdf",))
+
+
 @pytest.mark.parametrize(
     ("formats", "message"),
     [

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+import lazy_loader
 
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import results_option
 from centrode.cli.progress import Progress
-from centrode.errors import InputError, MotionError
+from centrode.errors import MotionError
 from centrode.locale import _, mark, ngettext
-from centrode.model.cams.description import Cam
-from centrode.model.examples.loading import load_either
-from centrode.model.units import to_si
 
 if TYPE_CHECKING:
     from centrode.report.blocks import Report
+
+# What they import is too much for a list of commands.
+_loading, _options, _writing = (
+    functools.partial(lazy_loader.load, f"centrode.{name}", suppress_warning=True)
+    for name in ("model.examples.loading", "report.options", "report.writing")
+)
 
 
 @click.command(help=mark("Write everything about a mechanism or a cam as one document."))
@@ -65,13 +70,14 @@ def report(
     digits: int | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
-    described = load_either(description)
+    described = _loading().load_either(description)
     folder = output.folder_of(out, description, "report")
     kinds = _listed(formats)
+    _writing().check_formats(kinds)
     with about(description):
         options = ct.ReportOptions(
             None if chapters is None else _listed(chapters),
-            tuple(_instant(described, text) for text in instants) or None,
+            tuple(_options().instant(described, text, "--at") for text in instants) or None,
             None if points is None else _listed(points),
             digits,
         )
@@ -89,16 +95,6 @@ def report(
 
 def _listed(text: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in text.split(",") if part.strip())
-
-
-def _instant(description: ct.Mechanism | Cam, text: str) -> float:
-    """A place of the motion that an option names [rad, m or s]."""
-    if isinstance(description, ct.Mechanism):
-        return ct.range_value(description, text, "--at")
-    try:
-        return to_si(text, "angle")
-    except InputError as error:
-        raise InputError("--at", error.what, error.repair) from None
 
 
 def _summary(made: Report) -> str:

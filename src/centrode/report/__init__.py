@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import lazy_loader
 
-from centrode.errors import InputError
-from centrode.locale import _
+from centrode.report.writing import lacking
 
 if TYPE_CHECKING:
     from centrode.report.blocks import Report
     from centrode.report.making import report
     from centrode.report.options import ReportOptions
+    from centrode.report.variants.writing import write_variant_reports
     from centrode.report.writing import write_report
 
-__all__ = ["Report", "ReportOptions", "report", "write_report"]
+__all__ = ["Report", "ReportOptions", "report", "write_report", "write_variant_reports"]
 
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
@@ -26,6 +26,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "blocks": ["Report"],
         "making": ["report"],
         "options": ["ReportOptions"],
+        "variants.writing": ["write_variant_reports"],
         "writing": ["write_report"],
     },
 )
@@ -39,8 +40,4 @@ def __getattr__(name: str) -> Any:
         library = (missing.name or "").partition(".")[0]
         if library != "matplotlib":
             raise
-        raise InputError(
-            "",
-            _("reports need {library}, which is not installed").format(library=library),
-            _('install what they need with pip install "centrode[documents,figures]"'),
-        ) from missing
+        raise lacking(library) from missing

@@ -133,7 +133,8 @@ class Moving:
 
     Attributes
     ----------
-    places : name of a point -> its places (samples, 2) [m], on the sphere (samples, 3); NaN where it has none
+    places : name of a point -> its places (samples, 2) [m], on the sphere (samples, 3); NaN where it has none, one row
+        for what stands still
     bodies : name of a link -> names of its points, drawn as lines between them
     fixed : names of the points of the frame
     guides : name of a guide -> two ends (2, 2) [m] of the line that is drawn

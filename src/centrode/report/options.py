@@ -12,6 +12,8 @@ from centrode.model.cams.description import Cam
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import nearest, shown
 from centrode.model.reports import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
+from centrode.model.units import to_si
+from centrode.study.running import range_value
 
 Wished = TypeVar("Wished")
 
@@ -67,6 +69,16 @@ def settled(description: Mechanism | Cam, options: ReportOptions, known: Iterabl
         said = what.format(least=LEAST_DIGITS, most=MOST_DIGITS, digits=found.digits)
         raise InputError("digits", said)
     return found
+
+
+def instant(description: Mechanism | Cam, text: float | str, where: str) -> float:
+    """The place of a motion that a number or a text with a unit names [rad, m or s]; `where` it was given."""
+    if isinstance(description, Mechanism):
+        return range_value(description, text, where)
+    try:
+        return to_si(text, "angle")
+    except InputError as error:
+        raise InputError(where, error.what, error.repair) from None
 
 
 def _first(wish: Wished | None, other: Wished | None) -> Wished | None:

@@ -7,6 +7,7 @@ import os
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from importlib.util import find_spec
 from pathlib import Path
 
 import lazy_loader
@@ -65,7 +66,7 @@ def write_report(
         for kind in dict.fromkeys(formats):
             if said is not None:
                 said(f"{name}.{kind}")
-            documents[f"{name}.{kind}"] = _document(report, kind)
+            documents[f"{name}.{kind}"] = document(report, kind)
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -79,27 +80,32 @@ def write_report(
 
 
 def check_formats(formats: Sequence[str]) -> None:
-    """InputError for a format that there is not, and for none."""
+    """InputError for a format that there is not, for none, and where nothing can set documents."""
     if not formats:
         raise InputError("format", _("no format is named"), nearest("", FORMATS))
     for kind in formats:
         if kind not in FORMATS:
             what = _("{kind} is no format of a report").format(kind=shown(kind))
             raise InputError("format", what, nearest(kind, FORMATS))
+    if find_spec("typst") is None:
+        raise lacking("typst")
 
 
-def _document(report: Report, kind: str) -> bytes:
+def lacking(library: str) -> InputError:
+    """The failure of a library that reports need and that is not installed."""
+    what = _("reports need {library}, which is not installed").format(library=library)
+    return InputError("", what, _('install what they need with pip install "centrode[documents,figures]"'))
+
+
+def document(report: Report, kind: str) -> bytes:
+    """A report as the bytes of a document; InputError where a library is missing."""
     try:
         return FORMATS[kind](report)
     except ModuleNotFoundError as missing:
         library = (missing.name or "").partition(".")[0]
         if library == "centrode":
             raise
-        raise InputError(
-            "",
-            _("reports need {library}, which is not installed").format(library=library),
-            _('install what they need with pip install "centrode[documents,figures]"'),
-        ) from missing
+        raise lacking(library) from missing
 
 
 def _write_whole(file: Path, content: bytes) -> None:

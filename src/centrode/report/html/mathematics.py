@@ -79,7 +79,8 @@ def formulas_of(spelled: Iterable[str]) -> Formulas:
         return Formulas({}, "")
     source = "\n\n".join(f"$ {one} $" for one in wanted)
     page = _compiled(source)
-    found = [_mended(Xml.fromstring(one)) for one in FORMULA.findall(page)]
+    # the one thing that pages may write and XML may not
+    found = [_mended(Xml.fromstring(one.replace("]]>", "]]&gt;"))) for one in FORMULA.findall(page)]
     if len(found) != len(wanted):
         raise ValueError(f"{len(wanted)} formulas became {len(found)}")
     style = STYLE.search(page)

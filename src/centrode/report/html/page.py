@@ -5,11 +5,12 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
 from centrode.locale import _, speaking
-from centrode.report.blocks import Chapter, Report
+from centrode.report.blocks import Chapter, Report, Section
 from centrode.report.html.elements import Elements, blocks_of, formulas_in
 from centrode.report.html.mathematics import formulas_of
 
@@ -63,7 +64,7 @@ def _chapter(chapter: Chapter, number: int, elements: Elements) -> str:
     if chapter.missing:
         words = _("This chapter could not be made: {reason}").format(reason=chapter.missing)
         drawn += f'<p class="missing">{html.escape(words)}</p>\n'
-    for part, section in enumerate(chapter.sections, start=1):
+    for part, section in _numbered(chapter):
         if section.title:
             own = f"{number}.{part}"
             drawn += f'<h3 id="c{number}-{part}"><span class="number">{own}</span>{html.escape(section.title)}</h3>\n'
@@ -71,11 +72,19 @@ def _chapter(chapter: Chapter, number: int, elements: Elements) -> str:
     return f"<section>{drawn}</section>\n"
 
 
+def _numbered(chapter: Chapter) -> Iterator[tuple[int, Section]]:
+    """Sections with their numbers; those without a title are not counted."""
+    number = 0
+    for section in chapter.sections:
+        number += bool(section.title)
+        yield number, section
+
+
 def _entry(chapter: Chapter, number: int) -> str:
     """A chapter in the contents."""
     parts = "".join(
         f'<li><a href="#c{number}-{part}"><span>{html.escape(section.title)}</span></a></li>'
-        for part, section in enumerate(chapter.sections, start=1)
+        for part, section in _numbered(chapter)
         if section.title
     )
     below = f"<ol>{parts}</ol>" if parts else ""

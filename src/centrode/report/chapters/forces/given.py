@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from centrode.dynamics.bodies import Centre
 from centrode.dynamics.masses import masses_of, massless_links
 from centrode.locale import _, mark
@@ -53,23 +55,27 @@ def _masses(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
     masses = masses_of(mechanism)
     blocks: list[Block] = []
     if masses:
-        flat = mechanism.space == "plane"
-        head = [
-            _("link"),
-            _("mass, kg"),
-            _("centre of mass"),
-            *([_("central inertia, kg m²")] if flat else []),
+        head = (_("link"), _("mass, kg"), _("centre of mass"), _("central inertia, kg m²"))
+        rows = [
+            (one.link, f"{float(one.mass):.6g}", _centre(mechanism, one), _inertia(mechanism, one))
+            for one in masses
         ]
-        rows = [[one.link, f"{float(one.mass):.6g}", _centre(mechanism, one)] for one in masses]
-        if flat:
-            rows = [
-                [*row, f"{float(one.moment_of_inertia):.6g}"] for row, one in zip(rows, masses, strict=True)
-            ]
         blocks.append(listed(numbers, head, rows))
     massless = ", ".join(massless_links(mechanism))
     if massless:
         blocks.append(Paragraph(told(_("Without mass: {links}.").format(links=massless), numbers)))
     return tuple(blocks)
+
+
+def _inertia(mechanism: Mechanism, one: Mass) -> str:
+    """In the plane a moment; on the sphere what the description has: moments, or the shape they follow from."""
+    if mechanism.space == "plane":
+        return f"{float(one.moment_of_inertia):.6g}"
+    link = mechanism.links[one.link]
+    if link.inertia is None:
+        return _("of its shape") if link.shape else "–"
+    flat = np.atleast_1d(np.asarray(link.inertia, dtype=float)).ravel()
+    return "; ".join(f"{x:.6g}" for x in flat)
 
 
 def _centre(mechanism: Mechanism, one: Mass) -> str:

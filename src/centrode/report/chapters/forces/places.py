@@ -52,9 +52,13 @@ def places_of(study: ReportStudy, data: xr.Dataset) -> np.ndarray:
 
 
 def few(count: int, most: int = COURSE) -> list[int]:
-    """A few of many samples, both ends among them."""
+    """A few of many samples, both ends among them: every k-th where that gives not much fewer than `most`."""
     if count <= most:
         return list(range(count))
+    least = -(-(count - 1) // (most - 1))
+    step = next((k for k in range(least, 2 * least + 1) if (count - 1) % k == 0), None)
+    if step is not None:
+        return list(range(0, count, step))
     return [round(float(k)) for k in np.linspace(0, count - 1, most)]
 
 

@@ -10,7 +10,7 @@ from centrode.report.study import ReportStudy
 
 def motion_chapter(study: ReportStudy) -> Chapter | None:
     """The mechanism in motion, which a page plays and a PDF shows in its initial position."""
-    if not study.is_planar:
+    if study.is_cam:
         return None
     moving = study.once("moving", lambda: moving_of(study.mechanism, study.motion))
     return Chapter("motion", _("Motion"), (Section("", (moving,)),))

@@ -17,7 +17,7 @@ CLOSES = 1e-9
 
 def structure_chapter(study: ReportStudy) -> Chapter | None:
     """Pairs, mobility by formula and by rank, structural formula."""
-    if not study.is_planar:
+    if study.is_cam:
         return None
     checked = study.check
     sections = (

@@ -8,7 +8,7 @@ import xarray as xr
 
 from centrode.analysis.repair import Repair, repair
 from centrode.analysis.transmission import transmission_angles
-from centrode.errors import CentrodeError
+from centrode.errors import CentrodeError, InputError
 from centrode.locale import _
 from centrode.present.transmission_curves import transmission_figure
 from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table
@@ -22,13 +22,13 @@ from centrode.study.turning import rotatability_rows
 
 def turning_chapter(study: ReportStudy) -> Chapter | None:
     """What `centrode rotatability` tells; of a mechanism that does not turn fully, the repair."""
-    if not study.is_planar:
+    if study.is_cam:
         return None
     found = study.rotatability
     rows = rows_table(rotatability_rows(study.mechanism, found), study.numbers)
     sections = [Section("", (rows,))]
     angles = _angles(study)
-    if angles is not None:
+    if angles is not None and angles.sizes["group"]:
         sections.append(Section(_("Transmission angles"), tuple(_transmission(study, angles))))
     if found.turns_fully is False and len(study.mechanism.drives) == 1:
         sections.append(Section(_("Repair"), tuple(_repair(study))))

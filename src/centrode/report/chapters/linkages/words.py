@@ -11,7 +11,7 @@ from centrode.study.words.describing import describe
 
 def words_chapter(study: ReportStudy) -> Chapter | None:
     """Parts, motion, freedom: the paragraphs of `centrode describe`."""
-    if not study.is_planar:
+    if study.is_cam:
         return None
     paragraphs = describe(study.mechanism).split("\n\n")
     blocks = tuple(Paragraph(told(text, study.numbers)) for text in paragraphs)
