@@ -34,9 +34,7 @@ def centres_chapter(study: ReportStudy) -> Chapter | None:
     if not study.is_planar:
         return None
     names = body_names(study.mechanism)
-    numbered = ", ".join(
-        f"{number} {_('frame') if name == FRAME else name}" for number, name in enumerate(names)
-    )
+    numbered = ", ".join(f"{number} {_called(name)}" for number, name in enumerate(names))
     first = Section("", (Paragraph(told(_("Bodies: {names}.").format(names=numbered), study.numbers)),))
     instants = [Section(moment.title, tuple(_instant(study, moment, names))) for moment in moments_of(study)]
     return Chapter("centres", _("Instant centres of velocity"), (first, *instants))
@@ -78,7 +76,15 @@ def _instant(study: ReportStudy, moment: Moment, names: tuple[str, ...]) -> Iter
 
 
 def _bodies(names: Sequence[str]) -> str:
-    return " – ".join(_("frame") if name == FRAME else shown(name) for name in names)
+    return " – ".join(shown(_called(name)) for name in names)
+
+
+def _called(name: str) -> str:
+    """A body's name in the reader's language: links have names of their own, the frame and sliders have not."""
+    if name == FRAME:
+        return _("frame")
+    slider = name.removeprefix("slider ")
+    return name if slider == name else _("slider {point}").format(point=slider)
 
 
 def _cell(text: str, column: int, study: ReportStudy) -> str:
