@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +21,11 @@ from centrode.report.moving import moving_of
 from centrode.report.moving_wheel import moving_wheel
 
 from .browser import Seen, browser, opened
-from .made import HOSTILE, report
+from .made import HOSTILE, moving, report
 
 PLANE, SPHERE, WHEEL = "slider-between-cranks", "spherical-crank-rocker", "walking-wheel-four-legs"
 WIDTHS = (1280, 820, 400)
+MARKUP = "<img src=x onerror=alert(1)>"
 A4 = 643  # width of the text on A4 in a browser's pixels, 96 to an inch
 
 
@@ -36,7 +38,16 @@ def running() -> Iterator[Any]:
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory: pytest.TempPathFactory) -> Path:
     file = tmp_path_factory.mktemp("pages") / "hostile.html"
-    file.write_bytes(html_page(report()))
+    made, still = report(), moving()
+    named = replace(
+        still,
+        places={"O": still.places["O"], MARKUP: still.places["A"]},
+        bodies={MARKUP: ("O", MARKUP)},
+        tracks=(MARKUP,),
+        drive_texts=(MARKUP,) * len(still.drive),
+    )
+    chapter = blocks.Chapter("names", MARKUP, (blocks.Section(MARKUP, (named,)),))
+    file.write_bytes(html_page(replace(made, chapters=(*made.chapters, chapter))))
     return file
 
 
@@ -90,7 +101,8 @@ def test_what_users_wrote_is_read(running: Any, hostile: Path) -> None:
         assert seen.page.title() == " ".join(HOSTILE.split())
         assert seen.page.text_content("h1") == HOSTILE
         assert HOSTILE in seen.page.text_content("main p:not(.subtitle)")
-        assert seen.page.text_content("td").strip()
+        assert seen.page.query_selector_all(".moving .names")[-1].text_content() == f"O{MARKUP}"
+        assert seen.page.query_selector_all("output")[-1].text_content() == MARKUP
 
 
 @pytest.mark.parametrize("wide", WIDTHS)
