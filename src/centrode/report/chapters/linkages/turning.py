@@ -63,7 +63,7 @@ def _repair(study: ReportStudy) -> Iterator[Block]:
             _("No repair was looked for: {reason}").format(reason=told(str(failure), study.numbers))
         )
         return
-    yield Paragraph(_("The smallest change of the description after which the drive turns fully:"))
+    yield Paragraph(_("A change of the description was looked for after which the drive turns fully."))
     yield rows_table(repair_rows(study.mechanism, found), study.numbers)
     if found.mechanism is not None:
         turns = study.once("rotatability after repair", lambda: _turns(found))
