@@ -161,7 +161,9 @@ def test_what_is_not_there_is_left_out_or_told() -> None:
 
 def test_reactions_that_cannot_be_had_fail_only_where_they_are_asked_for() -> None:
     name = "spherical-crank-rocker"
-    told = [chapter for chapter in report(ct.example(name), language="en").chapters if chapter.name == "reactions"]
+    told = [
+        chapter for chapter in report(ct.example(name), language="en").chapters if chapter.name == "reactions"
+    ]
     assert not told[0].missing and "plain sum" in blocks_of(told[0], Paragraph)[0].text
     (asked,) = made(name, ("reactions",))
     assert "plain sum" in asked.missing
