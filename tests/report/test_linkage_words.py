@@ -104,6 +104,11 @@ def test_an_instant_that_is_not_reached_is_said_to_be_so() -> None:
         assert isinstance(only, Paragraph) and "open" in only.text
 
 
+def test_a_point_of_the_frame_has_no_velocity_to_be_told() -> None:
+    with pytest.raises(ct.InputError, match='point "O" does not move'):
+        report(ct.example("crank-rocker"), ReportOptions(points=("B", "O")), language="en")
+
+
 def test_drawings_keep_their_scale() -> None:
     mechanism = ct.example("slider-between-cranks")
     figure = ct.plan_figure(mechanism, ct.plan_of_positions(mechanism))
