@@ -64,6 +64,8 @@ def settled(description: Mechanism | Cam, options: ReportOptions, known: Iterabl
     _check(found.chapters, known, where, _("there is no chapter {name}"))
     names = description.points if isinstance(description, Mechanism) else ()
     _check(found.points, names, "points", _("unknown point {name}"))
+    moving = description.moving_points if isinstance(description, Mechanism) else ()
+    _check(found.points, moving, "points", _("point {name} does not move"))
     if not LEAST_DIGITS <= found.digits <= MOST_DIGITS:
         what = _("numbers have {least} to {most} digits, {digits} were asked for")
         said = what.format(least=LEAST_DIGITS, most=MOST_DIGITS, digits=found.digits)

@@ -78,7 +78,8 @@ class Source:
 
     @_shown.register
     def _paragraph(self, block: Paragraph) -> str:
-        return f"#par({content(block.text)})"
+        text = f"par({content(block.text)})"
+        return f"#block(sticky: true, {text})" if block.text.rstrip().endswith(":") else f"#{text}"
 
     @_shown.register
     def _items(self, block: Items) -> str:
@@ -181,7 +182,10 @@ def _term(entry: str, unknown: str) -> str:
 def _column(head: str, cells: Sequence[str], number: bool) -> str:
     """What the width of a column is measured by: its head, the words that may not be cut, its longest cells."""
     longest = sorted(set(cells), key=lambda cell: (-len(cell), cell))[:WIDEST] or [""]
-    words = _words(head) if number else [*_words(head), *_words(" ".join(longest))]
+    words = _words(head)
+    if not number:
+        found = {word for cell in set(cells) for word in _words(cell)}
+        words += sorted(found, key=lambda word: (-len(word), word))[:WIDEST]
     fields = {
         "head": content(head),
         "words": _array(words or [quoted("")]),
@@ -203,7 +207,7 @@ def _words(text: str) -> list[str]:
 
 
 def _width(picture: Picture) -> float:
-    """Width [in] of a picture, reduced where it would be wider or higher than a page, or the paper if it is to scale."""
+    """Width [in] of a picture, reduced where a page has not the room for it; of one to scale, where paper has not."""
     if picture.to_scale:
         return min(picture.width, PAPER_WIDTH)
     found = _SIZE.search(picture.svg[:2000])

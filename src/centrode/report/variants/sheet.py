@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 WIDE = 8
 """Columns of numbers beside the variant that still fit across a page."""
+ROUNDING = 1e-12
+"""What is below this share of the greatest of its kind is zero."""
 LINKS = (("phi", "rad"), ("omega", "rad/s"), ("epsilon", "rad/s^2"))
 POINTS = (("v", "m/s"), ("a", "m/s^2"))
 
@@ -72,7 +74,7 @@ class _Sheet:
             values = tuple(variant.values.get(path, nan) for variant in variants)
             columns.setdefault(values, (path, KINDS[kind_at(self.topology, path)].unit))
         heads = [(shown(path), unit) for path, unit in columns.values()]
-        return self._tables([variant.name for variant in variants], heads, list(columns), "")
+        return self._tables([variant.name for variant in variants], heads, list(columns))
 
     def turning(self) -> Table:
         """Whether each turns fully, where it locks and why."""
@@ -88,13 +90,18 @@ class _Sheet:
                     shown(row.variant),
                     words[row.turns_fully],
                     limit,
-                    shown(row.group),
+                    self._group(row),
                     told(cause, self.numbers),
                     status,
                 )
             )
         head = (_("variant"), _("turns fully"), _("limit"), _("group"), _("cause"), _("status"))
         return Table(head, tuple(cells), "", (False, False, True, False, False, False))
+
+    def _group(self, row: VariantRow) -> str:
+        """The group that locks, in the reader's language where the variant has answers."""
+        known = self.answers.get(row.variant)
+        return shown(row.group if known is None else known["group"])
 
     def missing(self) -> list[Paragraph]:
         """Variants without answers."""
@@ -158,27 +165,27 @@ class _Sheet:
                 )
             )
         heads = [(f"${letter}$ {shown(name)}", unit) for name in names]
-        return self._tables(list(instants), heads, columns, "")
+        sizes = np.abs(np.array(columns, dtype=float))
+        least = ROUNDING * float(np.max(sizes, where=np.isfinite(sizes), initial=0.0))
+        return self._tables(list(instants), heads, columns, least)
 
     def _tables(
         self,
         variants: Sequence[str],
         heads: Sequence[tuple[str, str]],
         columns: Sequence[Sequence[float]],
-        caption: str,
+        least: float = 0.0,
     ) -> list[Table]:
-        """As many tables as keep to the width of a page."""
+        """As many tables as keep to the width of a page; what is below `least` is zero."""
         found = []
         names = tuple(map(shown, variants))
         for first in range(0, len(heads), WIDE):
             texts = [names]
             shown_heads = [_("variant")]
-            for (head, unit), values in zip(
-                heads[first : first + WIDE], columns[first : first + WIDE], strict=True
-            ):
-                least = 1e-12 * float(np.nanmax(np.abs(values), initial=0.0))
+            some = slice(first, first + WIDE)
+            for (head, unit), values in zip(heads[some], columns[some], strict=True):
                 texts.append(self.numbers.column(values, unit, least))
                 shown_heads.append(self.numbers.head(head, unit))
             rows = tuple(zip(*texts, strict=True))
-            found.append(Table(tuple(shown_heads), rows, caption, (False, *(True,) * (len(shown_heads) - 1))))
+            found.append(Table(tuple(shown_heads), rows, "", (False, *(True,) * (len(shown_heads) - 1))))
         return found

@@ -8,7 +8,7 @@ import xarray as xr
 
 from centrode.analysis.repair import Repair, repair
 from centrode.analysis.transmission import transmission_angles
-from centrode.errors import CentrodeError, InputError
+from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.transmission_curves import transmission_figure
 from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table
@@ -63,7 +63,7 @@ def _repair(study: ReportStudy) -> Iterator[Block]:
             _("No repair was looked for: {reason}").format(reason=told(str(failure), study.numbers))
         )
         return
-    yield Paragraph(_("The smallest change of the description after which the drive turns fully:"))
+    yield Paragraph(_("A change of the description was looked for after which the drive turns fully."))
     yield rows_table(repair_rows(study.mechanism, found), study.numbers)
     if found.mechanism is not None:
         turns = study.once("rotatability after repair", lambda: _turns(found))

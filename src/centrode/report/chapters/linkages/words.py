@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from centrode.locale import _
-from centrode.report.blocks import Chapter, Paragraph, Section, shown
-from centrode.report.numbers import respelled
+from centrode.report.blocks import Chapter, Paragraph, Section
+from centrode.report.rows import told
 from centrode.report.study import ReportStudy
 from centrode.study.words.describing import describe
 
@@ -14,5 +14,5 @@ def words_chapter(study: ReportStudy) -> Chapter | None:
     if study.is_cam:
         return None
     paragraphs = describe(study.mechanism).split("\n\n")
-    blocks = tuple(Paragraph(respelled(shown(text))) for text in paragraphs)
+    blocks = tuple(Paragraph(told(text, study.numbers)) for text in paragraphs)
     return Chapter("words", _("How it works"), (Section("", blocks),))
