@@ -42,8 +42,7 @@ def test_a_chapter_with_nothing_to_tell_was_asked_for(centrode: Centrode, folder
     done = centrode("report", "crank-rocker", "--chapters", "data,flywheel", "--format", "pdf", "--out", "x")
     assert done.code == 3
     assert (
-        "Error: crank-rocker: 1 chapter could not be made: Flywheel: the description has nothing"
-        in done.err
+        "Error: crank-rocker: 1 chapter could not be made: Flywheel: the description has nothing" in done.err
     )
     assert (folder / "x" / "report.pdf").is_file()
 

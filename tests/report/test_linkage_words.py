@@ -183,3 +183,16 @@ def test_names_of_all_kinds_are_shown_as_they_are() -> None:
         report(mechanism, ReportOptions(chapters=("data", "derivation", "graphic")), language="en")
     )
     assert document.startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("said", "told_as"),
+    [
+        ("sin(phi3 - phi4) = 0", "$sin (phi_(3) - phi_(4)) = 0$"),
+        ("sin(phi1 - psi_KA + 0.220829) = 0", '$sin (phi_(1) - psi_(italic("KA")) + "0,220829") = 0$'),
+        ("cos(-phi2 - 2 phi10) = 0", "$cos (-phi_(2) - 2 phi_(10)) = 0$"),
+    ],
+)
+def test_conditions_are_mathematics(said: str, told_as: str) -> None:
+    with speaking("ru"):
+        assert told(said, Numbers(Display())) == told_as

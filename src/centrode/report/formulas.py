@@ -56,4 +56,4 @@ def factor(numbers: Numbers, value: float, unit: str = "1") -> str:
 
 def squared(numbers: Numbers, value: float, unit: str = "1") -> str:
     """The square of a number."""
-    return f"{factor(numbers, value, unit)}^2"
+    return f"{factor(numbers, value, unit)}^(2)"

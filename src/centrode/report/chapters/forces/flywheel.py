@@ -81,7 +81,7 @@ def _works(study: ReportStudy, found: Flywheel) -> Lines:
     idle = abs(found.work_of_loads) <= found.error
     work = 0.0 if idle else found.work_of_loads
     moment = 0.0 if idle else found.driving_moment
-    turn = "2 pi" if found.turns == 1 else f"2 pi dot {found.turns}"
+    turn = "2 pi" if found.turns == 1 else f"2 pi dot.op {found.turns}"
     lines: Lines = [("A_upright(c)", "integral.cont M_upright(c) thin d phi", with_unit(numbers, work, "J"))]
     fraction = f"-frac({numbers.math(work)}, {turn})"
     mean = "overline(M)_upright(d)" if driven is not None and driven.driving else "M_upright(d)"
@@ -125,7 +125,7 @@ def _needed(study: ReportStudy, found: Flywheel) -> tuple[Block, ...]:
     first = (
         "J_upright(I)",
         "frac(Delta T_(upright(I), max) - Delta T_(upright(I), min), omega_upright(m)^2 delta)",
-        f"frac({numbers.math(reach)}, {speed}^2 dot {delta})",
+        f"frac({numbers.math(reach)}, {speed}^(2) dot.op {delta})",
         with_unit(numbers, found.inertia_first_order, "kg m^2"),
     )
     exact = ("J_upright(I)", with_unit(numbers, found.inertia, "kg m^2"))
@@ -148,7 +148,7 @@ def _wheel(study: ReportStudy, found: Flywheel) -> list[Block]:
     if ratio != 1.0:
         letters, above = (
             f"frac({one}, {other})"
-            for one, other in ((letters, "i^2"), (above, f"{factor(numbers, ratio)}^2"))
+            for one, other in ((letters, "i^2"), (above, f"{factor(numbers, ratio)}^(2)"))
         )
     lines: Lines = [("J_upright(f)", letters, above, with_unit(numbers, found.added, "kg m^2"))]
     meaning = _(

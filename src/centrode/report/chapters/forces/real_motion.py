@@ -89,7 +89,7 @@ def _at(study: ReportStudy, here: xr.Dataset) -> list[Block]:
     below = numbers.math(inertia + own)
     right = (
         f"frac({numbers.math(moment)}, {below}) - "
-        f"frac({squared(numbers, speed)} dot {factor(numbers, slope)}, 2 dot {below})"
+        f"frac({squared(numbers, speed)} dot.op {factor(numbers, slope)}, 2 dot.op {below})"
     )
     lines = (
         ("omega", with_unit(numbers, speed, "rad/s")),

@@ -79,10 +79,10 @@ def _shares(study: ReportStudy, links: list[LinkMotion]) -> Lines:
         letters, terms = [], []
         if one.mass:
             letters.append(f"{indexed('m', one.link)} {indexed('v', one.link)}'^2")
-            terms.append(f"{factor(numbers, one.mass)} dot {squared(numbers, abs(one.velocity))}")
+            terms.append(f"{factor(numbers, one.mass)} dot.op {squared(numbers, abs(one.velocity))}")
         if one.inertia and one.turning:
             letters.append(f"{indexed('J', one.link)} {indexed('phi', one.link)}'^2")
-            terms.append(f"{factor(numbers, one.inertia)} dot {squared(numbers, one.turning)}")
+            terms.append(f"{factor(numbers, one.inertia)} dot.op {squared(numbers, one.turning)}")
         if letters:
             value = numbers.math(one.reduced)
             left = f"{indexed('J', one.link)}^*"

@@ -74,15 +74,15 @@ def _meaning(study: ReportStudy) -> tuple[Block, ...]:
             "$omega_k$ is the angular velocity of link $k$, $upright(bold(I))_k$ its tensor of inertia about the"
             " centre of the sphere."
         )
-        inertia = "sum_k arrow(omega)'_k dot upright(bold(I))_k arrow(omega)'_k"
-        lines = (("T", "1/2 J dot(q)^2"), ("J", inertia), ("M", "sum_j arrow(M)_j dot arrow(omega)'_j"))
+        inertia = "sum_k arrow(omega)'_k dot.op upright(bold(I))_k arrow(omega)'_k"
+        lines = (("T", "1/2 J dot(q)^2"), ("J", inertia), ("M", "sum_j arrow(M)_j dot.op arrow(omega)'_j"))
         return Paragraph(text), Paragraph(meaning), Formula(lines)
     meaning = _("$v_k$ is the velocity of the centre of mass of link $k$, $phi_k$ the angle of the link.")
     lines = (
         ("T", "1/2 J dot(q)^2"),
         ("J", "sum_k (m_k v'_k^2 + J_k phi'_k^2)"),
-        ("J'", "2 sum_k (m_k arrow(v)'_k dot arrow(v)''_k + J_k phi'_k phi''_k)"),
-        ("M", "sum_j arrow(F)_j dot arrow(r)'_j + sum_j M_j phi'_j"),
+        ("J'", "2 sum_k (m_k arrow(v)'_k dot.op arrow(v)''_k + J_k phi'_k phi''_k)"),
+        ("M", "sum_j arrow(F)_j dot.op arrow(r)'_j + sum_j M_j phi'_j"),
     )
     return Paragraph(text), Paragraph(meaning), Formula(lines)
 

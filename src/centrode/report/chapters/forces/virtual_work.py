@@ -32,7 +32,7 @@ def by_virtual_work(study: ReportStudy, k: int) -> list[Block]:
     unit = str(found["balancing"].attrs["units"]).split(", ")[0]
     work = 0.5 * slope * rate**2 - moment
     symbol = "M_upright(b)" if unit == "N m" else "F_upright(b)"
-    squares = f"1/2 dot {factor(numbers, slope)} dot {squared(numbers, rate)}"
+    squares = f"frac(1, 2) dot.op {factor(numbers, slope)} dot.op {squared(numbers, rate)}"
     after = f"{'+' if moment < 0 else '-'} {numbers.math(abs(moment))}"
     line = (symbol, "1/2 J' dot(q)^2 - M", f"{squares} {after}", with_unit(numbers, work, unit))
     text = _("By virtual work, at the constant rate of the drive:")
