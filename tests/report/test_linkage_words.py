@@ -19,7 +19,7 @@ from centrode.report.pdf.document import pdf_document
 from centrode.report.pdf.source import Source
 from centrode.report.rows import small, told
 from centrode.report.scaled import drawn_to_scale, scale_of
-from centrode.report.vectors import mathematics, symbol, vector_parts
+from centrode.report.vectors import mathematics, rates_in, symbol, vector_parts
 
 NUMBERS = Numbers(Display(), 5)
 LINKAGES = (
@@ -43,12 +43,17 @@ def blocks(found: Chapter, kind: type) -> list:  # type: ignore[type-arg]
     [
         ("v_C = vʳ_C (∥ C)", ("arrow(v)_(C)", "arrow(v)_(C)^(r) ( parallel C )")),
         ("|v_A| = sin 61.352°", ("abs(v_(A))", "sin 61.352 degree")),
+        ("|v_E − v_C| = 2", ("abs(arrow(v)_(E) - arrow(v)_(C))", "2")),
         ("ω_2 = -0.5·ω_1", ("omega_(2)", "- 0.5 dot.op omega_(1)")),
         ("△s2ab ∼ △S2AB", ('triangle "s2ab" tilde.op triangle "S2AB"',)),
     ],
 )
 def test_vector_equations(text: str, parts: tuple[str, ...]) -> None:
     assert vector_parts(text) == parts
+
+
+def test_rates_in_sentences() -> None:
+    assert rates_in("ω_OC = 0, ε_AB") == '$omega_(italic("OC"))$ = 0, $epsilon_(italic("AB"))$'
 
 
 def test_nothing_in_a_name_is_code() -> None:
@@ -178,3 +183,16 @@ def test_names_of_all_kinds_are_shown_as_they_are() -> None:
         report(mechanism, ReportOptions(chapters=("data", "derivation", "graphic")), language="en")
     )
     assert document.startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("said", "told_as"),
+    [
+        ("sin(phi3 - phi4) = 0", "$sin (phi_(3) - phi_(4)) = 0$"),
+        ("sin(phi1 - psi_KA + 0.220829) = 0", '$sin (phi_(1) - psi_(italic("KA")) + "0,220829") = 0$'),
+        ("cos(-phi2 - 2 phi10) = 0", "$cos (-phi_(2) - 2 phi_(10)) = 0$"),
+    ],
+)
+def test_conditions_are_mathematics(said: str, told_as: str) -> None:
+    with speaking("ru"):
+        assert told(said, Numbers(Display())) == told_as

@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
+from centrode.equations.letters import Letter
 from centrode.locale import _
+from centrode.present.equations.typst import TypstSpelling, decimal
 from centrode.report.blocks import Table, shown
 from centrode.report.numbers import Numbers, respelled
 
 CONDITION = re.compile(r"\b(sin|cos)\(([^()]*\bphi\d+[^()]*)\) = 0")
-ANGLE = re.compile(r"\bphi(\d+)")
+NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]\d+)?")
 LONG = re.compile(r"(?<![\w.,])\d+\.\d+(?![\w.,]*\w)")
 DEGREES = re.compile(r"(?<=\d) deg\b(/?)|(?<=, )deg\b")
 
@@ -22,11 +24,18 @@ def told(text: str, numbers: Numbers) -> str:
     """A sentence of results for a cell: digits and decimal mark of the report, conditions on angles as mathematics."""
     parts, position = [], 0
     for found in CONDITION.finditer(text):
-        inside = ANGLE.sub(r"phi_(\1)", found[2])
+        inside = " ".join(map(_term, found[2].split(" ")))
         parts += [_spelled(text[position : found.start()], numbers), f"${found[1]} ({inside}) = 0$"]
         position = found.end()
     spelled = "".join([*parts, _spelled(text[position:], numbers)])
     return SCALE.sub(r"$mu_\1$", spelled)
+
+
+def _term(term: str) -> str:
+    """A sign, a letter or a number of a sum of angles, as mathematics."""
+    if term[:1] in ("+", "-"):
+        return term[0] + (_term(term[1:]) if term[1:] else "")
+    return decimal(term) if NUMBER.fullmatch(term) else TypstSpelling().letter(Letter(0, term))
 
 
 def sentence(text: str, numbers: Numbers) -> str:

@@ -133,12 +133,16 @@ class Elements:
             + "</tr>"
             for row in block.rows
         )
-        caption = ""
+        caption, name = "", ""
         if block.caption:
             self.tables += 1
             number = html.escape(_("Table {number}").format(number=self.tables))
-            caption = f"<caption><b>{number}.</b> {self.text(block.caption)}</caption>"
-        return f'<div class="table"><table>{caption}<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
+            name = f' aria-labelledby="t{self.tables}"'
+            caption = (
+                f'<p class="caption" id="t{self.tables}"><b>{number}.</b> {self.text(block.caption)}</p>'
+            )
+        drawn = f"<table{name}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        return f'{caption}<div class="table">{drawn}</div>'
 
     def check(self, block: Check) -> str:
         """How something was verified."""
@@ -161,7 +165,9 @@ class Elements:
         return self.drawings.embedded(block.svg, label)
 
     def caption(self, text: str) -> str:
-        """The number of a figure, and what it shows."""
+        """The number of a figure, and what it shows; nothing where nothing is said."""
+        if not text:
+            return ""
         self.figures += 1
         number = html.escape(_("Figure {number}").format(number=self.figures))
         return f"<figcaption><b>{number}.</b> {self.text(text)}</figcaption>"
