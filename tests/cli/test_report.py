@@ -8,6 +8,8 @@ from typing import Any
 
 import pytest
 
+from centrode.report import writing
+
 Centrode = Callable[..., Any]
 
 QUICK = ("--chapters", "data,structure", "--format", "pdf")
@@ -99,3 +101,24 @@ def test_wrong_files(centrode: Centrode, folder: Path, content: str | None, mess
     assert done.code == 2
     assert done.err.startswith(message)
     assert not (folder / "x").exists()
+
+
+def test_an_interrupted_report_leaves_nothing(
+    centrode: Centrode, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(report: object) -> bytes:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(writing, "FORMATS", {"pdf": interrupted})
+    before = sorted(folder.iterdir())
+    done = centrode("report", "crank-rocker", *QUICK)
+    assert (done.code, done.err) == (130, "interrupted\n")
+    assert sorted(folder.iterdir()) == before
+
+
+def test_what_stands_in_the_way_is_told_before_anything_is_computed(centrode: Centrode, folder: Path) -> None:
+    (folder / "taken").write_text("x")
+    done = centrode("report", "crank-rocker", *QUICK, "--out", "taken")
+    assert done.code == 2
+    assert done.err.startswith("Error: taken is not a folder")
+    assert (folder / "taken").read_text() == "x"

@@ -19,7 +19,7 @@ from centrode.report.pdf.document import pdf_document
 from centrode.report.pdf.source import Source
 from centrode.report.rows import small, told
 from centrode.report.scaled import drawn_to_scale, scale_of
-from centrode.report.vectors import mathematics, symbol, vector_parts
+from centrode.report.vectors import mathematics, rates_in, symbol, vector_parts
 
 NUMBERS = Numbers(Display(), 5)
 LINKAGES = (
@@ -43,12 +43,17 @@ def blocks(found: Chapter, kind: type) -> list:  # type: ignore[type-arg]
     [
         ("v_C = vʳ_C (∥ C)", ("arrow(v)_(C)", "arrow(v)_(C)^(r) ( parallel C )")),
         ("|v_A| = sin 61.352°", ("abs(v_(A))", "sin 61.352 degree")),
+        ("|v_E − v_C| = 2", ("abs(arrow(v)_(E) - arrow(v)_(C))", "2")),
         ("ω_2 = -0.5·ω_1", ("omega_(2)", "- 0.5 dot.op omega_(1)")),
         ("△s2ab ∼ △S2AB", ('triangle "s2ab" tilde.op triangle "S2AB"',)),
     ],
 )
 def test_vector_equations(text: str, parts: tuple[str, ...]) -> None:
     assert vector_parts(text) == parts
+
+
+def test_rates_in_sentences() -> None:
+    assert rates_in("ω_OC = 0, ε_AB") == '$omega_(italic("OC"))$ = 0, $epsilon_(italic("AB"))$'
 
 
 def test_nothing_in_a_name_is_code() -> None:

@@ -21,6 +21,8 @@ TOKEN = re.compile(
     r"|(?P<sign>\S)"
     r"|(?P<space>\s+)"
 )
+RATE = re.compile(r"(?<!\w)([ωε])_(\w[\w′’'-]*)")
+SUM = re.compile(r"[+−]")
 BARS = re.compile(r"\|([^|]+)\|")
 
 
@@ -32,19 +34,24 @@ def symbol(letter: str, name: str, mark: str = "", vector: bool = False) -> str:
     return f"{base}{below}^({mark})" if mark else f"{base}{below}"
 
 
+def rates_in(text: str) -> str:
+    """Marked text with the rates of links in it as mathematics: ω_OC."""
+    return RATE.sub(lambda found: f"${symbol(found[1], found[2])}$", text)
+
+
 def vector_parts(text: str) -> tuple[str, ...]:
     """The parts of a vector equation, or of a relation between lengths, for a `Formula`."""
     return tuple(mathematics(part) for part in text.split(" = "))
 
 
 def mathematics(text: str) -> str:
-    """One side of such an equation; lengths between bars are scalars, velocities and accelerations else vectors."""
+    """One side of such an equation; what stands alone between bars is a scalar, a sum is one of vectors."""
     vectors = "|" not in text
     pieces = []
     position = 0
     for found in BARS.finditer(text):
         pieces.append(_tokens(text[position : found.start()], vectors))
-        pieces.append(f"abs({_tokens(found[1], vectors=False)})")
+        pieces.append(f"abs({_tokens(found[1], vectors=bool(SUM.search(found[1])))})")
         position = found.end()
     return " ".join(piece for piece in [*pieces, _tokens(text[position:], vectors)] if piece)
 

@@ -23,6 +23,8 @@ from centrode.report.rows import small
 from centrode.report.study import ReportStudy
 
 SPELLING = TypstSpelling()
+STRAIGHT = 1e-13
+"""Angles [rad] below which they are rounding."""
 
 
 def derivation_chapter(study: ReportStudy) -> Chapter | None:
@@ -67,6 +69,8 @@ class _Numbers:
         found = study.equations.unknowns
         self.values = cleaned(instant.values, [one.rate for one in found])
         self.values |= cleaned(self.values, [one.second for one in found])
+        angles = [one.letter for one in found if not one.name.startswith("slide.")]
+        self.values |= {letter: 0.0 for letter in angles if abs(self.values[letter]) < STRAIGHT}
         unit = study.numbers.shown("m")[1]
         self.units: dict[Letter, str] = {}
         for one in study.equations.unknowns:

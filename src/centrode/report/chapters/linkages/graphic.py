@@ -19,7 +19,7 @@ from centrode.report.moments import Moment, moments_of
 from centrode.report.rows import rows_table, small, told
 from centrode.report.scaled import drawn_to_scale, scale_of
 from centrode.report.study import ReportStudy
-from centrode.report.vectors import symbol, vector_parts
+from centrode.report.vectors import rates_in, symbol, vector_parts
 from centrode.study.graphic import graphic_about, sine_lines, trial_lines
 
 TOLERANCE = 1e-9
@@ -76,7 +76,7 @@ def _steps(study: ReportStudy, diagram: Diagram) -> Iterator[Block]:
         lines = [*step.equations]
         yield Formula(tuple(vector_parts(line) for line in lines))
         for line in trial_lines(step, diagram.order):
-            yield Paragraph(told(line, study.numbers))
+            yield Paragraph(rates_in(told(line, study.numbers)))
         sines = sine_lines(step)
         if sines:
             yield Formula(tuple(vector_parts(line) for line in sines))

@@ -138,8 +138,9 @@ def _parted(front: Sequence[Column], groups: Sequence[Sequence[Column]], caption
     room = max(1, WIDE - len(front))
     parts: list[list[Column]] = []
     for group in groups:
-        for first in range(0, len(group), room):
-            piece = group[first : first + room]
+        count = -(-len(group) // room)
+        for number in range(count):
+            piece = group[number * len(group) // count : (number + 1) * len(group) // count]
             if parts and len(parts[-1]) + len(piece) <= room:
                 parts[-1] += piece
             else:
