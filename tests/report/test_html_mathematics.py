@@ -30,7 +30,11 @@ def read(element: str) -> str:
 
 
 def text_of(element: str) -> str:
-    return "".join(Xml.fromstring(element).itertext())
+    return text_of_element(Xml.fromstring(element))
+
+
+def text_of_element(element: Xml.Element) -> str:
+    return "".join(element.itertext())
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -76,6 +80,13 @@ def test_dots_stand_above_their_letter() -> None:
     accent = next(Xml.fromstring(element).iter("mover"))
     assert accent[1].text == "\u02d9"  # the combining one stands left of its letter in browsers
     assert "\u0307" not in element
+
+
+def test_primes_stand_behind_their_letter() -> None:
+    element = Xml.fromstring(formulas_of(["rho'' + x'_(1)"]).inline("rho'' + x'_(1)"))
+    first, _plus, second = element
+    assert (first.tag, text_of_element(first)) == ("mrow", "𝜌″")
+    assert (second.tag, [text_of_element(part) for part in second]) == ("msub", ["𝑥′", "1"])
 
 
 def test_a_line_may_end_before_a_sign() -> None:

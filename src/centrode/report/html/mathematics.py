@@ -15,9 +15,12 @@ from centrode.report.mathematics import checked, pieces_of
 
 FORMULA = re.compile(r"<math\b.*?</math>", re.DOTALL)
 STYLE = re.compile(r"<style>(.*?)</style>", re.DOTALL)
-DOTS = {"\u0307": "\u02d9", "\u0308": "\u00a8"}
-"""Combining dots stand left of their letter in browsers; the spacing ones stand above it."""
+ARROW = "\u20d7"
+ABOVE = {"\u0307": "\u02d9", "\u0308": "\u00a8", ARROW: "\u2192"}
+"""Combining signs stand left of their letter in browsers; the spacing ones stand above it."""
 SIGNS = {"+", "\u2212", "-", "±", "∓"}
+PRIMES = {"\u2032", "\u2033", "\u2034"}
+"""Browsers take for a superscript the letter that is raised by itself, and raise it twice."""
 LONG = 90
 """Letters of typst in a piece beyond which it is cut further."""
 
@@ -97,12 +100,31 @@ def _compiled(source: str) -> str:
 
 
 def _mended(formula: Xml.Element) -> Xml.Element:
+    for raised in [*formula.iter("msup"), *formula.iter("msubsup")]:
+        if raised[-1].text in PRIMES:
+            _lower(raised)
     for accent in formula.iter("mover"):
         sign = accent[-1]
-        if accent.get("accent") == "true" and sign.text in DOTS:
-            sign.text = DOTS[sign.text]
+        if accent.get("accent") == "true" and sign.text in ABOVE:
+            if sign.text == ARROW:
+                sign.set("class", "vector")
+            sign.text = ABOVE[sign.text]
             sign.set("stretchy", "false")
     return formula
+
+
+def _lower(raised: Xml.Element) -> None:
+    """Put a prime behind its letter instead of above it."""
+    base, *below, prime = raised
+    prime.set("lspace", "0")
+    prime.set("rspace", "0")
+    raised[:] = [base, prime]
+    raised.tag = "mrow"
+    if below:
+        row = Xml.Element("mrow")
+        row.extend([base, prime])
+        raised[:] = [row, *below]
+        raised.tag = "msub"
 
 
 def _leading(elements: Sequence[Xml.Element]) -> Xml.Element:
