@@ -285,6 +285,12 @@ from .present import plan_figure as plan_figure
 from .present import transmission_figure as transmission_figure
 from .present import save_figures as save_figures
 
+# Reports
+from .report import report as report
+from .report import write_report as write_report
+from .report import write_variant_reports as write_variant_reports
+from .report import ReportOptions as ReportOptions
+
 # Words, failures, language
 from .quantities import QUANTITIES as QUANTITIES
 from .quantities import Quantity as Quantity

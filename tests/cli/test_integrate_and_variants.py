@@ -196,6 +196,56 @@ def test_variants_refuses(
     assert [path.name for path in folder.iterdir()] == ["t.csv"]
 
 
+@pytest.fixture
+def short(folder: Path) -> Path:
+    """A topology that wishes for a short report."""
+    text = ct.mechanism_text(ct.example("slider-between-cranks")) + '\n[report]\nchapters = ["structure"]\n'
+    (folder / "short.toml").write_text(text, encoding="utf-8")
+    return folder / "short.toml"
+
+
+def test_variants_with_reports(centrode: Centrode, folder: Path, table: Path, short: Path) -> None:
+    arguments = (
+        "variants",
+        "t.csv",
+        "--topology",
+        "short.toml",
+        "--out",
+        "r",
+        "--report",
+        "--format",
+        "html,pdf",
+    )
+    done = centrode(*arguments)
+    assert (done.code, done.err) == (0, "")
+    ends = [f"wrote r{os.sep}{name}" for name in ("summary.csv", "answers.html", "answers.pdf")]
+    assert done.out.splitlines()[-3:] == ends
+    files = {path.name for path in (folder / "r" / "variant-2").iterdir()}
+    assert {"report.html", "report.pdf", "answers.json", "motion.csv"} <= files
+    before = [(folder / "r" / name).read_bytes() for name in ("answers.html", "answers.pdf")]
+    marker = (folder / "r" / "variant-1" / "variant.json").stat().st_mtime_ns
+    assert centrode(*arguments).code == 0  # the same bytes, and nothing is made again
+    assert [(folder / "r" / name).read_bytes() for name in ("answers.html", "answers.pdf")] == before
+    assert (folder / "r" / "variant-1" / "variant.json").stat().st_mtime_ns == marker
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--format", "pdf"), "--format: it belongs to --report"),
+        (("--report", "--format", "docx"), "docx"),
+        (("--report", "--format", ","), "no format is named"),
+    ],
+)
+def test_variants_refuse_wrong_formats(
+    centrode: Centrode, folder: Path, table: Path, short: Path, arguments: tuple[str, ...], message: str
+) -> None:
+    done = centrode("variants", "t.csv", "--topology", "short.toml", "--out", "r", *arguments)
+    assert (done.code, done.out) == (2, "")
+    assert message in done.err and "Traceback" not in done.err
+    assert not (folder / "r").exists()
+
+
 def test_variants_in_processes_of_the_real_command(folder: Path, table: Path) -> None:
     command = [sys.executable, "-m", "centrode", "variants", "t.csv", "--topology", "slider-between-cranks"]
     done = subprocess.run(

@@ -36,6 +36,7 @@ from centrode.cli.polygons import polygons
 from centrode.cli.reactions import reactions
 from centrode.cli.reduce import reduce
 from centrode.cli.region import region
+from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
 from centrode.cli.schema import schema
@@ -48,6 +49,7 @@ from centrode.locale import _, choose_language_of_process, mark
 
 COMMANDS: tuple[click.Command, ...] = (
     run,
+    report,
     animate,
     check,
     describe,

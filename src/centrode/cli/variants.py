@@ -9,7 +9,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.progress import Progress
-from centrode.errors import MotionError
+from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
 
 
@@ -31,8 +31,31 @@ from centrode.locale import _, mark
 )
 @click.option("--jobs", type=int, default=1, metavar=mark("N"), help=mark("Processes at once."))
 @click.option("--figures", is_flag=True, help=mark("Draw pictures of every variant."))
-def variants(table: str, topology: str, out: Path | None, jobs: int, figures: bool) -> None:
+@click.option(
+    "--report",
+    "reports",
+    is_flag=True,
+    help=mark("Also write a report of every variant, and a sheet of all answers."),
+)
+@click.option(
+    "--format",
+    "formats",
+    metavar=mark("KINDS"),
+    help=mark("With --report: kinds of documents, separated by commas; html,pdf if left out."),
+)
+def variants(
+    table: str,
+    topology: str,
+    out: Path | None,
+    jobs: int,
+    figures: bool,
+    reports: bool,
+    formats: str | None,
+) -> None:
     """Compute and write; exit code 3 if a variant was refused (the others are written)."""
+    if formats is not None and not reports:
+        raise InputError("--format", _("it belongs to --report"), _("say that too"))
+    kinds = tuple(part.strip() for part in (formats or "html,pdf").split(",") if part.strip())
     description = ct.load(topology)
     folder = output.folder_of(out, table, "variants")
     try:
@@ -41,7 +64,14 @@ def variants(table: str, topology: str, out: Path | None, jobs: int, figures: bo
             def tell(done: int, of: int) -> None:
                 progress.say(_("computing variants"), done, of)
 
-            rows = ct.write_variants(description, table, folder, jobs=jobs, figures=figures, progress=tell)
+            if reports:
+                rows = ct.write_variant_reports(
+                    description, table, folder, jobs, figures, formats=kinds, progress=tell
+                )
+            else:
+                rows = ct.write_variants(
+                    description, table, folder, jobs=jobs, figures=figures, progress=tell
+                )
     except KeyboardInterrupt:
         note = _("what is finished stays in {folder}; the same command goes on from there")
         click.echo(note.format(folder=folder), err=True)
@@ -49,6 +79,8 @@ def variants(table: str, topology: str, out: Path | None, jobs: int, figures: bo
     header = (_("variant"), _("turns fully"), _("limit"), _("group"), _("status"))
     click.echo(output.table(ct.variant_rows(rows), header))
     summary, failure = ct.variants_summary(rows)
-    click.echo(f"\n{summary}\n" + _("wrote {file}").format(file=folder / "summary.csv"))
+    written = ["summary.csv", *(f"answers.{kind}" for kind in dict.fromkeys(kinds) if reports)]
+    lines = [_("wrote {file}").format(file=folder / name) for name in written]
+    click.echo("\n" + "\n".join([summary, *lines]))
     if failure is not None:
         raise MotionError(table, failure)

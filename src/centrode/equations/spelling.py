@@ -85,6 +85,10 @@ class Spelling:
         """Something in round brackets."""
         return f"({text})"
 
+    def text(self, name: str) -> str:
+        """A name of the user's own inside of a sentence that may hold formulas."""
+        return name
+
     def math(self, text: str) -> str:
         """A formula inside of a sentence."""
         return text

@@ -40,6 +40,17 @@ def ngettext(singular: str, plural: str, number: int) -> str:
     return _catalogue.ngettext(singular, plural, number)
 
 
+def chosen_language() -> str:
+    """The language that is spoken now."""
+    told = _catalogue.info().get("language", "en")
+    return told if told in LANGUAGES else "en"
+
+
+def decimal_mark() -> str:
+    """What stands before decimals in the chosen language."""
+    return "." if chosen_language() == "en" else ","
+
+
 def mark(message: str) -> str:
     """Mark a sentence for the catalogues where it is written down, to be translated where it is shown."""
     return message

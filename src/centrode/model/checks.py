@@ -142,6 +142,8 @@ def _rest(mechanism: Description) -> Iterator[Problem]:
         yield from two_known_points(mechanism, load.points, (*at, "points"))
         yield from link_known(mechanism, load.axes, (*at, "axes"))
         yield from link_known(mechanism, load.relative_to, (*at, "relative_to"))
+    for point in mechanism.report.points:
+        yield from known(point, mechanism.points, "point", ("report", "points"))
 
 
 def _loose(mechanism: Description) -> Iterator[Problem]:

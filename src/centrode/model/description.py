@@ -23,6 +23,7 @@ from centrode.model.names import FRAME, two_points
 from centrode.model.pairs import Gear, Guide, Rolling
 from centrode.model.part import Part
 from centrode.model.problems import nearest, shown
+from centrode.model.reports import ReportWishes
 from centrode.model.simulations import Simulation
 from centrode.model.values import (
     READING,
@@ -73,6 +74,7 @@ class Description(Part):
     machine: Machine | None = None
     simulation: Simulation | None = None
     study: Study = Study()
+    report: ReportWishes = ReportWishes()
 
     @model_validator(mode="wrap")
     @classmethod

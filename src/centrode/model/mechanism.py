@@ -17,6 +17,7 @@ from centrode.model.names import FRAME
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.placing import resolved
 from centrode.model.problems import Problems
+from centrode.model.reports import ReportWishes
 from centrode.model.simulations import Simulation
 from centrode.model.values import Placed, Vector
 
@@ -33,6 +34,7 @@ __all__ = [
     "Machine",
     "Mechanism",
     "Placed",
+    "ReportWishes",
     "Rolling",
     "Simulation",
     "Study",
@@ -64,6 +66,7 @@ class Mechanism(Description):
     machine : Machine or None
     simulation : Simulation or None
     study : Study
+    report : ReportWishes
 
     Raises
     ------

@@ -16,7 +16,7 @@ Place = tuple[str | int, ...]
 """Keys and indices from the top of the description to the value a problem is about."""
 
 TABLES = (
-    *("display", "frame", "assembly", "machine", "study"),
+    *("display", "frame", "assembly", "machine", "study", "report"),
     *("curvature", "start", "range", "roller", "return", "mover", "contact", "choose"),
     *("cam", "follower", "bounds", "tool"),
 )

@@ -15,6 +15,7 @@ from centrode.model.loads import FITS, FORMS, KINDS, Load
 from centrode.model.machines import SHAFTS, FlywheelShape, Machine, Shaft
 from centrode.model.pairs import Gear, Guide, Rolling, Track
 from centrode.model.part import Part
+from centrode.model.reports import LEAST_DIGITS, MOST_CHAPTERS, MOST_DIGITS, ReportWishes
 from centrode.model.segments import Segment
 from centrode.model.simulations import MOST_STEPS, SCHEMES, Motor, Simulation
 from centrode.model.units import KINDS as QUANTITIES
@@ -54,6 +55,8 @@ def reference_to(part: type[Part]) -> Schema:
 
 NAME: Schema = {"type": "string", "minLength": 1, "maxLength": limits.NAME_LENGTH}
 TEXT: Schema = {"type": "string", "maxLength": limits.TEXT_LENGTH}
+CHAPTERS = list_of(NAME, 0, MOST_CHAPTERS)
+REPORT_DIGITS: Schema = {"type": "integer", "minimum": LEAST_DIGITS, "maximum": MOST_DIGITS}
 _NAMES = list_of(NAME, 2, 2)
 _COORDINATES = list_of(quantity_schema("length"), 2, 3)
 _PAIR = list_of(quantity_schema("ratio"), 2, 2)
@@ -216,6 +219,12 @@ PROPERTIES: dict[type[Part], Schema] = {
         "from": AMOUNT,
         "to": AMOUNT,
     },
+    ReportWishes: {
+        "chapters": CHAPTERS,
+        "instants": list_of(AMOUNT, 0, limits.INSTANTS),
+        "points": list_of(NAME, 0, limits.POINTS),
+        "digits": REPORT_DIGITS,
+    },
     Description: {
         "title": TEXT,
         "space": {"enum": ["plane", "sphere"]},
@@ -233,6 +242,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "machine": reference_to(Machine),
         "simulation": reference_to(Simulation),
         "study": reference_to(Study),
+        "report": reference_to(ReportWishes),
     },
 }
 """Keys of every part as a file spells them; a test compares them with the parts themselves."""

@@ -21,7 +21,7 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import lazy_loader
 
@@ -49,6 +49,19 @@ MARKER, LOCK, SUMMARY = "variant.json", ".lock", "summary.csv"
 MOST_JOBS = 256
 
 
+class WritesMore(Protocol):
+    """Writes further files of a variant; plain data, which goes to another process."""
+
+    @property
+    def key(self) -> str:
+        """All that these files depend on besides the variant."""
+        ...
+
+    def __call__(self, results: VariantResults, folder: Path) -> None:
+        """Write them into the variant's folder; not called for one that was refused."""
+        ...
+
+
 @dataclass(frozen=True)
 class Task:
     """One variant to be computed into a folder; plain data, which goes to another process."""
@@ -57,11 +70,13 @@ class Task:
     variant: Variant
     folder: Path
     figures: bool
+    more: WritesMore | None = None
 
     @property
     def digest(self) -> str:
         """Digest of all that the files depend on."""
         told = [__version__, self.topology, dict(self.variant.values), STEPS, self.figures]
+        told += [] if self.more is None else [self.more.key]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
@@ -72,6 +87,7 @@ def write_variants(
     jobs: int = 1,
     figures: bool = False,
     progress: Progress | None = None,
+    more: WritesMore | None = None,
 ) -> tuple[VariantRow, ...]:
     """Compute every variant of a table into a folder of its own, and sum them up in `summary.csv`.
 
@@ -85,6 +101,7 @@ def write_variants(
     figures : bool
         Draw the figures of each.
     progress : called with (variants done, variants in all)
+    more : writes further files of each variant into its folder
 
     Returns
     -------
@@ -100,7 +117,7 @@ def write_variants(
     folder = Path(folder)
     text = mechanism_text(topology)
     tasks = [
-        Task(text, variant, folder / f"variant-{variant.name}", figures)
+        Task(text, variant, folder / f"variant-{variant.name}", figures, more)
         for variant in read_variants(topology, table)
     ]
     try:
@@ -184,6 +201,8 @@ def run(task: Task) -> VariantRow:
     try:
         results = computed(parse_mechanism(task.topology), task.variant)
         _write(results, draft, figures=task.figures)
+        if task.more is not None and results.mechanism is not None:
+            task.more(results, draft)
     except OSError:
         raise
     except Exception as fault:

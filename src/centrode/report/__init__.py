@@ -1,1 +1,43 @@
-"""Reports: chapters of blocks made from results, and the documents that show them."""
+"""Reports: chapters of blocks made from results, and the documents that show them.
+
+What makes them is loaded when first used; what it needs and is not installed is told with the repair.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import lazy_loader
+
+from centrode.report.writing import lacking
+
+if TYPE_CHECKING:
+    from centrode.report.blocks import Report
+    from centrode.report.making import report
+    from centrode.report.options import ReportOptions
+    from centrode.report.variants.writing import write_variant_reports
+    from centrode.report.writing import write_report
+
+__all__ = ["Report", "ReportOptions", "report", "write_report", "write_variant_reports"]
+
+_attached, __dir__, _names = lazy_loader.attach(
+    __name__,
+    submod_attrs={
+        "blocks": ["Report"],
+        "making": ["report"],
+        "options": ["ReportOptions"],
+        "variants.writing": ["write_variant_reports"],
+        "writing": ["write_report"],
+    },
+)
+
+
+def __getattr__(name: str) -> Any:
+    """Load a name when it is first asked for; a missing matplotlib is told with its repair."""
+    try:
+        return _attached(name)
+    except ModuleNotFoundError as missing:
+        library = (missing.name or "").partition(".")[0]
+        if library != "matplotlib":
+            raise
+        raise lacking(library) from missing

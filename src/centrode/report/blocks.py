@@ -1,8 +1,9 @@
 r"""What a report is made of: plain data, which the renderers of pages and of PDF show alike.
 
-Text is in the reader's language. In a `Paragraph`, a `Check` and the cells of a `Table` every other part between
-dollar signs is mathematics as the formula printer spells it (typst's notation); a dollar sign of the text itself is
-written `\$`. Names and titles that users chose go through `shown` first: they are shown as they are.
+Text is in the reader's language. In a `Paragraph`, `Items`, a `Check`, heads and cells of a `Table` and in captions
+every other part between dollar signs is mathematics as the formula printer spells it (typst's notation); a dollar sign
+of the text itself is written `\$`. What users named goes through `shown` first: it is shown as it is. Titles, and why a
+chapter is missing, are plain text without mathematics.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
+
+from centrode.present.equations.typst import shown as shown
 
 
 @dataclass(frozen=True)
@@ -70,11 +73,12 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as SVG, with its caption and its natural width [inches]."""
+    """A figure as SVG, with its caption and its natural width [inches]; `to_scale` is kept at that width on paper."""
 
     svg: bytes
     caption: str
     width: float
+    to_scale: bool = False
 
 
 @dataclass(frozen=True)
@@ -86,12 +90,51 @@ class Check:
 
 
 @dataclass(frozen=True)
+class Outline:
+    """Lines that move as one body: a slot, a wheel, a cam.
+
+    Attributes
+    ----------
+    corners : (n, 2) [m] in axes of its own; a row of NaN lifts the pen
+    poses : (samples, 3): where these axes are, x and y [m] and their angle [rad]; one row for what stands still
+    colour : of its lines, "#RRGGBB"
+    filled : lightly; then it is closed
+    behind : under the links
+    white : filled with white, over the links: a block, a barrel
+    """
+
+    corners: np.ndarray
+    poses: np.ndarray
+    colour: str
+    filled: bool = False
+    behind: bool = True
+    white: bool = False
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A circle on the sphere.
+
+    Attributes
+    ----------
+    poles : (samples, 3) unit vectors; one row for what stands still
+    arc : its radius [rad]
+    colour : of its line, "#RRGGBB"
+    """
+
+    poles: np.ndarray
+    arc: float
+    colour: str
+
+
+@dataclass(frozen=True)
 class Moving:
     """A motion that a page plays, step by step and by dragging the drive; a PDF shows its first picture.
 
     Attributes
     ----------
-    places : name of a point -> its places (samples, 2) [m]; NaN where it has none
+    places : name of a point -> its places (samples, 2) [m], on the sphere (samples, 3); NaN where it has none, one row
+        for what stands still
     bodies : name of a link -> names of its points, drawn as lines between them
     fixed : names of the points of the frame
     guides : name of a guide -> two ends (2, 2) [m] of the line that is drawn
@@ -99,6 +142,12 @@ class Moving:
     drive : values of the drive (samples), as text with unit in `drive_texts`
     tracks : names of the points whose paths are drawn
     still : the first picture, for paper
+    shapes : what moves beside the lines of links
+    view : on the sphere (3, 3): to the right, up and towards the eye, as rows
+    driven : names of the points that the drive moves
+    dots : names of the points of one link alone, where nothing is hinged
+    start : the sample shown first
+    box : lower left and upper right corner (2, 2) [m] of what is seen; all places if None
     """
 
     places: Mapping[str, np.ndarray]
@@ -111,6 +160,12 @@ class Moving:
     tracks: tuple[str, ...]
     still: Picture
     caption: str
+    shapes: tuple[Outline | Ring, ...] = ()
+    view: np.ndarray | None = None
+    driven: tuple[str, ...] = ()
+    dots: tuple[str, ...] = ()
+    start: int = 0
+    box: np.ndarray | None = None
 
 
 Block: TypeAlias = Paragraph | Items | Formula | System | Table | Picture | Check | Moving
@@ -149,8 +204,3 @@ class Report:
     subtitle: str
     language: str
     chapters: tuple[Chapter, ...] = field(default=())
-
-
-def shown(text: str) -> str:
-    """Text of a user's own, so that nothing in it is taken for mathematics."""
-    return text.replace("\\", "\\\\").replace("$", r"\$")

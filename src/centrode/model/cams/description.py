@@ -24,6 +24,7 @@ from centrode.model.cams.parts import (
 from centrode.model.cams.values import CONSTANT, POINT
 from centrode.model.part import Part
 from centrode.model.problems import Problem, Problems, nearest, shown
+from centrode.model.reports import CamReportWishes
 from centrode.model.tabled import part_tables
 from centrode.model.values import Text, choice
 
@@ -52,6 +53,7 @@ class Cam(Part):
     contact : Contact or None
     choose : Choose or None
     study : CamStudy
+    report : CamReportWishes
 
     Raises
     ------
@@ -71,6 +73,7 @@ class Cam(Part):
     contact: Contact | None = None
     choose: Choose | None = None
     study: CamStudy = CamStudy()
+    report: CamReportWishes = CamReportWishes()
 
     if TYPE_CHECKING:
 

@@ -27,9 +27,12 @@ from centrode.model.cams.parts import (
 from centrode.model.cams.plate import PlateCam
 from centrode.model.cams.values import CONSTANT, LETTER, PARAMETERS, POINT
 from centrode.model.part import Part
+from centrode.model.reports import CamReportWishes
 from centrode.model.schema import (
     AMOUNT,
+    CHAPTERS,
     PROPERTIES,
+    REPORT_DIGITS,
     TEXT,
     Schema,
     above_zero,
@@ -102,6 +105,11 @@ CAM_PROPERTIES: dict[type[Part], Schema] = {
         "terms": {"type": "integer", "minimum": 2, "maximum": MOST_TERMS},
         "instants": list_of(quantity_schema("angle"), 0, limits.INSTANTS),
     },
+    CamReportWishes: {
+        "chapters": CHAPTERS,
+        "instants": list_of(quantity_schema("angle"), 0, limits.INSTANTS),
+        "digits": REPORT_DIGITS,
+    },
     Cam: {
         "title": TEXT,
         "kind": {"const": "cam"},
@@ -115,6 +123,7 @@ CAM_PROPERTIES: dict[type[Part], Schema] = {
         "contact": reference_to(Contact),
         "choose": reference_to(Choose),
         "study": reference_to(CamStudy),
+        "report": reference_to(CamReportWishes),
     },
 }
 """Keys of every part as a file spells them; a test compares them with the parts themselves."""

@@ -65,6 +65,16 @@ def describes_cam(file_or_example: str | Path) -> bool:
     return is_cam(toml_tables(read_file(path), path.name))
 
 
+def load_either(file_or_example: str | Path) -> Mechanism | Cam:
+    """The mechanism or the cam in a TOML file, or the built-in one of that name; InputError if there is neither."""
+    path = _file(file_or_example)
+    if path is None:
+        return example(str(file_or_example))
+    text = read_file(path)
+    reads = parse_cam if is_cam(toml_tables(text, path.name)) else parse_mechanism
+    return reads(text, path.name, path.parent)
+
+
 def _file(file_or_example: str | Path) -> Path | None:
     """The file that is meant; None where it is a built-in example."""
     path = Path(file_or_example)

@@ -147,7 +147,7 @@ def _cam(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
 
 def _carrier(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
     """A ring about the cam with a guide for each leg."""
-    radius = factor * _ring(wheel)
+    radius = factor * carrier_radius(wheel)
     hub = factor * pose.hub
     axes.add_patch(Circle((hub[0], hub[1]), radius, fill=False, edgecolor=CARRIER, linewidth=2.2, zorder=4.5))
     for along in pose.along:
@@ -179,7 +179,7 @@ def _leg(axes: Axes, wheel: Mover, pose: Pose, leg: int, factor: float) -> None:
     axes.plot(*roller, marker="+", color=colour, markersize=5, zorder=7.5)
 
 
-def _ring(wheel: Mover) -> float:
+def carrier_radius(wheel: Mover) -> float:
     """Radius of the carrier's ring [m]: outside the rollers, within the shoes of legs drawn in."""
     phi = np.linspace(wheel.closed.start, wheel.closed.stop, POINTS)
     radius: Array = wheel.closed.radius(phi)[0]

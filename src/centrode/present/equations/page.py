@@ -96,7 +96,8 @@ def sections(equations: Equations, spelling: Spelling, points: Sequence[str]) ->
     through = equations.board.axes_through
     if points and through is not None:
         words = _("x runs through {first}, {second} lies in the half-plane of x and y")
-        found.append(Section(_("Axes"), (Note(words.format(first=through[0], second=through[1])),)))
+        first, second = map(spelling.text, through)
+        found.append(Section(_("Axes"), (Note(words.format(first=first, second=second)),)))
     for point in points:
         lines = velocity_lines(equations.velocity(point), spelling)
         entries: list[Entry] = [Relation(line) for line in lines]
@@ -144,7 +145,7 @@ def _given(one: Drivenness, spelling: Spelling) -> list[Entry]:
         return [
             Note(
                 _("{value} and {rate} by the law of drive {drive}").format(
-                    value=value, rate=rate, drive=one.drive
+                    value=spelling.math(value), rate=spelling.math(rate), drive=spelling.text(one.drive)
                 )
             )
         ]
@@ -175,13 +176,13 @@ def _solved(solution: Solution, spelling: Spelling) -> list[Entry]:
     delta = spelling.letter(solution.under)
     lines.append(Relation((delta, spelled(system.determinant, spelling, differences_first=True))))
     for letter, unknown, one in zip(system.unknowns, unknowns, system.numerators, strict=True):
-        top = spelling.letter(Letter(0, f"Delta_{_index(letter)}"))
+        top = spelling.letter(Letter(0, f"Delta_{index_of(letter)}"))
         lines.append(Relation((top, spelled(one, spelling, differences_first=True))))
         lines.append(Relation((unknown, spelling.fraction([top], [delta]))))
     return lines
 
 
-def _index(letter: Letter) -> str:
+def index_of(letter: Letter) -> str:
     """What stands below a rate: the determinant of its column has the same index."""
     name = letter.name
     return name.removeprefix("omega").removeprefix("gamma").removesuffix("_dot").lstrip("_")
@@ -237,4 +238,5 @@ def _with_formulas(
 
 def _as_numbers(letter: Letter, group: GroupEquations, spelling: Spelling) -> Note:
     sentence = _("{letter}: as a number, from the system of group {group}")
-    return Note(sentence.format(letter=spelling.math(spelling.letter(letter)), group=group.label))
+    symbol = spelling.math(spelling.letter(letter))
+    return Note(sentence.format(letter=symbol, group=spelling.text(group.label)))

@@ -136,8 +136,9 @@ def _bars(axes: Axes, balance: Balance, name: str) -> None:
     for side, word, data, pen in zip(
         (-0.5, 0.5), _words(), (balance.before, balance.after), (BEFORE, AFTER), strict=True
     ):
-        heights = data[name].to_numpy()[1:]
-        axes.bar(orders + side * width, heights, width, color=pen.colour, label=word)
+        # counterweights can shorten the cycle, and then it has fewer orders
+        own, heights = data["order"].to_numpy()[1:], data[name].to_numpy()[1:]
+        axes.bar(own + side * width, heights, width, color=pen.colour, label=word)
     axes.set_xticks(orders if len(orders) <= 20 else orders[:: -(-len(orders) // 20)])
     if not any(float(data[name].max()) for data in (balance.before, balance.after)):
         axes.set_ylim(0.0, 1.0)

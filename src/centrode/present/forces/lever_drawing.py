@@ -40,14 +40,12 @@ def lever_page(found: ForcePolygons, lever: Lever, text: str) -> Figure:
         factor, unit = 1.0, "1"
     corner, size = np.array([LEFT, FOOT]), np.array([WIDE * wide, high - TOP - FOOT - GUTTER])
     ends = flat([0j, *lever.images.values(), *(one.image for one in lever.forces)])
-    extent = factor * np.ptp(ends, axis=0)
-    # names and arrows need room around the lever
-    scale = round_scale(float(np.max(extent / (size - 46.0))), 1.0)
+    scale = lever_scale(found, lever)
     view = View.about(corner, size, factor * ends, scale)
     draw_outlines(page, view, found, lever, factor)
     name_images(page, view, lever, factor)
     draw_forces(page, view, found, lever, factor)
-    column = LEFT + WIDE * wide + GUTTER
+    column = lever_column(found)
     per = "/rad" if lever.unit == "N m" else ""
     size_of = f"{scale:g} {unit}{per}" if unit != "1" else f"{scale:g}"
     heads = [text, f"$\\mu_v$ = {size_of} " + _("per mm")]
@@ -57,6 +55,21 @@ def lever_page(found: ForcePolygons, lever: Lever, text: str) -> Figure:
     )
     page.place_names(np.array([[1.0, 1.0], [column - 1.0, high - TOP + 2.0]]))
     return page.figure
+
+
+def lever_column(found: ForcePolygons) -> float:
+    """Where the column of text begins on the page of a lever [mm]."""
+    return LEFT + WIDE * sheet_size(found.paper)[0] + GUTTER
+
+
+def lever_scale(found: ForcePolygons, lever: Lever) -> float:
+    """What a millimetre of the lever stands for, in the display's unit of lengths by radian."""
+    wide, high = sheet_size(found.paper)
+    factor = 1.0 if lever.unit == "N" else shown_as("m", found.mechanism.display)[0]
+    ends = flat([0j, *lever.images.values(), *(one.image for one in lever.forces)])
+    # names and arrows need room around the lever
+    room = np.array([WIDE * wide, high - TOP - FOOT - GUTTER]) - 46.0
+    return round_scale(float(np.max(factor * np.ptp(ends, axis=0) / room)), 1.0)
 
 
 def draw_outlines(page: Page, view: View, found: ForcePolygons, lever: Lever, factor: float) -> None:

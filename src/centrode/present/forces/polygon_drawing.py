@@ -32,6 +32,8 @@ SHORT = 0.5
 """Vectors shorter than this [mm] are told, not drawn."""
 AROUND = 38.0
 """Room around a group for the arrows of its forces [mm]."""
+DRAWN, ROOM = 0.30, 0.38
+"""Shares of the sheet's width for the group and for its polygon."""
 DASHED = (0, (4.0, 1.6))
 CHORD = (0, (6.0, 1.5, 1.2, 1.5))
 
@@ -64,27 +66,39 @@ def group_page(found: ForcePolygons, group: GroupForces, text: str) -> Figure:
     """A group with its forces, its polygon, and what was done."""
     page = new_page(sheet_size(found.paper))
     wide, high = page.size
-    drawn, room = 0.30 * wide, 0.38 * wide
+    drawn, room = DRAWN * wide, ROOM * wide
     height = high - TOP - FOOT - GUTTER
     factor, unit = shown_as("m", found.mechanism.display)
     scene = scene_of(found.mechanism, found.exact)
     places = flat([factor * place for place in shown_places(found, group)])
-    room_of_group = np.array([drawn, height]) - AROUND
-    extents = np.ptp(places, axis=0)
-    if not extents.any():  # sliders in one place
-        extents = np.ptp(flat([factor * place for place in found.places.values()]), axis=0)
-    length = round_length(float(np.max(extents / room_of_group)), 1.0)
+    length = group_scale(found, group)
     view = View.about(np.array([LEFT, FOOT]), np.array([drawn, height]), places, length)
     draw_group(page, view, found, group, scene)
     corner, size = np.array([LEFT + drawn + GUTTER, FOOT]), np.array([room, height])
     scale = draw_polygons(page, found, group, corner, size)
-    column = LEFT + drawn + room + 2 * GUTTER
+    column = column_of(found)
     heads = [text, f"$\\mu_l$ = {length:g} {unit} " + _("per mm")]
     heads.append(f"$\\mu_F$ = {scale:g} N " + _("per mm"))
     write_column(page, column, group_title(group), heads, told(group, scale))
     write_title(page, column, _("Force polygon"), found.mechanism)
     page.place_names(np.array([[1.0, 1.0], [column - 1.0, high - TOP + 2.0]]))
     return page.figure
+
+
+def column_of(found: ForcePolygons) -> float:
+    """Where the column of text begins on the page of a group [mm]."""
+    return LEFT + (DRAWN + ROOM) * sheet_size(found.paper)[0] + 2 * GUTTER
+
+
+def group_scale(found: ForcePolygons, group: GroupForces) -> float:
+    """What a millimetre of the drawn group stands for, in the display's unit of lengths."""
+    wide, high = sheet_size(found.paper)
+    factor, _unit = shown_as("m", found.mechanism.display)
+    room = np.array([DRAWN * wide, high - TOP - FOOT - GUTTER]) - AROUND
+    extents = np.ptp(flat([factor * place for place in shown_places(found, group)]), axis=0)
+    if not extents.any():  # sliders in one place
+        extents = np.ptp(flat([factor * place for place in found.places.values()]), axis=0)
+    return round_length(float(np.max(extents / room)), 1.0)
 
 
 def shown_places(found: ForcePolygons, group: GroupForces) -> list[complex]:

@@ -1,0 +1,116 @@
+"""`centrode report`: everything about a mechanism as one document."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+import lazy_loader
+
+import centrode as ct
+from centrode.cli import output
+from centrode.cli.about import about
+from centrode.cli.arguments import results_option
+from centrode.cli.progress import Progress
+from centrode.errors import MotionError
+from centrode.locale import _, mark, ngettext
+
+if TYPE_CHECKING:
+    from centrode.report.blocks import Report
+
+# What they import is too much for a list of commands.
+_loading, _options, _writing = (
+    functools.partial(lazy_loader.load, f"centrode.{name}", suppress_warning=True)
+    for name in ("model.examples.loading", "report.options", "report.writing")
+)
+
+
+@click.command(help=mark("Write everything about a mechanism or a cam as one document."))
+@click.argument(
+    "description",
+    metavar=mark("FILE_OR_EXAMPLE"),
+    help=mark("A TOML file, or the name of a built-in mechanism or cam."),
+)
+@results_option
+@click.option(
+    "--format",
+    "formats",
+    default="html,pdf",
+    show_default=True,
+    metavar=mark("KINDS"),
+    help=mark("Kinds of documents, separated by commas: html, pdf."),
+)
+@click.option(
+    "--chapters",
+    metavar=mark("NAMES"),
+    help=mark("Chapters, separated by commas; all that apply if left out."),
+)
+@click.option(
+    "--at",
+    "instants",
+    multiple=True,
+    metavar=mark("A"),
+    help=mark('A value of the drive ("99.1 deg") that tables and diagrams show; again for more.'),
+)
+@click.option(
+    "--points",
+    metavar=mark("NAMES"),
+    help=mark("Points whose velocities and paths are told, separated by commas."),
+)
+@click.option("--digits", type=int, metavar=mark("N"), help=mark("Significant digits of numbers."))
+def report(
+    description: str,
+    out: Path | None,
+    formats: str,
+    chapters: str | None,
+    instants: tuple[str, ...],
+    points: str | None,
+    digits: int | None,
+) -> None:
+    """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
+    described = _loading().load_either(description)
+    folder = output.folder_of(out, description, "report")
+    kinds = _listed(formats)
+    _writing().check_formats(kinds)
+    with about(description):
+        options = ct.ReportOptions(
+            None if chapters is None else _listed(chapters),
+            tuple(_options().instant(described, text, "--at") for text in instants) or None,
+            None if points is None else _listed(points),
+            digits,
+        )
+    with output.output_folder(folder) as draft, Progress() as progress:
+        with about(description):
+            made = ct.report(described, options, name=Path(description).stem, said=progress.say)
+        ct.write_report(
+            made, draft, kinds, said=lambda file: progress.say(_("writing {file}").format(file=file))
+        )
+        names = sorted(path.name for path in draft.iterdir())
+    click.echo(_summary(made))
+    click.echo("\n" + output.files_in(folder, names))
+    _told(made, description)
+
+
+def _listed(text: str) -> tuple[str, ...]:
+    return tuple(part.strip() for part in text.split(",") if part.strip())
+
+
+def _summary(made: Report) -> str:
+    """Title, and chapters with their numbers."""
+    chapters = [(str(number), chapter.title) for number, chapter in enumerate(made.chapters, start=1)]
+    return f"{made.title}\n\n{output.table(chapters)}"
+
+
+def _told(made: Report, description: str) -> None:
+    """Chapters that could not be made, as the failure that the command ends with."""
+    missing = [chapter for chapter in made.chapters if chapter.missing]
+    if missing:
+        what = ngettext(
+            "{n} chapter could not be made: {reasons}",
+            "{n} chapters could not be made: {reasons}",
+            len(missing),
+        )
+        reasons = "\n".join(f"{chapter.title}: {chapter.missing}" for chapter in missing)
+        raise MotionError(description, what.format(n=len(missing), reasons=reasons))

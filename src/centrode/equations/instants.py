@@ -1,0 +1,209 @@
+"""Numbers of all letters of a mechanism's equations at one position: places from its motion, rates from the systems.
+
+The rates and accelerations are solved from the differentiated constraints, so that they are a second way to those that
+the motion in closed form has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jet_functions import JetFunctions
+from centrode.algebra.jets import Jet
+from centrode.equations.board import Board
+from centrode.equations.derivation import Equations
+from centrode.equations.draft import Unknown
+from centrode.equations.formulas import Formula
+from centrode.equations.groups import Solution
+from centrode.equations.letters import Letter
+from centrode.equations.standing import Standing
+from centrode.equations.sums import Sum
+from centrode.equations.systems import LinearSystem
+from centrode.errors import InputError
+from centrode.locale import _
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+JETS = JetFunctions(ARRAYS)
+CHANGE_POINT = 1
+OPERATIONS = 256
+"""Rounded operations between the places of a motion and a rate by either route, in mechanisms of the size of books'."""
+MENDED = (1e-10, 1e-8)
+"""Errors of velocities and accelerations about change points, where motions are interpolated."""
+
+
+@dataclass(frozen=True)
+class SolvedSystem:
+    """A linear system as numbers, with its solution.
+
+    Attributes
+    ----------
+    matrix, right : (n, n), (n)
+    determinant, numerators : of Cramer's rule
+    solution : (n), NaN where the determinant is zero
+    condition : of the matrix with rows and columns of length one, which rounding is multiplied by
+    """
+
+    matrix: Array
+    right: Array
+    determinant: float
+    numerators: Array
+    solution: Array
+    condition: float
+
+
+@dataclass(frozen=True)
+class Instant:
+    """One position in the letters of the equations.
+
+    Attributes
+    ----------
+    values : number of every letter that can be told [rad, lengths in their unit, and by seconds]
+    length : how many of the unit of lengths make a metre
+    velocities, accelerations : systems of the groups, in their order
+    together : of all rates as one system, where the equations have it
+    """
+
+    values: Mapping[Letter, float]
+    length: float
+    velocities: tuple[SolvedSystem, ...]
+    accelerations: tuple[SolvedSystem, ...]
+    together: SolvedSystem | None
+
+    def number(self, what: Sum | Formula) -> float:
+        """The number that a sum or a formula is here."""
+        total = what.total if isinstance(what, Formula) else what
+        with np.errstate(all="ignore"):
+            return float(total.value(np, self.values.__getitem__))
+
+
+def instant_of(equations: Equations, motion: xr.Dataset, sample: int, length: float = 1.0) -> Instant:
+    """The letters at one sample of a motion, whose places are taken as they are; `length` units make a metre.
+
+    Raises InputError on the sphere, where the letters have other places.
+    """
+    board = equations.board
+    if not isinstance(board, Board):
+        raise InputError("space", _("letters are told their numbers in the plane only"))
+    meanings = board.alphabet.meanings
+    units = {letter: length if one.unit == "m" else 1.0 for letter, one in meanings.items()}
+    values = dict(board.alphabet.values) | Standing(board, motion, sample).values()
+    values = {letter: x * units[letter] for letter, x in values.items()}
+    for one in equations.given.drives:
+        driven = next(by for by in board.ready.kinematics.path.driven if by.drive.id == one.drive)
+        jet = driven.value(JETS, Jet.variable(float(motion["time"][sample]), 2))
+        orders = [jet.derivative(k) for k in range(3)] if isinstance(jet, Jet) else [jet, 0.0, 0.0]
+        letters = (one.letter, one.rate, one.second)
+        values |= {each: float(x) * units[one.letter] for each, x in zip(letters, orders, strict=True)}
+    for letter, other in equations.given.names.items():
+        values[other] = values[letter]
+    found: list[tuple[SolvedSystem, ...]] = []
+    for solutions in (
+        [group.velocities for group in equations.groups],
+        [group.seconds for group in equations.groups],
+    ):
+        found.append(tuple(_solve(one, values) for one in solutions))
+    together = None if equations.together is None else _solve(equations.together, values)
+    return Instant(values, length, found[0], found[1], together)
+
+
+@dataclass(frozen=True)
+class Rate:
+    """A first or second derivative of an unknown by two routes [rad or m, by s or s^2].
+
+    `allowed` is what rounding, multiplied by the condition of the system, and the interpolation about change points
+    (docs: conventions, paragraph 25) may make of their difference.
+    """
+
+    unknown: Unknown
+    order: int
+    solved: float
+    closed: float
+    allowed: float
+
+    @property
+    def agrees(self) -> bool:
+        """Whether both are the same as far as they can be."""
+        return abs(self.solved - self.closed) <= self.allowed
+
+
+def rates_compared(equations: Equations, instant: Instant, motion: xr.Dataset, sample: int) -> list[Rate]:
+    """Derivatives of angles of links and of slides of guides, by the equations and by the motion in closed form."""
+    found = list(_pairs(equations, instant, motion, sample))
+    condition = max((one.condition for one in instant.velocities), default=1.0)
+    first = max((abs(x) for _one, order, *both in found for x in both if order == 1), default=0.0)
+    first = max(first, *(abs(instant.values[one.rate]) for one in equations.given.drives))
+    second = max((abs(x) for _one, order, *both in found for x in both if order == 2), default=0.0)
+    mended = bool((motion["event_kind"] == CHANGE_POINT).any())
+    rates = []
+    for one, order, solved, closed in found:
+        size = first if order == 1 else max(second, first**2)
+        allowed = OPERATIONS * float(np.finfo(float).eps) * condition**order * size
+        allowed += MENDED[order - 1] * size if mended else 0.0
+        rates.append(Rate(one, order, solved, closed, allowed))
+    return rates
+
+
+def _pairs(
+    equations: Equations, instant: Instant, motion: xr.Dataset, sample: int
+) -> Iterator[tuple[Unknown, int, float, float]]:
+    for one in equations.unknowns:
+        kind, _dot, name = one.name.partition(".")
+        for order, letter in ((1, one.rate), (2, one.second)):
+            word = "velocity" if order == 1 else "acceleration"
+            if kind == "angle" and name in motion["link"].values:
+                own = motion[f"angular_{word}"].sel(link=name)[sample]
+            elif kind == "slide" and name in motion["guide"].values:
+                own = motion[f"slide_{word}"].sel(guide=name)[sample]
+            else:
+                continue
+            size = instant.length if kind == "slide" else 1.0
+            yield one, order, instant.values[letter] / size, float(own)
+
+
+def _solve(solution: Solution, values: dict[Letter, float]) -> SolvedSystem:
+    """A system as numbers; its solution and its determinant are added to the values."""
+    system: LinearSystem = solution.system
+    matrix = np.array([[_value(entry, values) for entry in row] for row in system.matrix], dtype=np.float64)
+    right = np.array([_value(entry, values) for entry in system.right], dtype=np.float64)
+    with np.errstate(all="ignore"):  # a position that does not exist has no determinant
+        determinant = float(np.linalg.det(matrix))
+        numerators = np.array([_replaced(matrix, right, column) for column in range(len(right))])
+    condition = _condition(matrix)
+    regular = condition < 1 / np.finfo(float).eps
+    found: Array = np.full(len(right), np.nan)
+    if regular:
+        found = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
+    values |= {letter: float(x) for letter, x in zip(system.unknowns, found, strict=True)}
+    values[solution.under] = determinant
+    return SolvedSystem(matrix, right, determinant, numerators, found, condition)
+
+
+def _value(total: Sum, values: Mapping[Letter, float]) -> float:
+    with np.errstate(all="ignore"):
+        return float(total.value(np, values.__getitem__))
+
+
+def _replaced(matrix: Array, right: Array, column: int) -> float:
+    other = matrix.copy()
+    other[:, column] = right
+    return float(np.linalg.det(other))
+
+
+def _condition(matrix: Array) -> float:
+    """Condition of a matrix with columns and rows of length one, so that units do not count."""
+    if not np.isfinite(matrix).all():
+        return float("inf")
+    with np.errstate(all="ignore"):
+        columns = matrix / np.linalg.norm(matrix, axis=0)
+        rows = columns / np.linalg.norm(columns, axis=1)[:, None]
+    return float(np.linalg.cond(rows)) if np.isfinite(rows).all() else float("inf")

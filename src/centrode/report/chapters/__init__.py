@@ -1,0 +1,99 @@
+"""The chapters of reports by name, in the order of the document.
+
+A chapter is made by a function of the report's study. It gives None where the description has nothing for it, and
+raises CentrodeError where it cannot be made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, TypeAlias
+
+from centrode.locale import mark
+from centrode.report.blocks import Chapter
+from centrode.report.chapters.cams.chapters import (
+    cam_choice_chapter,
+    cam_contact_chapter,
+    cam_data_chapter,
+    cam_motion_chapter,
+    cam_path_chapter,
+    cam_profile_chapter,
+    cam_routes_chapter,
+    cam_walking_chapter,
+)
+from centrode.report.chapters.forces.flywheel import flywheel_chapter
+from centrode.report.chapters.forces.given import masses_and_loads
+from centrode.report.chapters.forces.joints import reactions_chapter
+from centrode.report.chapters.forces.polygons import polygons_chapter
+from centrode.report.chapters.forces.real_motion import real_motion_chapter
+from centrode.report.chapters.forces.reduction import reduction_chapter
+from centrode.report.chapters.forces.running import simulation_chapter
+from centrode.report.chapters.forces.shaken import balance_chapter
+from centrode.report.chapters.linkages.centres import centres_chapter
+from centrode.report.chapters.linkages.constraints import constraints_chapter
+from centrode.report.chapters.linkages.data import data_chapter
+from centrode.report.chapters.linkages.derivation import derivation_chapter
+from centrode.report.chapters.linkages.graphic import graphic_chapter
+from centrode.report.chapters.linkages.integration import integration_chapter
+from centrode.report.chapters.linkages.moving import motion_chapter
+from centrode.report.chapters.linkages.plots import plots_chapter
+from centrode.report.chapters.linkages.positions import positions_chapter
+from centrode.report.chapters.linkages.structure import structure_chapter
+from centrode.report.chapters.linkages.tables import tables_chapter
+from centrode.report.chapters.linkages.turning import turning_chapter
+from centrode.report.chapters.linkages.words import words_chapter
+from centrode.report.chapters.sphere.data import sphere_data_chapter
+from centrode.report.chapters.sphere.pictures import axes_chapter, sphere_plots_chapter
+from centrode.report.chapters.sphere.relations import sphere_equations_chapter
+from centrode.report.chapters.sphere.tables import sphere_tables_chapter
+from centrode.report.study import ReportStudy
+
+Make: TypeAlias = Callable[[ReportStudy], Chapter | None]
+
+
+class Kind(NamedTuple):
+    """A chapter's title, marked for the catalogues, and what makes it."""
+
+    title: str
+    make: Make
+
+
+def either(*makers: Make) -> Make:
+    """One chapter of the plane, of the sphere and of cams: the first that has something to tell."""
+
+    def make(study: ReportStudy) -> Chapter | None:
+        return next((chapter for one in makers if (chapter := one(study)) is not None), None)
+
+    return make
+
+
+CHAPTERS: Mapping[str, Kind] = {
+    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter)),
+    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter)),
+    "words": Kind(mark("How it works"), words_chapter),
+    "structure": Kind(mark("Structure"), structure_chapter),
+    "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
+    "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
+    "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
+    "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
+    "positions": Kind(mark("Plan of positions"), positions_chapter),
+    "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
+    "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
+    "integration": Kind(mark("Integration of the equations"), integration_chapter),
+    "rotatability": Kind(mark("Rotatability"), turning_chapter),
+    "axes": Kind(mark("Instantaneous axes"), axes_chapter),
+    "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
+    "reduction": Kind(mark("Reduction to the drive"), reduction_chapter),
+    "flywheel": Kind(mark("Flywheel"), flywheel_chapter),
+    "real-motion": Kind(mark("Real motion"), real_motion_chapter),
+    "simulation": Kind(mark("Motion under loads"), simulation_chapter),
+    "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
+    "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
+    "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
+    "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
+    "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
+    "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
+    "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
+    "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
+    "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
+}

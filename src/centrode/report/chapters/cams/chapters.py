@@ -1,0 +1,256 @@
+"""The chapters of a cam given by the curvature of its roller's path, and of the wheel that walks on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.locale import _
+from centrode.present.cams.bodies import cam_body_figures
+from centrode.present.cams.choice import choice_figures
+from centrode.present.cams.contact import contact_figure
+from centrode.present.cams.drawing import cam_curves_figure, cam_path_figure, cam_routes_figure
+from centrode.present.cams.profile_drawing import profile_figure
+from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section
+from centrode.report.chapters.cams.given import given_of
+from centrode.report.chapters.cams.parts import cam_of, course, part_of, sections_of, told_part
+from centrode.report.figures import picture
+from centrode.report.moving_wheel import moving_wheel
+from centrode.report.telling import measured
+
+if TYPE_CHECKING:
+    from centrode.report.study import ReportStudy
+
+ROUNDED = float(np.finfo(float).eps) * (1 << 16)
+"""What rounding may leave of sums that are to vanish: series of some twenty terms, quotients near a stall."""
+
+
+def cam_data_chapter(study: ReportStudy) -> Chapter | None:
+    """What the description gives."""
+    if not study.is_cam:
+        return None
+    return Chapter("data", _("Data"), (Section("", given_of(study)),))
+
+
+def cam_motion_chapter(study: ReportStudy) -> Chapter | None:
+    """The wheel that walks, which a page plays."""
+    part = part_of(study, "walking") if study.is_cam and study.cam.mover is not None else None
+    if part is None or "wheel" not in part.objects:
+        return None
+    moving = moving_wheel(part.objects["wheel"], _(study.cam.title))
+    return Chapter("motion", _("Motion"), (Section("", (moving,)),))
+
+
+def cam_path_chapter(study: ReportStudy) -> Chapter | None:
+    """Curvature law, equations, path, pressure angle, stall."""
+    part = part_of(study, "path")
+    if part is None:
+        return None
+    cam, data = cam_of(study), part.datasets["cam-path"]
+    text = _(
+        "The curvature $K$ of the path of the roller's centre is given over the angle $phi$ of the carrier. With the"
+        " pressure angle $gamma$ and $eta = sin gamma$ the path follows from"
+    )
+    lines = (
+        ("tan gamma", "frac(rho', rho)"),
+        ("K eta'' - K' eta' + K eta + K' sqrt(1 - eta^2)", "0"),
+        ("rho", "frac(sqrt(1 - eta^2) - eta', K)"),
+        ("x", "rho sin phi"),
+        ("y", "rho cos phi"),
+    )
+    columns = [
+        ("path_radius", "rho"), ("path_radius_slope", "rho'"), ("cam_pressure_angle", "gamma"),
+        ("pressure_sine", "eta"), ("pressure_sine_slope", "eta'"), ("law_curvature", "K"),
+    ]  # fmt: skip
+    table = course(study, data, columns, _("The path at even steps of the carrier"))
+    figures = (
+        picture(cam_path_figure(cam, data), _("Path of the roller's centre")),
+        picture(cam_curves_figure(cam, data), _("Radius, pressure angle and curvature of the path")),
+    )
+    sections = sections_of(
+        ("", (Paragraph(text), Formula(lines), *told_part(study, part))),
+        (_("Over the range"), (table, _equation_check(study))),
+        (_("Figures"), figures),
+    )
+    return Chapter("path", _("Path of the roller's centre"), sections)
+
+
+def _equation_check(study: ReportStudy) -> Check:
+    """The differential equation with the path's own derivatives put in."""
+    part = part_of(study, "path")
+    assert part is not None
+    data = part.datasets["cam-path"]
+    names = (
+        "pressure_sine",
+        "pressure_sine_slope",
+        "pressure_sine_second",
+        "law_curvature",
+        "law_curvature_slope",
+    )
+    eta, slope, second, bend, bent = (data[name].to_numpy() for name in names)
+    terms = np.array([bend * second, -bent * slope, bend * eta, bent * data["pressure_cosine"].to_numpy()])
+    known = np.isfinite(terms).all(axis=0)
+    off = float(np.abs(terms[:, known].sum(axis=0)).max(initial=0.0))
+    text = _("The equation of $eta$ holds along the path to {share} of its greatest term.")
+    return measured(text, off, float(np.abs(terms[:, known]).max(initial=0.0)), ROUNDED)
+
+
+def cam_routes_chapter(study: ReportStudy) -> Chapter | None:
+    """One power series, series expanded anew, an integrator, beside each other."""
+    part = part_of(study, "routes")
+    if part is None:
+        return None
+    cam, data = cam_of(study), part.datasets["cam-routes"]
+    text = _(
+        "(a) one power series about $phi = 0$, cut off; (b) series expanded anew step by step, by which everything else"
+        " is computed; (c) a Runge-Kutta method along the arc of the path, which shares neither variable nor method"
+        " with the others."
+    )
+    lines = (
+        ("eta", "sum_(n = 0)^N a_n phi^n"),
+        ("sqrt(1 - eta^2)", "sum_(n = 0)^N b_n phi^n"),
+        ("rho_((15))", "frac(sqrt(1 - eta^2) - eta', K)"),
+        ("rho_((16))", "-frac(eta'' + eta, K')"),
+    )
+    steps, tolerance = float(data.attrs["steps"]), float(data.attrs["tolerance"])
+    agree = _("The integrated path is off from the one by steps by {share} of its radius.")
+    check = measured(agree, float(data.attrs["worst_difference"]), 1.0, tolerance * (1.0 + steps) + ROUNDED)
+    figure = picture(cam_routes_figure(cam, data), _("Differences between the routes"))
+    blocks: tuple[Block, ...] = (Paragraph(text), Formula(lines), *told_part(study, part), check, figure)
+    return Chapter("routes", _("Three routes to the path"), (Section("", blocks),))
+
+
+def cam_profile_chapter(study: ReportStudy) -> Chapter | None:
+    """The profile that the roller leaves, how it closes, undercut."""
+    part = part_of(study, "profile")
+    if part is None:
+        return None
+    text = _(
+        "The profile lies by the radius $r$ of the roller inside its path, along the normal; the return arc joins the"
+        " working arc in value, slope and curvature."
+    )
+    lines = (("x", "rho sin phi - r sin psi"), ("y", "rho cos phi - r cos psi"), ("psi", "phi - gamma"))
+    blocks: list[Block] = [Paragraph(text), Formula(lines), *told_part(study, part)]
+    body = part.objects.get("body")
+    if body is None:
+        return Chapter("profile", _("Profile of the cam"), (Section("", tuple(blocks)),))
+    if body.returned is not None:
+        gap = max(abs(joint.gap) for joint in body.closed.joints)
+        joined = _("The arcs join: the gap is {share} of the radius.")
+        blocks.append(measured(joined, gap, float(body.returned.radius.greatest), ROUNDED))
+        smooth = _("They join without a kink, to {share} rad.")
+        blocks.append(measured(smooth, float(body.closed.greatest_kink), 1.0, ROUNDED))
+    columns = [("profile_radius", "R"), ("profile_angle", "alpha"), ("cam_pressure_angle", "gamma")]
+    table = course(study, part.datasets["cam-profile"], columns, _("The profile in polar coordinates"))
+    figure = profile_figure(body, _(study.cam.title), study.cam.display)
+    sections = sections_of(
+        ("", tuple(blocks)),
+        (_("Coordinates"), (table,)),
+        (_("Figures"), (picture(figure, _("The cam with its roller and the path of the roller's centre")),)),
+    )
+    return Chapter("profile", _("Profile of the cam"), sections)
+
+
+def cam_walking_chapter(study: ReportStudy) -> Chapter | None:
+    """The wheel that walks: the shoe, its travel, the proof that it stays level and does not slip."""
+    part = part_of(study, "walking")
+    if part is None:
+        return None
+    text = _(
+        "The hub stays at the height $h$ while the shoe of the standing leg rolls on the ground. In the axes of the leg"
+        " the ground is a line at the distance $p$ from the roller's centre; the shoe is the envelope of these lines."
+    )
+    lines = (
+        ("h", "rho (0) + C"),
+        ("p", "h - rho cos phi"),
+        ("x_B", "p sin phi + p' cos phi"),
+        ("y_B", "p cos phi - p' sin phi"),
+        ("frac(d X, d phi)", "h + rho' sin phi"),
+    )
+    blocks: list[Block] = [Paragraph(text), Formula(lines), *told_part(study, part)]
+    wheel = part.objects.get("wheel")
+    if wheel is None:
+        return Chapter("walking", _("Walking wheel"), (Section("", tuple(blocks)),))
+    data = part.datasets["shoe-profile"]
+    columns = [
+        ("shoe_radius", "r_B"), ("shoe_angle", "alpha"), ("shoe_bend", "R_B"),
+        ("hub_travel", "X"), ("hub_rate", "X'"),
+    ]  # fmt: skip
+    table = course(study, data, columns, _("The shoe in polar coordinates, and the travel of the hub"))
+    profile = part_of(study, "profile")
+    objects = {"wheel": wheel} if profile is None else {**profile.objects, "wheel": wheel}
+    figure = cam_body_figures(cam_of(study), objects)["walking-wheel"]
+    sections = sections_of(
+        ("", tuple(blocks)),
+        (_("Proof"), _proof(study)),
+        (_("The shoe"), (table,)),
+        (_("Figures"), (picture(figure, _("The wheel over a step")),)),
+    )
+    return Chapter("walking", _("Walking wheel"), sections)
+
+
+def _proof(study: ReportStudy) -> tuple[Check, ...]:
+    """Level, without slip, equal arcs: by the shoe's curve alone, put on the ground."""
+    part = part_of(study, "walking")
+    assert part is not None
+    told = {name: one.value for name, one in part.scalars.items()}
+    height = told["walking_hub_height"]
+    return (
+        measured(_("The shoe on the ground holds the hub level to {share} of its height."),
+                 told["walking_level_error"], height, ROUNDED),
+        measured(_("The shoe's point at the contact moves at {share} of the speed of the hub."),
+                 told["walking_slip"], 1.0, ROUNDED),
+        measured(_("The arc of the shoe is as long as the ground travelled, to {share} of it."),
+                 told["walking_arc_difference"], told["walking_footprint"], ROUNDED),
+    )  # fmt: skip
+
+
+def cam_contact_chapter(study: ReportStudy) -> Chapter | None:
+    """Hertzian stress between roller and cam."""
+    part = part_of(study, "contact")
+    if part is None:
+        return None
+    text = _(
+        "Roller and cam touch along a line of the length $b$; the force $P$ along the follower makes the normal force"
+        " $P \\/ cos gamma$. With the curvature $K$ of the path"
+    )
+    lines = (
+        ("w", "frac(P, b cos gamma)"),
+        ("kappa", "1/r + 1/R", "frac(1, r (1 - r K))"),
+        ("1/E^*", "frac(1 - nu_1^2, E_1) + frac(1 - nu_2^2, E_2)"),
+        ("sigma", "sqrt(frac(w kappa E^*, pi))"),
+        ("a", "sqrt(frac(4 w, pi kappa E^*))"),
+    )
+    cam, data = cam_of(study), part.datasets["cam-contact"]
+    if cam.contact is not None and cam.contact.outer:
+        lines = (lines[0], ("kappa", "1/r - 1/R", "frac(1, r (1 + r K))"), *lines[2:])
+    columns = [
+        ("cam_curvature_radius", "R"), ("contact_half_width", "a"), ("contact_stress", "sigma"),
+        ("contact_shear", "tau"),
+    ]  # fmt: skip
+    table = course(study, data, columns, _("The contact over the working arc"))
+    sections = sections_of(
+        ("", (Paragraph(text), Formula(lines), *told_part(study, part))),
+        (_("Over the working arc"), (table,)),
+        (_("Figures"), (picture(contact_figure(cam, data), _("Contact stress over the working arc")),)),
+    )
+    return Chapter("contact", _("Contact of roller and cam"), sections)
+
+
+def cam_choice_chapter(study: ReportStudy) -> Chapter | None:
+    """The parameters that make one measure least while others keep their bounds."""
+    part = part_of(study, "choice")
+    if part is None:
+        return None
+    text = _(
+        "The numbers named below are chosen so that one measure is least while the others keep their bounds; the rest"
+        " of this document is about the description as it is given, not about the choice."
+    )
+    figures = choice_figures(part.objects["choice"])
+    captions = {"cam-choice": _("What a bound costs: the best values over the bound that is moved")}
+    drawn = tuple(
+        picture(figure, captions.get(name, _("The chosen cam"))) for name, figure in figures.items()
+    )
+    sections = sections_of(("", (Paragraph(text), *told_part(study, part))), (_("Figures"), drawn))
+    return Chapter("choice", _("Chosen parameters"), sections)

@@ -1,0 +1,1 @@
+"""Chapters on what moves a mechanism and what its joints bear."""

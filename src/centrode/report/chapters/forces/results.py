@@ -1,0 +1,79 @@
+"""Results that chapters on forces share; each is computed once a report."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from centrode.dynamics.balancing.balance import Balance, balance
+from centrode.dynamics.balancing.shaking import shaking
+from centrode.dynamics.kinetostatics.reactions import reactions
+from centrode.dynamics.reduction import reduce
+from centrode.dynamics.simulation.simulate import simulate
+from centrode.dynamics.steady_motion.steady import steady_motion
+from centrode.report.chapters.forces.places import instants
+from centrode.report.moments import moments_of
+from centrode.study.forces.machines import MachineResults, machine_results
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from centrode.report.study import ReportStudy
+
+
+def has_forces(study: ReportStudy) -> bool:
+    """Whether a linkage is reported on that has masses or loads."""
+    if study.is_cam:
+        return False
+    mechanism = study.mechanism
+    return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
+
+
+def reduced(study: ReportStudy) -> xr.Dataset:
+    """Masses and loads reduced to the drives, over the motion."""
+    return study.once("reduced", lambda: reduce(study.mechanism))
+
+
+def reduced_at_instants(study: ReportStudy) -> xr.Dataset:
+    """The same at the instants."""
+    return study.once("reduced at instants", lambda: reduce(study.mechanism, at=instants(study)))
+
+
+def motion_at_instants(study: ReportStudy) -> xr.Dataset:
+    """The motion at the instants."""
+    return moments_of(study)[0].data
+
+
+def machine_of(study: ReportStudy) -> MachineResults:
+    """Energies, flywheel and real motion; raises where they cannot be computed."""
+    known = study.study.machine
+    return known or study.once("machine", lambda: machine_results(study.mechanism))
+
+
+def steady_at_instants(study: ReportStudy) -> xr.Dataset:
+    """The real motion at the instants."""
+    return study.once("steady at instants", lambda: steady_motion(study.mechanism, at=instants(study)))
+
+
+def reactions_of(study: ReportStudy) -> xr.Dataset:
+    """Forces in every joint over the motion; raises where they cannot be computed."""
+    return study.study.reactions or study.once("reactions", lambda: reactions(study.mechanism))
+
+
+def reactions_at_instants(study: ReportStudy) -> xr.Dataset:
+    """Forces in every joint at the instants."""
+    return study.once("reactions at instants", lambda: reactions(study.mechanism, at=instants(study)))
+
+
+def simulated(study: ReportStudy) -> xr.Dataset:
+    """The motion under loads and a drive, as `[simulation]` wants it."""
+    return study.once("simulation", lambda: simulate(study.mechanism))
+
+
+def shaken(study: ReportStudy) -> xr.Dataset:
+    """Shaking force and moment over the motion."""
+    return study.once("shaking", lambda: shaking(study.mechanism))
+
+
+def balanced(study: ReportStudy) -> Balance:
+    """Counterweights that make the shaking force zero."""
+    return study.once("balance", lambda: balance(study.mechanism))

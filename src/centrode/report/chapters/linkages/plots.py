@@ -1,0 +1,34 @@
+"""The motion as figures: the mechanism, the paths of its points, curves of everything that moves."""
+
+from __future__ import annotations
+
+from centrode.locale import _, mark
+from centrode.present.figures import motion_figures
+from centrode.present.pictures import instants_of
+from centrode.report.blocks import Chapter, Section
+from centrode.report.figures import picture
+from centrode.report.moments import moments_of
+from centrode.report.study import ReportStudy
+
+CAPTIONS = {
+    "mechanism": mark("The mechanism"),
+    "paths": mark("Paths of the points"),
+    "angles": mark("Angles of the links"),
+    "angular-velocities": mark("Angular velocities of the links"),
+    "angular-accelerations": mark("Angular accelerations of the links"),
+    "velocities": mark("Velocities of the points"),
+    "accelerations": mark("Accelerations of the points"),
+    "slides": mark("Motion along the guides"),
+    "kinematic-coefficients": mark("Kinematic coefficients"),
+}
+
+
+def plots_chapter(study: ReportStudy) -> Chapter | None:
+    """The figures that `centrode run` draws."""
+    if not study.is_planar:
+        return None
+    exact = moments_of(study)[0].data if study.wishes.instants else None
+    instants = [] if exact is None else instants_of(exact).tolist()
+    figures = motion_figures(study.mechanism, study.motion, instants, exact)
+    blocks = tuple(picture(figure, _(CAPTIONS[name])) for name, figure in figures.items())
+    return Chapter("plots", _("Plots of the motion"), (Section("", blocks),))

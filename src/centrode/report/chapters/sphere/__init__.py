@@ -1,0 +1,1 @@
+"""Chapters of linkages on the sphere."""

@@ -1,0 +1,182 @@
+"""The blocks of a report as elements of a page."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import zip_longest
+
+from centrode.locale import _
+from centrode.report.blocks import (
+    Block,
+    Check,
+    Formula,
+    Items,
+    Moving,
+    Paragraph,
+    Picture,
+    Report,
+    System,
+    Table,
+)
+from centrode.report.html.drawings import Drawings
+from centrode.report.html.mathematics import Formulas, fragments_of
+from centrode.report.html.stage import stage_of
+from centrode.report.marked import parts_of
+from centrode.report.mathematics import checked
+
+BREAK = "<wbr>"
+LONG = 60
+"""Characters of a left side from which on it is not aligned but runs on with its line."""
+
+
+def blocks_of(report: Report) -> Iterator[Block]:
+    """All blocks of a report in their order."""
+    for chapter in report.chapters:
+        for section in chapter.sections:
+            yield from section.blocks
+
+
+def formulas_in(block: Block) -> Iterator[str]:
+    """The mathematics of a block, as it is spelled; ValueError, which is a fault, for what is none."""
+    if isinstance(block, Formula):
+        for line in block.lines:
+            yield from line[:1]
+            for part in line:
+                yield from fragments_of(part)
+    elif isinstance(block, System):
+        for row in (*block.matrix, block.unknowns, block.right):
+            yield from map(checked, row)
+    else:
+        for text in _texts(block):
+            yield from (checked(part.text) for part in parts_of(text) if part.mathematics)
+
+
+def _texts(block: Block) -> Iterator[str]:
+    if isinstance(block, Paragraph | Check):
+        yield block.text
+    elif isinstance(block, Items):
+        yield from block.texts
+    elif isinstance(block, Table):
+        yield from (block.caption, *block.head)
+        for row in block.rows:
+            yield from row
+    elif isinstance(block, Picture | Moving):
+        yield block.caption
+
+
+@dataclass
+class Elements:
+    """Makes the elements of a page, with the numbers of figures and tables."""
+
+    formulas: Formulas
+    drawings: Drawings = field(default_factory=Drawings)
+    figures: int = 0
+    tables: int = 0
+
+    def text(self, marked: str) -> str:
+        """A text with its mathematics."""
+        return "".join(
+            self.formulas.inline(part.text) if part.mathematics else html.escape(part.text)
+            for part in parts_of(marked)
+        )
+
+    def element(self, block: Block) -> str:
+        """A block."""
+        if isinstance(block, Paragraph):
+            return f"<p>{self.text(block.text)}</p>"
+        if isinstance(block, Items):
+            kind = "ol" if block.numbered else "ul"
+            return f"<{kind}>{''.join(f'<li>{self.text(one)}</li>' for one in block.texts)}</{kind}>"
+        if isinstance(block, Formula):
+            return self.formula(block)
+        if isinstance(block, System):
+            system = self.formulas.system(block.matrix, block.unknowns, block.right)
+            return f'<div class="formulas"><div class="one system">{system}</div></div>'
+        if isinstance(block, Table):
+            return self.table(block)
+        if isinstance(block, Check):
+            return self.check(block)
+        if isinstance(block, Moving):
+            return self.moving(block)
+        return self.picture(block)
+
+    def formula(self, block: Formula) -> str:
+        """Lines of a = b = ..., aligned at their first relation unless a left side is too long for that."""
+        lines = [line for line in block.lines if line]
+        aligned = all(len(line) > 1 and _length(line[0]) <= LONG for line in lines)
+        drawn = []
+        for line in lines:
+            right = BREAK.join(
+                piece for part in line[1:] for piece in self.formulas.pieces(part, relation="=")
+            )
+            if aligned:
+                left = self.formulas.displayed(line[0])
+                drawn.append(f'<div class="left">{left}</div><div class="right">{right}</div>')
+            else:
+                drawn.append(f"<p>{BREAK.join(self.formulas.pieces(line[0]))}{BREAK}{right}</p>")
+        kind = "aligned" if aligned else "running"
+        return f'<div class="formulas"><div class="{kind}">{"".join(drawn)}</div></div>'
+
+    def table(self, block: Table) -> str:
+        """Rows under heads, with a number if it has a caption."""
+        flush = [number for number, _name in zip_longest(block.numbers, block.head, fillvalue=False)]
+        kinds = [' class="n"' if number is True else "" for number in flush]
+        head = "".join(
+            f'<th scope="col"{kind}>{self.text(name)}</th>'
+            for name, kind in zip(block.head, kinds, strict=False)
+        )
+        rows = "".join(
+            "<tr>"
+            + "".join(f"<td{kind}>{self.text(cell)}</td>" for cell, kind in _cells(row, kinds))
+            + "</tr>"
+            for row in block.rows
+        )
+        caption, name = "", ""
+        if block.caption:
+            self.tables += 1
+            number = html.escape(_("Table {number}").format(number=self.tables))
+            name = f' aria-labelledby="t{self.tables}"'
+            caption = (
+                f'<p class="caption" id="t{self.tables}"><b>{number}.</b> {self.text(block.caption)}</p>'
+            )
+        drawn = f"<table{name}><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        return f'{caption}<div class="table">{drawn}</div>'
+
+    def check(self, block: Check) -> str:
+        """How something was verified."""
+        mark, word = ("\u2713", _("Checked")) if block.holds else ("\u2717", _("Does not hold"))
+        kind = "check" if block.holds else "check fails"
+        return f'<p class="{kind}"><b>{mark} {html.escape(word)}.</b> {self.text(block.text)}</p>'
+
+    def picture(self, block: Picture) -> str:
+        """A figure with its caption."""
+        paper = f'<div class="paper" style="width:{block.width:.4g}in">{self.drawing(block)}</div>'
+        return f"<figure>{paper}{self.caption(block.caption)}</figure>"
+
+    def moving(self, block: Moving) -> str:
+        """A motion: its first picture, until the script of the page draws it."""
+        return f"<figure>{stage_of(block, self.drawing(block.still))}{self.caption(block.caption)}</figure>"
+
+    def drawing(self, block: Picture) -> str:
+        """A figure alone."""
+        label = "".join(part.text for part in parts_of(block.caption))
+        return self.drawings.embedded(block.svg, label)
+
+    def caption(self, text: str) -> str:
+        """The number of a figure, and what it shows; nothing where nothing is said."""
+        if not text:
+            return ""
+        self.figures += 1
+        number = html.escape(_("Figure {number}").format(number=self.figures))
+        return f"<figcaption><b>{number}.</b> {self.text(text)}</figcaption>"
+
+
+def _cells(row: Iterable[str], kinds: list[str]) -> Iterator[tuple[str, str]]:
+    yield from zip_longest(row, kinds, fillvalue="")
+
+
+def _length(spelled: str) -> int:
+    """How long a formula is, about: its letters, without the names of signs and quotation marks."""
+    return sum(len(word) if '"' in word else min(len(word), 3) for word in spelled.split())

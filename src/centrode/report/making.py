@@ -1,0 +1,82 @@
+"""A report from a description: its chapters one after the other, each standing for itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import nullcontext
+from typing import TypeAlias
+
+from centrode import __version__
+from centrode.errors import CentrodeError
+from centrode.locale import _, chosen_language, speaking
+from centrode.model.cams.description import Cam
+from centrode.model.mechanism import Mechanism
+from centrode.report.blocks import Chapter, Report
+from centrode.report.chapters import CHAPTERS, Kind
+from centrode.report.options import ReportOptions, settled
+from centrode.report.study import ReportStudy
+
+Said: TypeAlias = Callable[[str, int, int], None]
+"""Is told the title of the chapter that begins, how many are done, and how many there are."""
+
+
+def report(
+    description: Mechanism | Cam,
+    options: ReportOptions | None = None,
+    *,
+    language: str | None = None,
+    name: str = "",
+    said: Said | None = None,
+) -> Report:
+    """A document about a mechanism or a cam, from its data to its forces, as chapters of blocks.
+
+    Parameters
+    ----------
+    description : Mechanism or Cam
+    options : ReportOptions, optional
+        Go before the wishes of the description.
+    language : "en", "ru" or "uk", optional
+        The language spoken at the moment if left out.
+    name : str
+        The title where the description has none.
+    said : function, optional
+        Called before each chapter with its title, the number done and the number of all.
+
+    Returns
+    -------
+    Report
+        A chapter that cannot be made says why in its place; those with nothing to tell are left out.
+
+    Raises
+    ------
+    InputError
+        The mechanism does not assemble, or the options name what is not there.
+    """
+    with nullcontext() if language is None else speaking(language):
+        study = ReportStudy(description, settled(description, options or ReportOptions(), CHAPTERS))
+        study.assemble()
+        wanted = {key: kind for key, kind in CHAPTERS.items() if study.wants(key)}
+        chapters = tuple(_chapters(wanted, study, said))
+        title = _(description.title) or name or _("Mechanism")
+        subtitle = _("Computed by centrode {version}").format(version=__version__)
+        return Report(title, subtitle, chosen_language(), chapters)
+
+
+def _chapters(wanted: Mapping[str, Kind], study: ReportStudy, said: Said | None) -> Iterator[Chapter]:
+    for done, (key, kind) in enumerate(wanted.items()):
+        if said is not None:
+            said(_(kind.title), done, len(wanted))
+        chapter = _chapter(key, kind, study)
+        if chapter is not None:
+            yield chapter
+
+
+def _chapter(key: str, kind: Kind, study: ReportStudy) -> Chapter | None:
+    """A chapter; with the reason in its place where it cannot be made, or has nothing to tell but was asked for."""
+    try:
+        chapter = kind.make(study)
+    except CentrodeError as failure:
+        return Chapter(key, _(kind.title), missing=str(failure))
+    if chapter is None and study.wishes.chapters is not None:
+        return Chapter(key, _(kind.title), missing=_("the description has nothing for this chapter"))
+    return chapter

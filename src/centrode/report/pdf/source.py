@@ -1,0 +1,218 @@
+"""A report as the source of a typst document; everything a user wrote stands in it as a string."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import singledispatchmethod
+
+from centrode.locale import _
+from centrode.present.equations.typst import quoted
+from centrode.report.blocks import (
+    Block,
+    Chapter,
+    Check,
+    Formula,
+    Items,
+    Moving,
+    Paragraph,
+    Picture,
+    Report,
+    Section,
+    System,
+    Table,
+)
+from centrode.report.marked import parts_of
+from centrode.report.mathematics import checked, pieces_of
+
+TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
+"""Inches that a picture may fill of a page, its caption left out."""
+PAPER_WIDTH = 8.268
+WIDEST = 8
+"""Cells of a column, the longest of them, that its width is measured by."""
+_SIZE = re.compile(
+    rb'<svg[^>]*?\bheight="([\d.]+)pt"[^>]*?\bwidth="([\d.]+)pt"|<svg[^>]*?\bviewBox="0 0 ([\d.]+) ([\d.]+)"'
+)
+
+
+class Source:
+    """The source of a document and the pictures it shows.
+
+    Attributes
+    ----------
+    text : of the main file
+    files : name -> bytes of every picture
+    """
+
+    def __init__(self, report: Report) -> None:
+        self.files: dict[str, bytes] = {}
+        self.text = "\n".join(self._document(report)) + "\n"
+
+    def _document(self, report: Report) -> Iterator[str]:
+        yield '#import "style.typ": *'
+        yield (
+            f"#show: document.with(title: {quoted(report.title)}, subtitle: {quoted(report.subtitle)},"
+            f" language: {quoted(report.language)}, contents: {quoted(_('Contents'))})"
+        )
+        for chapter in report.chapters:
+            yield from self._chapter(chapter)
+
+    def _chapter(self, chapter: Chapter) -> Iterator[str]:
+        yield f"#heading(level: 1, {quoted(chapter.title)})"
+        if chapter.missing:
+            words = _("This chapter could not be made: {reason}").format(reason=chapter.missing)
+            yield f"#missing({quoted(words)})"
+        for section in chapter.sections:
+            yield from self._section(section)
+
+    def _section(self, section: Section) -> Iterator[str]:
+        if section.title:
+            yield f"#heading(level: 2, {quoted(section.title)})"
+        for block in section.blocks:
+            yield self._shown(block)
+
+    @singledispatchmethod
+    def _shown(self, block: Block) -> str:
+        raise TypeError(f"no block of a report: {type(block).__name__}")
+
+    @_shown.register
+    def _paragraph(self, block: Paragraph) -> str:
+        text = f"par({content(block.text)})"
+        return f"#block(sticky: true, {text})" if block.text.rstrip().endswith(":") else f"#{text}"
+
+    @_shown.register
+    def _items(self, block: Items) -> str:
+        kind = "enum" if block.numbered else "list"
+        return f"#{kind}({', '.join(map(content, block.texts))})"
+
+    @_shown.register
+    def _formula(self, block: Formula) -> str:
+        return f"#relations({_relations(block.lines)})"
+
+    @_shown.register
+    def _system(self, block: System) -> str:
+        matrix = _array([_array([_math(entry) for entry in row]) for row in block.matrix])
+        unknowns, right = (_array([_math(one) for one in column]) for column in (block.unknowns, block.right))
+        return f"#system({matrix}, {unknowns}, {right}, {_relations(_one_by_one(block))})"
+
+    @_shown.register
+    def _table(self, block: Table) -> str:
+        numbers = block.numbers or (False,) * len(block.head)
+        columns = [
+            _column(head, [row[i] for row in block.rows], numbers[i]) for i, head in enumerate(block.head)
+        ]
+        rows = [_array([_cell(cell) for cell in row]) for row in block.rows]
+        return f"#data-table({_array(columns)}, {_array(rows)}, {_caption(block.caption)})"
+
+    @_shown.register
+    def _picture(self, block: Picture) -> str:
+        name = f"pictures/{len(self.files) + 1}.svg"
+        self.files[name] = block.svg
+        return f"#picture({quoted(name)}, {_width(block):.3f}in, {_caption(block.caption)})"
+
+    @_shown.register
+    def _moving(self, block: Moving) -> str:
+        return self._picture(replace(block.still, caption=block.caption or block.still.caption))
+
+    @_shown.register
+    def _check(self, block: Check) -> str:
+        return f"#check({'true' if block.holds else 'false'}, {content(block.text)})"
+
+
+def content(marked: str) -> str:
+    """Text with mathematics between dollar signs as content."""
+    parts = [_math(part.text) if part.mathematics else f"#{quoted(part.text)};" for part in parts_of(marked)]
+    return f"[{''.join(parts)}]"
+
+
+def _math(formula: str) -> str:
+    """Mathematics; a blank at both ends would set it apart from its sentence."""
+    return f"${checked(formula).strip()}$"
+
+
+def _cell(text: str) -> str:
+    """A cell of a table: text without mathematics is a string, which typst reads much faster."""
+    parts = parts_of(text)
+    return (
+        content(text) if any(part.mathematics for part in parts) else quoted("".join(p.text for p in parts))
+    )
+
+
+def _caption(text: str) -> str:
+    return content(text) if text else "none"
+
+
+def _array(entries: Sequence[str]) -> str:
+    return f"({', '.join(entries)}{',' if len(entries) == 1 else ''})"
+
+
+def _relations(lines: Sequence[Sequence[str]]) -> str:
+    return _array([_array([_pieces(part) for part in line]) for line in lines])
+
+
+def _pieces(formula: str) -> str:
+    """The pieces of a formula, each with the finer ones that it can be cut into: ((coarse, (fine, ...)), ...)."""
+    found = []
+    for piece in pieces_of(checked(formula)):
+        fine = pieces_of(piece, depth=1)
+        found.append(f"(${piece}$, {_array([f'${one}$' for one in fine])})")
+    return _array(found)
+
+
+def _one_by_one(system: System) -> list[tuple[str, ...]]:
+    """The equations of a system that no page is wide enough for."""
+    lines: list[tuple[str, ...]] = []
+    for row, right in zip(system.matrix, system.right, strict=True):
+        terms = [
+            _term(entry, unknown) for entry, unknown in zip(row, system.unknowns, strict=True) if entry != "0"
+        ]
+        text = " + ".join(terms).replace("+ -", "- ") or "0"
+        lines.append((text, right))
+    return lines
+
+
+def _term(entry: str, unknown: str) -> str:
+    if entry in ("1", "-1"):
+        return f"{entry[:-1]}{unknown}"
+    several = len(pieces_of(entry)) > 1
+    return f"({entry}) {unknown}" if several else f"{entry} {unknown}"
+
+
+def _column(head: str, cells: Sequence[str], number: bool) -> str:
+    """What the width of a column is measured by: its head, the words that may not be cut, its longest cells."""
+    longest = sorted(set(cells), key=lambda cell: (-len(cell), cell))[:WIDEST] or [""]
+    words = _words(head)
+    if not number:
+        found = {word for cell in set(cells) for word in _words(cell)}
+        words += sorted(found, key=lambda word: (-len(word), word))[:WIDEST]
+    fields = {
+        "head": content(head),
+        "words": _array(words or [quoted("")]),
+        "longest": _array([_cell(cell) for cell in longest]),
+        "number": "true" if number else "false",
+    }
+    return f"({', '.join(f'{key}: {value}' for key, value in fields.items())})"
+
+
+def _words(text: str) -> list[str]:
+    """Words of a text, and its formulas, each as content."""
+    found = []
+    for part in parts_of(text):
+        if part.mathematics:
+            found.append(_math(part.text))
+        else:
+            found += [quoted(word) for word in re.split(r"\s+", part.text) if word]
+    return found
+
+
+def _width(picture: Picture) -> float:
+    """Width [in] of a picture, reduced where a page has not the room for it; of one to scale, where paper has not."""
+    if picture.to_scale:
+        return min(picture.width, PAPER_WIDTH)
+    found = _SIZE.search(picture.svg[:2000])
+    if found is None:
+        return min(picture.width, TEXT_WIDTH)
+    height, width, box_width, box_height = (float(one) if one else 0.0 for one in found.groups())
+    slope = (height or box_height) / (width or box_width or 1.0)
+    return min(picture.width, TEXT_WIDTH, TEXT_HEIGHT / slope if slope else TEXT_WIDTH)

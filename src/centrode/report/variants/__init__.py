@@ -1,0 +1,1 @@
+"""Reports of the variants of a table, and the sheet of their answers."""

@@ -1,0 +1,74 @@
+"""What a graph-analytic construction says of vectors, as mathematics: v_B = v_A + v_BA (⊥ BA)."""
+
+from __future__ import annotations
+
+import re
+
+from centrode.present.equations.typst import decimal, quoted, word
+from centrode.report.numbered import in_degrees
+
+GREEK = {"φ": "phi", "ω": "omega", "ε": "epsilon", "μ": "mu"}
+MARKS = {"ⁿ": "n", "ᵗ": "t", "ᵏ": "k", "ʳ": "r"}
+SIGNS = {
+    "⊥": "perp", "∥": "parallel", "−": "-", "·": "dot.op", ":": ":", "+": "+", "-": "-", "=": "=", "(": "(", ")": ")",
+    "/": "slash", "|": "|", ",": ",", "△": "triangle", "∼": "tilde.op",
+}  # fmt: skip
+TOKEN = re.compile(
+    r"(?P<letter>[vaωεμP])(?P<mark>[ⁿᵗᵏʳ]?)_(?P<name>\w[\w′’'-]*)"
+    r"|(?P<number>\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?P<degree>°?)(?!\w)"
+    r"|(?P<sine>\bsin\b)"
+    r"|(?P<word>\w[\w′’'-]*)"
+    r"|(?P<sign>\S)"
+    r"|(?P<space>\s+)"
+)
+RATE = re.compile(r"(?<!\w)([ωε])_(\w[\w′’'-]*)")
+SUM = re.compile(r"[+−]")
+BARS = re.compile(r"\|([^|]+)\|")
+
+
+def symbol(letter: str, name: str, mark: str = "", vector: bool = False) -> str:
+    """A velocity, an acceleration or a rate with what it belongs to below, as mathematics."""
+    base = GREEK.get(letter, letter)
+    base = f"arrow({base})" if vector else base
+    below = f"_({word(name)})" if name else ""
+    return f"{base}{below}^({mark})" if mark else f"{base}{below}"
+
+
+def rates_in(text: str) -> str:
+    """Marked text with the rates of links in it as mathematics: ω_OC."""
+    return RATE.sub(lambda found: f"${symbol(found[1], found[2])}$", text)
+
+
+def vector_parts(text: str) -> tuple[str, ...]:
+    """The parts of a vector equation, or of a relation between lengths, for a `Formula`."""
+    return tuple(mathematics(part) for part in text.split(" = "))
+
+
+def mathematics(text: str) -> str:
+    """One side of such an equation; what stands alone between bars is a scalar, a sum is one of vectors."""
+    vectors = "|" not in text
+    pieces = []
+    position = 0
+    for found in BARS.finditer(text):
+        pieces.append(_tokens(text[position : found.start()], vectors))
+        pieces.append(f"abs({_tokens(found[1], vectors=bool(SUM.search(found[1])))})")
+        position = found.end()
+    return " ".join(piece for piece in [*pieces, _tokens(text[position:], vectors)] if piece)
+
+
+def _tokens(text: str, vectors: bool) -> str:
+    return " ".join(_token(found, vectors) for found in TOKEN.finditer(text) if not found["space"])
+
+
+def _token(found: re.Match[str], vectors: bool) -> str:
+    if found["letter"]:
+        vector = vectors and found["letter"] in "va"
+        return symbol(found["letter"], found["name"], MARKS.get(found["mark"], ""), vector)
+    if found["number"]:
+        number = decimal(found["number"])
+        return in_degrees(number) if found["degree"] else number
+    if found["sine"]:
+        return "sin"
+    if found["word"]:
+        return word(found["word"])
+    return SIGNS.get(found["sign"], quoted(found["sign"]))

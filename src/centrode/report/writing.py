@@ -1,0 +1,124 @@
+"""Reports as files: each is there whole, or not at all."""
+
+from __future__ import annotations
+
+import functools
+import os
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from importlib.util import find_spec
+from pathlib import Path
+
+import lazy_loader
+
+from centrode.errors import InputError
+from centrode.locale import _, speaking
+from centrode.model.problems import nearest, shown
+from centrode.report.blocks import Report
+
+# What documents need is an extra: only where they are asked for.
+_html, _pdf = (
+    functools.partial(lazy_loader.load, f"centrode.report.{name}", suppress_warning=True)
+    for name in ("html.page", "pdf.document")
+)
+
+FORMATS: Mapping[str, Callable[[Report], bytes]] = {
+    "html": lambda report: _html().html_page(report),
+    "pdf": lambda report: _pdf().pdf_document(report),
+}
+"""What makes a document of a report, by the ending of its file."""
+
+
+def write_report(
+    report: Report,
+    folder: str | Path,
+    formats: Sequence[str] = tuple(FORMATS),
+    name: str = "report",
+    said: Callable[[str], None] | None = None,
+) -> list[Path]:
+    """Write a report as documents NAME.html and NAME.pdf into a folder; the same report gives the same bytes.
+
+    Parameters
+    ----------
+    report : Report
+    folder : path
+        Is made where it is missing.
+    formats : "html", "pdf"
+    name : str
+        Of the files.
+    said : function, optional
+        Called with the name of each file before it is made.
+
+    Returns
+    -------
+    list of Path
+        The files written. They appear when all are made: one that fails leaves none behind.
+
+    Raises
+    ------
+    InputError
+        An unknown format, a missing library, or a folder that cannot be written.
+    """
+    check_formats(formats)
+    documents: dict[str, bytes] = {}
+    with speaking(report.language):
+        for kind in dict.fromkeys(formats):
+            if said is not None:
+                said(f"{name}.{kind}")
+            documents[f"{name}.{kind}"] = document(report, kind)
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for file, content in documents.items():
+            _write_whole(folder / file, content)
+    except OSError as refusal:
+        reason = refusal.strerror or str(refusal)
+        what = _("cannot be written: {reason}").format(reason=reason)
+        raise InputError(str(folder), what, _("name another place")) from refusal
+    return [folder / file for file in documents]
+
+
+def check_formats(formats: Sequence[str]) -> None:
+    """InputError for a format that there is not, for none, and where nothing can set documents."""
+    if not formats:
+        raise InputError("format", _("no format is named"), nearest("", FORMATS))
+    for kind in formats:
+        if kind not in FORMATS:
+            what = _("{kind} is no format of a report").format(kind=shown(kind))
+            raise InputError("format", what, nearest(kind, FORMATS))
+    if find_spec("typst") is None:
+        raise lacking("typst")
+
+
+def lacking(library: str) -> InputError:
+    """The failure of a library that reports need and that is not installed."""
+    what = _("reports need {library}, which is not installed").format(library=library)
+    return InputError("", what, _('install what they need with pip install "centrode[documents,figures]"'))
+
+
+def document(report: Report, kind: str) -> bytes:
+    """A report as the bytes of a document; InputError where a library is missing."""
+    try:
+        return FORMATS[kind](report)
+    except ModuleNotFoundError as missing:
+        library = (missing.name or "").partition(".")[0]
+        if library == "centrode":
+            raise
+        raise lacking(library) from missing
+
+
+def _write_whole(file: Path, content: bytes) -> None:
+    """Write a file so that it is there whole or not at all, with the permissions of any new file."""
+    handle, draft = tempfile.mkstemp(prefix=".centrode-", dir=file.parent)
+    try:
+        with open(handle, "wb") as stream:
+            stream.write(content)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(draft, 0o666 & ~mask)
+        os.replace(draft, file)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(draft)
+        raise

@@ -1,0 +1,105 @@
+"""Figures inside of a page: nothing acts or loads, names do not meet, the picture stays what it was."""
+
+from __future__ import annotations
+
+import io
+import re
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+from centrode.errors import InputError
+from centrode.present.saving import METADATA
+from centrode.present.style import house_style
+from centrode.report.html.drawings import Drawings
+
+HOSTILE = b"""<?xml version="1.0"?><svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"
+ viewBox="0 0 10 10" onload="alert(1)"><script>alert(1)</script><style>@import "http://example.org/a.css";</style>
+ <a href="http://example.org"><path id="z" d="M0 0"/></a><foreignObject><p>x</p></foreignObject>
+ <g onclick="alert(1)"><path id="q" d="M 0 0 L 1 1" style="fill: url(http://example.org/b)"/></g>
+ <use xlink:href="http://example.org/c#d"/><image href="https://example.org/e.png" width="1" height="1"/>
+ <image href="data:image/svg+xml;base64,AAAA"/><image href="data:image/png;base64,AAAA"/>
+ <animate attributeName="href" values="javascript:alert(1)"/><text>&lt;script&gt;</text></svg>"""
+REFERENCE = re.compile(r'href="#([^"]+)"|url\(#([^)]+)\)')
+NAME = re.compile(r' id="([^"]+)"')
+
+
+def drawn(wide: float = 3.0) -> bytes:
+    """A figure with letters, markers and a clip."""
+    with house_style():
+        figure = Figure(figsize=(wide, 2.0))
+        axes = figure.subplots()
+        places = np.linspace(0.0, 1.0, 5)
+        axes.plot(places, places**2, "o-")
+        axes.set_title("title $\\varphi_1$")
+        stream = io.BytesIO()
+        FigureCanvasSVG(figure).print_svg(stream, metadata=METADATA["svg"])
+    return stream.getvalue()
+
+
+def test_nothing_acts_or_loads() -> None:
+    drawings = Drawings()
+    element = drawings.embedded(HOSTILE, 'a "label" <b>')
+    for word in (
+        "script>",
+        "alert",
+        "onload",
+        "onclick",
+        "example",
+        "import",
+        "foreignObject",
+        "svg+xml",
+        "javascript",
+    ):
+        assert word not in element.replace("&lt;script&gt;", ""), word
+    root = Xml.fromstring(element)
+    assert root.get("aria-label") == 'a "label" <b>'
+    assert sum("href" in one.attrib for one in root.iter("image")) == 1
+
+
+def test_names_do_not_meet() -> None:
+    drawings = Drawings()
+    page = "".join(drawings.embedded(drawn(), str(k)) for k in range(3)) + drawings.shared()
+    names = NAME.findall(page)
+    wanted = {first or second for first, second in REFERENCE.findall(page)}
+    assert len(names) == len(set(names))
+    assert wanted == set(names)  # nothing refers to nothing, nothing has a name in vain
+    assert len(wanted) > 10
+
+
+def test_letters_are_drawn_once() -> None:
+    once, thrice = Drawings(), Drawings()
+    once.embedded(drawn(), "")
+    for k in range(3):
+        thrice.embedded(drawn(), str(k))
+    assert thrice.shared() == once.shared()
+
+
+def test_the_picture_is_what_it_was() -> None:
+    """Every number of every line is the one that was drawn, to half a hundredth of a point."""
+    before = Xml.fromstring(drawn())
+    after = Xml.fromstring(Drawings().embedded(drawn(), ""))
+    lines = [
+        one.get("d", "")
+        for one in before.iter("{http://www.w3.org/2000/svg}path")
+        if "clip-path" in one.attrib
+    ]
+    found = [one.get("d", "") for one in after.iter("path") if "clip-path" in one.attrib]
+    assert len(lines) == len(found) > 3
+    for line, same in zip(lines, found, strict=True):
+        numbers, kept = (np.array(re.findall(r"-?[\d.]+", one), dtype=float) for one in (line, same))
+        assert re.sub(r"[-\d.\s]", "", line) == re.sub(r"[-\d.\s]", "", same)
+        assert np.abs(numbers - kept).max() <= 0.005 * (1 + 1e-9)
+
+
+def test_same_bytes() -> None:
+    assert Drawings().embedded(drawn(), "x") == Drawings().embedded(drawn(), "x")
+
+
+@pytest.mark.parametrize("wrong", [b"", b"not", b"<svg", b"<p>text</p>", b"\xff\xfe"])
+def test_what_is_no_figure_is_refused(wrong: bytes) -> None:
+    with pytest.raises(InputError, match="a figure is no SVG"):
+        Drawings().embedded(wrong, "")

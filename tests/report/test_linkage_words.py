@@ -1,0 +1,198 @@
+"""Vector equations, sentences and drawings of linkages in reports."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+import centrode as ct
+from centrode.locale import speaking
+from centrode.model.mechanism import Display
+from centrode.report.blocks import Chapter, Check, Formula, Moving, Paragraph, Picture, Table
+from centrode.report.making import report
+from centrode.report.mathematics import checked
+from centrode.report.numbers import Numbers
+from centrode.report.options import ReportOptions
+from centrode.report.pdf.document import pdf_document
+from centrode.report.pdf.source import Source
+from centrode.report.rows import small, told
+from centrode.report.scaled import drawn_to_scale, scale_of
+from centrode.report.vectors import mathematics, rates_in, symbol, vector_parts
+
+NUMBERS = Numbers(Display(), 5)
+LINKAGES = (
+    "data", "motion", "words", "structure", "equations", "derivation", "tables", "plots", "positions", "graphic",
+    "centres", "integration", "rotatability",
+)  # fmt: skip
+
+
+def made(key: str, mechanism: ct.Mechanism, **wishes: object) -> Chapter:
+    (found,) = report(mechanism, ReportOptions(chapters=(key,), **wishes), language="en").chapters  # type: ignore[arg-type]
+    assert not found.missing
+    return found
+
+
+def blocks(found: Chapter, kind: type) -> list:  # type: ignore[type-arg]
+    return [block for section in found.sections for block in section.blocks if isinstance(block, kind)]
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("v_C = vʳ_C (∥ C)", ("arrow(v)_(C)", "arrow(v)_(C)^(r) ( parallel C )")),
+        ("|v_A| = sin 61.352°", ("abs(v_(A))", "sin 61.352 degree")),
+        ("|v_E − v_C| = 2", ("abs(arrow(v)_(E) - arrow(v)_(C))", "2")),
+        ("ω_2 = -0.5·ω_1", ("omega_(2)", "- 0.5 dot.op omega_(1)")),
+        ("△s2ab ∼ △S2AB", ('triangle "s2ab" tilde.op triangle "S2AB"',)),
+    ],
+)
+def test_vector_equations(text: str, parts: tuple[str, ...]) -> None:
+    assert vector_parts(text) == parts
+
+
+def test_rates_in_sentences() -> None:
+    assert rates_in("ω_OC = 0, ε_AB") == '$omega_(italic("OC"))$ = 0, $epsilon_(italic("AB"))$'
+
+
+def test_nothing_in_a_name_is_code() -> None:
+    for name in ("#panic(1)", "a$b", "B'", "точка 1", '"', "\\", "`x`", "@ref", "//", "_", "a/b"):
+        checked(symbol("v", name))
+        checked(mathematics(f"v_{name} = v_A (⊥ {name})"))
+
+
+def test_sentences_take_the_report_s_digits_and_marks() -> None:
+    text = (
+        "least 19.8661835 deg at OA = 437.483983 deg, (1.23456789, -0.5) m, 6.2e-11 rad, links.AC.angle, v3"
+    )
+    assert told(text, NUMBERS) == (
+        "least 19.866° at OA = 437.48°, (1.2346; −0.5) m, 6.2·10⁻¹¹ rad, links.AC.angle, v3"
+    )
+    with speaking("uk"):
+        assert told("1.5 m", NUMBERS) == "1,5 m" and small(1.26e-9) == "1,3·10⁻⁹" and small(0.0) == "0"
+    assert told("sin(phi3 - phi12) = 0", NUMBERS) == "$sin (phi_(3) - phi_(12)) = 0$"
+    assert told("turns 10 deg/s", NUMBERS) == "turns 10 °/s"
+    assert told("a $ b", NUMBERS) == r"a \$ b"
+    assert told("123456.789 N", NUMBERS) == "123457 N"
+
+
+def test_what_stops_a_locking_mechanism_and_its_repair() -> None:
+    found = made("rotatability", ct.example("slider-between-cranks-locked"))
+    cells = [cell for table in blocks(found, Table) for row in table.rows for cell in row]
+    assert any("$sin (phi_(3) - phi_(4)) = 0$" in cell for cell in cells)
+    assert any("OA = 1.7999 rad (103.13°)" in cell for cell in cells)
+    assert [section.title for section in found.sections] == ["", "Transmission angles", "Repair"]
+    assert all(check.holds for check in blocks(found, Check)) and blocks(found, Check)
+    turning = made("rotatability", ct.example("six-bar-press"))
+    assert [section.title for section in turning.sections] == ["", "Transmission angles"]
+
+
+def test_the_drawing_agrees_with_the_closed_forms_and_says_how_far() -> None:
+    found = made("graphic", ct.example("six-bar-press"))
+    assert all(check.holds for check in blocks(found, Check)) and len(blocks(found, Check)) == 1
+    lines = [line for block in blocks(found, Formula) for line in block.lines]
+    assert ("arrow(v)_(H)", 'arrow(v)_(D) + arrow(v)_(italic("HD")) ( perp italic("HD") )') in lines
+    table = blocks(found, Table)[-1]
+    drawn, integrated, closed = (table.head.index(word) for word in ("drawn", "integrated", "closed form"))
+    rates = [row for row in table.rows if "omega" in row[0] or "v_" in row[0]]
+    assert rates and all(row[drawn] == row[integrated] == row[closed] for row in rates)
+    assert all(row[drawn] == row[closed] and row[integrated] == "—" for row in table.rows if row not in rates)
+
+
+def test_an_instant_that_is_not_reached_is_said_to_be_so() -> None:
+    mechanism = ct.example("slider-between-cranks-locked")
+    for key in ("graphic", "centres", "tables"):
+        found = made(key, mechanism, instants=(3.0,))
+        section = next(section for section in found.sections if section.title.startswith("OA = 3"))
+        (only,) = section.blocks
+        assert isinstance(only, Paragraph) and "open" in only.text
+
+
+def test_a_point_of_the_frame_has_no_velocity_to_be_told() -> None:
+    with pytest.raises(ct.InputError, match='point "O" does not move'):
+        report(ct.example("crank-rocker"), ReportOptions(points=("B", "O")), language="en")
+
+
+def test_drawings_keep_their_scale() -> None:
+    mechanism = ct.example("slider-between-cranks")
+    figure = ct.plan_figure(mechanism, ct.plan_of_positions(mechanism))
+    written = [text.get_text() for axes in figure.axes for text in axes.texts]
+    scale = float(next(re.search(r"= ([\d.]+) m", text)[1] for text in written if "mu" in text))  # type: ignore[index]
+    assert scale_of(figure) == pytest.approx(scale, rel=1e-12)
+    shown = drawn_to_scale(figure, "Plan", 160.0, 134.0)
+    assert shown.to_scale and 3.0 < shown.width <= 160.0 / 25.4
+    width = float(re.search(rb'width="([\d.]+)pt"', shown.svg)[1])  # type: ignore[index]
+    assert width == pytest.approx(72 * shown.width, abs=1e-5)
+    # of what stood beside the drawing nothing is left
+    assert not [text for axes in figure.axes[:1] for text in axes.texts if text.get_position()[0] >= 160.0]
+
+
+def test_pictures_repeat() -> None:
+    options = ReportOptions(chapters=("positions", "graphic"))
+    one, other = (report(ct.example("crank-rocker"), options, language="en") for _time in range(2))
+    for first, second in zip(one.chapters, other.chapters, strict=True):
+        assert [p.svg for p in blocks(first, Picture)] == [p.svg for p in blocks(second, Picture)]
+
+
+def test_the_motion_comes_after_the_data() -> None:
+    made_of = report(ct.example("crank-rocker"), ReportOptions(chapters=("motion", "data")), language="en")
+    assert [chapter.name for chapter in made_of.chapters] == ["data", "motion"]
+    (moving,) = blocks(made_of.chapters[1], Moving)
+    assert moving.places["B"].shape[1] == 2 and np.isfinite(moving.places["B"]).all()
+
+
+NAMES = """
+title = '$x$ #panic(1) <script> \\\\ "q" `c` @r [b] *s* _u_ // /* 50 %'
+[frame.points]
+"точка O" = [0, 0]
+"D_1'" = [4, 0]
+[links."a b-c"]
+points = ["точка O", "A x"]
+length = 1
+[links."_u_ it"]
+points = { "A x" = [0, 0], "B-1" = [3.5, 0], "P’" = [1, 1] }
+[links."rocker _"]
+points = ["D_1'", "B-1"]
+length = 3
+[[drives]]
+link = "a b-c"
+start = 0.3
+law = "2*t"
+[assembly]
+sides = { "B-1" = "left" }
+[study]
+start = 0
+stop = 3
+samples = 9
+instants = [0.5]
+[report]
+points = ["B-1", "P’"]
+"""
+
+
+def test_names_of_all_kinds_are_shown_as_they_are() -> None:
+    mechanism = ct.parse_mechanism(NAMES)
+    drawn = set(LINKAGES) - {"plots"}
+    for language, chapters in (("en", drawn), ("ru", {"data", "words", "derivation", "tables"})):
+        found = report(mechanism, ReportOptions(chapters=tuple(chapters)), language=language)
+        assert not [chapter.missing for chapter in found.chapters if chapter.missing]
+        assert {chapter.name for chapter in found.chapters} == chapters
+        Source(found)  # every formula is looked at for code
+    document = pdf_document(
+        report(mechanism, ReportOptions(chapters=("data", "derivation", "graphic")), language="en")
+    )
+    assert document.startswith(b"%PDF")
+
+
+@pytest.mark.parametrize(
+    ("said", "told_as"),
+    [
+        ("sin(phi3 - phi4) = 0", "$sin (phi_(3) - phi_(4)) = 0$"),
+        ("sin(phi1 - psi_KA + 0.220829) = 0", '$sin (phi_(1) - psi_(italic("KA")) + "0,220829") = 0$'),
+        ("cos(-phi2 - 2 phi10) = 0", "$cos (-phi_(2) - 2 phi_(10)) = 0$"),
+    ],
+)
+def test_conditions_are_mathematics(said: str, told_as: str) -> None:
+    with speaking("ru"):
+        assert told(said, Numbers(Display())) == told_as

@@ -1,0 +1,172 @@
+"""Reports from descriptions: which chapters, in what order, by whose wishes, and what is told where one fails."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import centrode as ct
+from centrode.errors import InputError, MotionError
+from centrode.locale import choose_language, chosen_language
+from centrode.report import making
+from centrode.report.blocks import Chapter
+from centrode.report.chapters import CHAPTERS, Kind
+from centrode.report.options import ReportOptions, settled
+from centrode.report.study import ReportStudy
+
+FOUR_BAR = """
+title = "$x$ #panic(1)"
+[frame.points]
+O = [0, 0]
+D = [4, 0]
+[links.OA]
+length = 1
+[links.AB]
+length = 3.5
+[links.DB]
+length = 3
+[[drives]]
+link = "OA"
+start = 1
+speed = 1
+[assembly]
+sides = { B = "left" }
+[study]
+instants = [2]
+[report]
+chapters = ["structure", "data"]
+instants = ["1 rad", "90 deg"]
+points = ["B"]
+digits = 7
+"""
+
+
+def four_bar() -> ct.Mechanism:
+    return ct.parse_mechanism(FOUR_BAR)
+
+
+def test_a_description_has_wishes() -> None:
+    mechanism = four_bar()
+    assert ct.parse_mechanism(ct.mechanism_text(mechanism)) == mechanism
+    wishes = settled(mechanism, ReportOptions(), CHAPTERS)
+    assert wishes.chapters == ("structure", "data")
+    assert wishes.instants == pytest.approx((1.0, 1.5707963267948966), rel=1e-15)
+    assert (wishes.points, wishes.digits) == (("B",), 7)
+
+
+def test_the_caller_s_wishes_go_first_and_the_study_s_last() -> None:
+    asked = ReportOptions(("data",), (0.5,), ("A",), 3)
+    assert settled(four_bar(), asked, CHAPTERS) == making.settled(four_bar(), asked, CHAPTERS)
+    wishes = settled(four_bar(), asked, CHAPTERS)
+    assert (wishes.chapters, wishes.instants, wishes.points, wishes.digits) == (("data",), (0.5,), ("A",), 3)
+    bare = ct.parse_mechanism(FOUR_BAR.partition("[report]")[0])
+    wishes = settled(bare, ReportOptions(), CHAPTERS)
+    assert (wishes.chapters, wishes.instants, wishes.points, wishes.digits) == (None, (2.0,), None, 5)
+
+
+def test_chapters_stand_in_the_order_of_the_document() -> None:
+    made = ct.report(four_bar())
+    assert [chapter.name for chapter in made.chapters] == ["data", "structure"]
+    assert made.title == "$x$ #panic(1)"
+
+
+def test_the_title_of_a_nameless_one() -> None:
+    mechanism = ct.parse_mechanism(FOUR_BAR.replace('title = "$x$ #panic(1)"', ""))
+    assert ct.report(mechanism, name="four-bar").title == "four-bar"
+
+
+def test_a_report_speaks_its_language_and_leaves_the_other_alone() -> None:
+    choose_language("en")
+    made = ct.report(ct.example("slider-between-cranks"), ReportOptions(("data",)), language="uk")
+    assert made.language == "uk"
+    assert made.title == "Повзун між двома кривошипами"
+    assert chosen_language() == "en"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (ReportOptions(chapters=("date",)), 'there is no chapter "date"; did you mean "data"'),
+        (ReportOptions(points=("Q",)), 'unknown point "Q"'),
+        (ReportOptions(digits=1), "numbers have 2 to 12 digits, 1 were asked for"),
+        (ReportOptions(digits=99), "numbers have 2 to 12 digits"),
+    ],
+)
+def test_wrong_wishes(options: ReportOptions, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        ct.report(four_bar(), options)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("digits = 1", r"\[report\]: digits must lie between 2 and 12, got 1"),
+        ("digits = 5.0", "must be a whole number"),
+        ("digits = true", "must be a whole number"),
+        ('points = ["Z"]', 'unknown point "Z"'),
+        ('points = "A"', "expected a list"),
+        ('chapters = [""]', "is not a name"),
+        ('instants = ["1 kg"]', "report"),
+        ("chapter = []", 'unknown key "chapter"; did you mean "chapters"'),
+    ],
+)
+def test_wrong_wishes_of_a_description(line: str, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        ct.parse_mechanism(FOUR_BAR.partition("[report]")[0] + f"[report]\n{line}\n")
+
+
+def test_a_mechanism_that_does_not_assemble_has_no_report() -> None:
+    with pytest.raises(InputError):
+        ct.report(ct.parse_mechanism(FOUR_BAR.replace("length = 3.5", "length = 0.5")))
+
+
+def failing(study: ReportStudy) -> Chapter | None:
+    raise MotionError("here", "it locks", "turn it back")
+
+
+def silent(study: ReportStudy) -> Chapter | None:
+    return None
+
+
+def test_a_chapter_that_cannot_be_made_says_why_and_the_rest_is_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    kinds = {"structure": Kind("Bad", failing), "words": Kind("Quiet", silent), "data": CHAPTERS["data"]}
+    monkeypatch.setattr(making, "CHAPTERS", kinds)
+    said: list[tuple[str, int, int]] = []
+    asked = ReportOptions(chapters=("structure", "data"))
+    made = ct.report(four_bar(), asked, said=lambda *told: said.append(told))
+    assert [(chapter.title, bool(chapter.missing)) for chapter in made.chapters] == [
+        ("Bad", True),
+        ("Data", False),
+    ]
+    assert made.chapters[0].missing == "here: it locks; turn it back"
+    assert said == [("Bad", 0, 2), ("Data", 1, 2)]
+    bare = ct.parse_mechanism(FOUR_BAR.partition("[report]")[0])
+    assert [chapter.name for chapter in ct.report(bare).chapters] == ["structure", "data"]
+    asked = ReportOptions(chapters=("words",))
+    assert ct.report(bare, asked).chapters[0].missing == "the description has nothing for this chapter"
+
+
+def test_what_is_computed_is_computed_once() -> None:
+    study = ReportStudy(four_bar(), settled(four_bar(), ReportOptions(), CHAPTERS))
+    assert study.motion is study.motion
+    assert study.check is study.check
+    calls: list[int] = []
+
+    def fails() -> int:
+        calls.append(1)
+        raise MotionError("", "no")
+
+    for _attempt in range(2):
+        with pytest.raises(MotionError):
+            study.once("fails", fails)
+    assert calls == [1]
+
+
+def test_every_chapter_is_told() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "report.md").read_text(encoding="utf-8")
+    told = re.findall(r"^\| `([\w-]+)` \| ", page.partition("## Chapters")[2], re.MULTILINE)
+    assert told == list(CHAPTERS)

@@ -1,0 +1,66 @@
+"""The mathematical font of pages: it lays out mathematics, and has every letter that formulas use."""
+
+from __future__ import annotations
+
+import unicodedata
+from pathlib import Path
+from xml.etree import ElementTree as Xml
+
+import pytest
+from fontTools.ttLib import TTFont
+
+import centrode as ct
+from centrode.locale import speaking
+from centrode.present.equations.page import Relation, sections
+from centrode.present.equations.typst import TypstSpelling
+from centrode.report.html.mathematics import formulas_of
+from centrode.report.html.page import FONT, HERE
+
+EXAMPLES = ["six-bar-press", "spherical-crank-rocker", "third-class-triad"]
+
+
+@pytest.fixture(scope="module")
+def font() -> TTFont:
+    pytest.importorskip("brotli", reason="reading the font needs brotli")
+    return TTFont(Path(HERE) / FONT)
+
+
+def test_it_is_a_mathematical_font(font: TTFont) -> None:
+    assert font["MATH"].table.MathConstants is not None
+    grows = font["MATH"].table.MathVariants.VertGlyphCoverage.glyphs
+    assert {font.getBestCmap()[ord(sign)] for sign in "()[]|√"} <= set(grows)
+
+
+def test_its_licence_stands_beside_it(font: TTFont) -> None:
+    licence = (Path(HERE) / "OFL.txt").read_text(encoding="utf-8")
+    assert "SIL OPEN FONT LICENSE" in licence
+    assert font["name"].getDebugName(0) in licence
+
+
+@pytest.mark.parametrize("language", ["en", "ru", "uk"])
+def test_it_has_every_letter_of_names_and_words(font: TTFont, language: str) -> None:
+    alphabets = {
+        "en": "abcdefghijklmnopqrstuvwxyz",
+        "ru": "абвгдеёжзийклмнопрстуфхцчшщъыьэюя",
+        "uk": "ґєіїщ’",
+    }
+    known = font.getBestCmap()
+    missing = {one for one in alphabets[language] + alphabets[language].upper() if ord(one) not in known}
+    assert not missing
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("language", ["en", "uk"])
+def test_it_has_every_letter_of_formulas(font: TTFont, name: str, language: str) -> None:
+    known = font.getBestCmap()
+    with speaking(language):
+        page = sections(ct.equations(ct.example(name)), TypstSpelling(), ())
+        relations = [one for part in page for one in part.entries if isinstance(one, Relation)]
+        spelled = [part for one in relations for part in one.parts]
+        formulas = formulas_of(spelled)
+    text = "".join("".join(Xml.fromstring(formulas.displayed(one)).itertext()) for one in spelled)
+    missing = {
+        one for one in text if ord(one) not in known and not unicodedata.category(one).startswith(("Z", "C"))
+    }
+    assert len(text) > 50
+    assert not missing

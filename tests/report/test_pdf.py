@@ -1,0 +1,100 @@
+"""Reports as PDF: nothing runs off a page, nothing a user wrote is obeyed, the bytes repeat."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from centrode.report.blocks import Chapter, Formula, Paragraph, Report, Section
+from centrode.report.pdf.document import pdf_document
+from centrode.report.pdf.source import Source
+
+from .made import HOSTILE, report
+
+WIDTH, HEIGHT, MARGIN = 595.28, 841.89, 56.69
+BOX = re.compile(r'<word xMin="([-\d.]+)" yMin="([-\d.]+)" xMax="([-\d.]+)" yMax="([-\d.]+)">([^<]*)<')
+SLACK = 4.0
+"""Points that punctuation at the end of a line hangs into the margin: less than half a letter."""
+
+reads_pdf = pytest.mark.skipif(
+    shutil.which("pdftotext") is None, reason="pdftotext (poppler) is not installed"
+)
+
+
+@pytest.fixture(scope="module")
+def document(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("pdf") / "report.pdf"
+    file.write_bytes(pdf_document(report()))
+    return file
+
+
+def text_of(file: Path, *options: str) -> str:
+    done = subprocess.run(["pdftotext", *options, str(file), "-"], capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+@reads_pdf
+def test_what_users_wrote_is_shown_as_it_is(document: Path) -> None:
+    told = re.sub(r"\s+", "", text_of(document, "-raw"))
+    wanted = re.sub(r"\s+", "", HOSTILE)
+    # title, contents twice, headings, subtitle, reason: whole where no line was hyphenated
+    assert told.count(wanted) >= 5
+
+
+@reads_pdf
+def test_nothing_runs_off_the_page(document: Path) -> None:
+    boxes = [(*map(float, found[:4]), found[4]) for found in BOX.findall(text_of(document, "-bbox"))]
+    assert len(boxes) > 1000
+    for left, top, right, bottom, word in boxes:
+        assert left >= MARGIN - SLACK, word
+        assert right <= WIDTH - MARGIN + SLACK, word
+        assert top >= 0, word
+        assert bottom <= HEIGHT, word
+
+
+@reads_pdf
+def test_heads_of_tables_are_repeated_and_columns_shared_out(document: Path) -> None:
+    pages = text_of(document, "-layout").split("\f")
+    parts = [page for page in pages if "123.4567" in page]
+    assert len(parts) > 1
+    assert all(re.search(r"𝑥0|x0|𝑥\s*0", page) for page in parts)  # the first column leads every part
+
+
+@reads_pdf
+@pytest.mark.parametrize(("language", "word"), [("ru", "механизм"), ("uk", "механізм")])
+def test_text_can_be_searched(tmp_path: Path, language: str, word: str) -> None:
+    chapter = Chapter("a", word.capitalize(), (Section("", (Paragraph(f"Це {word}."),)),))
+    (tmp_path / "a.pdf").write_bytes(pdf_document(Report(word, "", language, (chapter,))))
+    assert word in text_of(tmp_path / "a.pdf")
+    assert "Таблица" not in text_of(tmp_path / "a.pdf")
+
+
+def test_the_bytes_repeat_in_another_process() -> None:
+    program = (
+        "import sys; sys.path.insert(0, sys.argv[1])\n"
+        "from report.made import report\n"
+        "from centrode.report.pdf.document import pdf_document\n"
+        "sys.stdout.buffer.write(pdf_document(report()))\n"
+    )
+    tests = str(Path(__file__).parents[1])
+    done = subprocess.run([sys.executable, "-c", program, tests], capture_output=True, check=True)
+    assert done.stdout == pdf_document(report())
+
+
+def test_code_in_a_formula_is_a_fault() -> None:
+    chapter = Chapter("a", "A", (Section("", (Formula((("x", '#read("style.typ")'),)),)),))
+    with pytest.raises(ValueError, match="not a formula"):
+        Source(Report("", "", "en", (chapter,)))
+
+
+def test_every_string_of_the_source_is_closed() -> None:
+    source = Source(report()).text
+    left = re.sub(r'"(?:[^"\\]|\\.)*"', "", source)
+    assert "panic" not in left
+    assert "script" not in left
+    assert '"' not in left

@@ -1,0 +1,114 @@
+"""Reports of variants: files, the sheet of answers beside the motion, going on after an interruption, refusals."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import centrode as ct
+from centrode.errors import InputError
+from centrode.report.blocks import Paragraph, Report, Table
+from centrode.report.variants import writing
+from centrode.report.variants.sheet import answer_sheet
+from centrode.report.variants.writing import VariantReport
+from centrode.study.variants.tables import read_variants
+
+ROWS = [
+    {"variant": "first", "l2": 1.0, "l3": 1.2},
+    {"variant": "none", "l2": -1.0, "l3": 1.2},
+]
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reports of one chapter: what variants add to a report is tested here."""
+    whole = writing.report
+
+    def short(mechanism: ct.Mechanism, options: ct.ReportOptions, **more: object) -> Report:
+        return whole(mechanism, ct.ReportOptions(chapters=("structure",)), **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(writing, "report", short)
+
+
+def test_each_variant_has_its_report_and_the_teacher_the_answers(quick: None, tmp_path: Path) -> None:
+    topology = ct.example("slider-between-cranks")
+    rows = ct.write_variant_reports(topology, ROWS, tmp_path, formats=("html",))
+    assert [row.status for row in rows] == ["ok", "refused"]
+    assert (tmp_path / "answers.html").is_file() and not (tmp_path / "answers.pdf").exists()
+    folder = tmp_path / "variant-first"
+    assert {"report.html", "answers.json"} <= {file.name for file in folder.iterdir()}
+    assert not (tmp_path / "variant-none" / "report.html").exists()
+    told = json.loads((folder / "answers.json").read_text(encoding="utf-8"))
+    mechanism = read_variants(topology, ROWS[:1])[0].of(topology)
+    at = mechanism.study.instants
+    motion = ct.motion(mechanism, at=at)
+    assert len(told["instants"]) == len(at)
+    for k, instant in enumerate(told["instants"]):
+        for link, (angle, rate, _bend) in instant["links"].items():
+            assert angle == float(motion["angle"].sel(link=link)[k])
+            assert rate == float(motion["angular_velocity"].sel(link=link)[k])
+
+
+def test_what_is_finished_is_not_made_again(
+    quick: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    topology = ct.example("slider-between-cranks")
+    ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
+    before = (tmp_path / "variant-first" / "report.html").read_bytes()
+    sheet = (tmp_path / "answers.html").read_bytes()
+
+    def never(*_arguments: object, **_more: object) -> Report:
+        raise AssertionError("made again")
+
+    monkeypatch.setattr(writing, "report", never)
+    ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="en")
+    assert (tmp_path / "variant-first" / "report.html").read_bytes() == before
+    assert (tmp_path / "answers.html").read_bytes() == sheet
+    rows = ct.write_variant_reports(topology, ROWS[:1], tmp_path, formats=("html",), language="ru")
+    assert [row.status for row in rows] == ["fault"]  # another language is another report: it was to be made
+
+
+def test_the_sheet_tells_every_variant() -> None:
+    topology = ct.example("slider-between-cranks")
+    table = read_variants(topology, [{"variant": "a", "l2": 1.0}, {"variant": "$b$", "l2": 1.5}])
+    answers = {
+        name: {
+            "cause": "", "group": "", "formula": "", "mobility": 1, "turns_fully": True, "failure": "",
+            "instants": [{"title": "OA = 0", "reached": True, "points": {}, "drives": {},
+                          "links": {"AC": [angle, 1e-17, 2.0], "CB": [1.0, 1.0, 0.0]}}],
+        }
+        for name, angle in (("a", 0.5), ("$b$", 0.25))
+    }  # fmt: skip
+    row = ct.variants(topology, [{"variant": "a", "l2": 1.0}])[0].row
+    rows = [
+        row,
+        type(row)("$b$", True, None, "", "", "", "ok"),
+        type(row)("c", None, None, "", "", "why", "refused"),
+    ]
+    sheet = answer_sheet(topology, table, rows, answers, 4)
+    blocks = [block for chapter in sheet.chapters for section in chapter.sections for block in section.blocks]
+    tables = [block for block in blocks if isinstance(block, Table)]
+    assert tables[0].rows == (("a", "1.000"), (r"\$b\$", "1.500"))
+    assert [cells[0] for cells in tables[1].rows] == ["a", r"\$b\$", "c"]
+    assert tables[2].rows == (("a", "0.5000", "1.000"), (r"\$b\$", "0.2500", "1.000"))
+    assert [cells[1] for cells in tables[3].rows] == ["0", "0"]  # rounding beside the rates of its kind
+    assert any(isinstance(block, Paragraph) and "c" in block.text for block in blocks)
+
+
+def test_files_depend_on_formats_and_language() -> None:
+    keys = {
+        VariantReport(formats, language).key for formats in (("html",), ("pdf",)) for language in ("en", "ru")
+    }
+    assert len(keys) == 4
+    assert VariantReport(("html", "pdf"), "en").key == VariantReport(("pdf", "html"), "en").key
+
+
+@pytest.mark.parametrize("formats", [(), ("docx",)])
+def test_wrong_formats_are_refused_before_anything_is_computed(
+    formats: tuple[str, ...], tmp_path: Path
+) -> None:
+    with pytest.raises(InputError):
+        ct.write_variant_reports(ct.example("crank-rocker"), ROWS, tmp_path / "new", formats=formats)
+    assert not (tmp_path / "new").exists()

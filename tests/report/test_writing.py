@@ -1,0 +1,83 @@
+"""Reports as files: whole or not at all, the same bytes, and refusals."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import centrode as ct
+from centrode.errors import InputError
+from centrode.report import writing
+from centrode.report.blocks import Report
+
+REPORT = Report("a", "b", "en", ())
+
+
+def test_documents_are_written_and_replaced(tmp_path: Path) -> None:
+    said: list[str] = []
+    files = ct.write_report(REPORT, tmp_path / "new" / "folder", ("pdf", "pdf"), "one", said.append)
+    assert [file.name for file in files] == said == ["one.pdf"]
+    first = files[0].read_bytes()
+    assert first.startswith(b"%PDF-")
+    files[0].write_bytes(b"old")
+    assert ct.write_report(REPORT, files[0].parent, ("pdf",), "one")[0].read_bytes() == first
+    assert [file.name for file in files[0].parent.iterdir()] == ["one.pdf"]
+
+
+def test_one_document_that_fails_leaves_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(report: Report) -> bytes:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(writing, "FORMATS", {"pdf": writing.FORMATS["pdf"], "html": interrupted})
+    with pytest.raises(KeyboardInterrupt):
+        ct.write_report(REPORT, tmp_path, ("pdf", "html"))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "report.pdf").write_bytes(b"old")
+
+    def refuse(*names: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(writing.os, "replace", refuse)
+    with pytest.raises(KeyboardInterrupt):
+        ct.write_report(REPORT, tmp_path, ("pdf",))
+    assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [("report.pdf", b"old")]
+
+
+def test_without_typst_nothing_is_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(writing, "find_spec", lambda name: None)
+    with pytest.raises(InputError, match="reports need typst, which is not installed"):
+        writing.check_formats(("pdf",))
+
+
+@pytest.mark.parametrize(
+    ("formats", "message"),
+    [
+        (("docx",), 'format: "docx" is no format of a report; known are: html, pdf'),
+        ((), "no format is named"),
+    ],
+)
+def test_wrong_formats(tmp_path: Path, formats: tuple[str, ...], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        ct.write_report(REPORT, tmp_path / "x", formats)
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_folder_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(InputError, match="cannot be written"):
+        ct.write_report(REPORT, tmp_path / "file", ("pdf",))
+
+
+def test_a_library_that_is_missing_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(report: Report) -> bytes:
+        raise ModuleNotFoundError("No module named 'typst'", name="typst")
+
+    monkeypatch.setattr(writing, "FORMATS", {"pdf": missing})
+    with pytest.raises(
+        InputError, match=r'reports need typst, .* pip install "centrode\[documents,figures\]"'
+    ):
+        ct.write_report(REPORT, tmp_path, ("pdf",))
