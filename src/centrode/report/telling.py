@@ -60,6 +60,14 @@ def share_text(share: float) -> str:
     return spelled_number(f"{share:.1e}") if share else "0"
 
 
+TO_SCALE = ("force-vectors",)
+"""Figures whose scales are true on paper."""
+
+
 def pictures(figures: Mapping[str, Figure], captions: Mapping[str, str]) -> list[Picture]:
     """Figures by name as pictures, in the order of their captions; what was not drawn is left out."""
-    return [picture(figures[name], caption) for name, caption in captions.items() if name in figures]
+    return [
+        picture(figures[name], caption, to_scale=name in TO_SCALE)
+        for name, caption in captions.items()
+        if name in figures
+    ]

@@ -29,6 +29,8 @@ from centrode.report.mathematics import checked, pieces_of
 TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
 """Inches that a picture may fill of a page, its caption left out."""
 PAPER_WIDTH = 8.268
+ANNOUNCEMENT = 160
+"""Letters of a paragraph that may be there only for the formula, table or picture behind it."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 _SIZE = re.compile(
@@ -69,8 +71,9 @@ class Source:
     def _section(self, section: Section) -> Iterator[str]:
         if section.title:
             yield f"#heading(level: 2, {quoted(section.title)})"
-        for block in section.blocks:
-            yield self._shown(block)
+        for block, following in zip(section.blocks, (*section.blocks[1:], None), strict=True):
+            shown = self._shown(block)
+            yield f"#block(sticky: true, {shown[1:]})" if _announces(block, following) else shown
 
     @singledispatchmethod
     def _shown(self, block: Block) -> str:
@@ -78,8 +81,7 @@ class Source:
 
     @_shown.register
     def _paragraph(self, block: Paragraph) -> str:
-        text = f"par({content(block.text)})"
-        return f"#block(sticky: true, {text})" if block.text.rstrip().endswith(":") else f"#{text}"
+        return f"#par({content(block.text)})"
 
     @_shown.register
     def _items(self, block: Items) -> str:
@@ -118,6 +120,13 @@ class Source:
     @_shown.register
     def _check(self, block: Check) -> str:
         return f"#check({'true' if block.holds else 'false'}, {content(block.text)})"
+
+
+def _announces(block: Block, following: Block | None) -> bool:
+    """Whether a block is a line that would be lost at the foot of a page without what it announces."""
+    if not isinstance(block, Paragraph) or following is None or isinstance(following, Paragraph):
+        return False
+    return len(block.text) <= ANNOUNCEMENT
 
 
 def content(marked: str) -> str:
