@@ -23,12 +23,12 @@ SYMBOLS = {"angle": "φ", "displacement": "s", "distance": "l"}
 
 
 def instant_captions(film: Film) -> list[str]:
-    """The caption of each frame: the value of the only drive, else the time, and the status where it is not in order.
+    """The caption of each frame: the value of the only drive that moves evenly, else the time, and the status.
 
-    All of them have as many decimals, so that no digit jumps.
+    The status stands there where it is not in order. All have as many decimals, so that no digit jumps.
     """
     mechanism = film.mechanism
-    if len(mechanism.drives) == 1:
+    if len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None:
         factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
         symbol = SYMBOLS[mechanism.drives[0].kind]
         values = factor * film.motion["drive_value"].isel(drive=0).to_numpy()

@@ -72,8 +72,11 @@ class FollowerLayer(Layer):
         self.stem = self.top - factor * body.guide.start + (GAP + WALLS + ABOVE) * self.far
 
     def reach(self) -> Array:
-        """The circle that the cam sweeps, and the follower over the whole turn."""
-        corners = [np.array([[-self.far, -self.far], [self.far, self.far]]), self.cam.reach()]
+        """The circle that the cam sweeps with the path about it, and the follower over the whole turn."""
+        swept = (
+            max(self.far, self.cam.factor * float(np.hypot(*self.path.T).max())) if self.rolls else self.far
+        )
+        corners = [swept * np.array([[-1.0, -1.0], [1.0, 1.0]]), self.cam.reach()]
         corners += [np.array(line) for frame in self.frames for line in self.cam.lines(frame)]
         if self.cam.pivot is None:
             corners += [self._stem(frame) for frame in self.frames]
@@ -103,7 +106,7 @@ class FollowerLayer(Layer):
             path = self.cam.carried(self.path, frame)
             axes.plot(*path.T, color=MUTED, linewidth=0.9, linestyle=CHAIN, zorder=2.0)
         if self.cam.pivot is None:
-            axes.plot(*self._stem(frame).T, color=ROLLER, linewidth=2.4, zorder=2.2)
+            axes.plot(*self._stem(frame).T, color=ROLLER, linewidth=2.4, solid_capstyle="butt", zorder=2.2)
         draw_touching(axes, self.cam, frame, ROLLER)
         foot = self.cam.foot(frame)
         if self.rolls:

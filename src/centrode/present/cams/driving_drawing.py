@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon
 
 from centrode.present import signs
-from centrode.present.style import GROUND, INK, MUTED
+from centrode.present.style import INK, MUTED
 
 if TYPE_CHECKING:
     from centrode.present.cams.driving_cam import DrivingCam
@@ -17,17 +17,23 @@ if TYPE_CHECKING:
 
 
 def draw_cams(axes: Axes, scene: Scene, sample: int) -> None:
-    """The driving cams of a scene as they stand at a sample."""
+    """The driving cams of a scene as they stand at a sample, on their axes."""
+    draw_axes_of_cams(axes, scene)
+    draw_turned_cams(axes, scene, sample)
+
+
+def draw_axes_of_cams(axes: Axes, scene: Scene) -> None:
+    """The hinges on the frame that the driving cams turn about."""
+    for cam in scene.cams:
+        signs.fixed_hinge(axes, cam.hub, scene.sign)
+
+
+def draw_turned_cams(axes: Axes, scene: Scene, sample: int) -> None:
+    """The driving cams with roller, arm or face of their followers, without their axes."""
     for cam in scene.cams:
         if np.isfinite(cam.angles[sample]):
-            draw_cam(axes, cam, sample, scene.sign)
-
-
-def draw_cam(axes: Axes, cam: DrivingCam, sample: int, size: float) -> None:
-    """A cam with its roller, arm or face as they stand at a sample; `size` is the radius of a hinge."""
-    draw_profile(axes, cam, sample)
-    signs.fixed_hinge(axes, cam.hub, size, GROUND)
-    draw_touching(axes, cam, sample)
+            draw_profile(axes, cam, sample)
+            draw_touching(axes, cam, sample)
 
 
 def draw_profile(axes: Axes, cam: DrivingCam, sample: int, line: str = INK, tint: str = MUTED) -> None:
