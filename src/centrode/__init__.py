@@ -6,8 +6,7 @@ The public face stands in `__init__.pyi`, in reading order; each name is importe
 import lazy_loader
 
 from centrode.notebook import register as _show_in_notebooks
-
-__version__ = "0.1.0"
+from centrode.version import __version__ as __version__
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 

@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode import __version__
 from centrode.cams.convergence import Convergence, convergence
 from centrode.cams.curvature_laws import derivatives
 from centrode.cams.described import half_path, law_of
@@ -23,6 +22,7 @@ from centrode.cams.series import SeriesPath, series_path
 from centrode.kinematics.dataset import labels_of, named
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import cam_text
+from centrode.version import __version__
 
 Array = npt.NDArray[np.float64]
 

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode import __version__
 from centrode.cams.described import path_of
 from centrode.cams.drawn import drawn_curvature
 from centrode.cams.followers.labelled import dataset_of_motion
@@ -21,6 +20,7 @@ from centrode.kinematics.dataset import Variable, labels_of, named
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import AnyCam, cam_text
 from centrode.model.cams.plate import PlateCam
+from centrode.version import __version__
 
 Array = npt.NDArray[np.float64]
 

@@ -12,7 +12,6 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
-from centrode import __version__
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import STATUSES_OF_MOTION
 from centrode.kinematics.solve import Solved
@@ -21,6 +20,7 @@ from centrode.locale import speaking
 from centrode.model.files import mechanism_text
 from centrode.quantities import QUANTITIES
 from centrode.structure.steps import name_of
+from centrode.version import __version__
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Orders: TypeAlias = tuple[Array | None, Array, Array]

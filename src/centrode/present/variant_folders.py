@@ -25,7 +25,6 @@ from typing import Any, Protocol, TypeAlias
 
 import lazy_loader
 
-from centrode import __version__
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.files import mechanism_text, parse_mechanism
@@ -36,6 +35,7 @@ from centrode.study.variants.computing import FAULT, STEPS, VariantResults, Vari
 from centrode.study.variants.tables import Table, Variant, read_variants
 from centrode.sweeps.locking import locked
 from centrode.sweeps.store import write_whole
+from centrode.version import __version__
 
 Progress: TypeAlias = Callable[[int, int], None]
 

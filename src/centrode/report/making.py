@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import nullcontext
 from typing import TypeAlias
 
-from centrode import __version__
 from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.cams.description import Cam
@@ -15,6 +14,7 @@ from centrode.report.blocks import Chapter, Report
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
+from centrode.version import __version__
 
 Said: TypeAlias = Callable[[str, int, int], None]
 """Is told the title of the chapter that begins, how many are done, and how many there are."""

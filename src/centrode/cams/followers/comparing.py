@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode import __version__
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
@@ -22,6 +21,7 @@ from centrode.laws import CURVES, Segment, SegmentedLaw
 from centrode.locale import _, mark
 from centrode.model.cams.files import AnyCam, with_follower
 from centrode.model.problems import nearest, shown
+from centrode.version import __version__
 
 Array = npt.NDArray[np.float64]
 JETS = JetFunctions(ARRAYS)

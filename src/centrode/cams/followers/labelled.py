@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode import __version__
 from centrode.cams.followers.joints import ORDER, joints_of
 from centrode.cams.followers.motion import FollowerMotion
 from centrode.cams.followers.stretches import stretches
@@ -18,6 +17,7 @@ from centrode.kinematics.dataset import Variable, named
 from centrode.model.cams.files import cam_text
 from centrode.model.cams.plate import PlateCam
 from centrode.quantities import QUANTITIES
+from centrode.version import __version__
 
 Array = npt.NDArray[np.float64]
 

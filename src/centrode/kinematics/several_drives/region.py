@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode import __version__
 from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet, Status
 from centrode.kinematics.dataset import labels_of
 from centrode.kinematics.ready import Ready, ready
@@ -28,6 +27,7 @@ from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.structure.groups import Newton
 from centrode.structure.steps import name_of
+from centrode.version import __version__
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode import __version__
 from centrode.locale import _, chosen_language, ngettext
 from centrode.model.paths import kind_at
 from centrode.model.units import KINDS
@@ -16,6 +15,7 @@ from centrode.report.blocks import Block, Chapter, Paragraph, Report, Section, T
 from centrode.report.numbers import NOTHING, Numbers
 from centrode.report.rows import told
 from centrode.study.variants.computing import STATUS_WORDS
+from centrode.version import __version__
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism

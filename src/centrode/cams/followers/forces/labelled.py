@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode import __version__
 from centrode.cams.followers.forces import keeping
 from centrode.cams.followers.forces.acting import FollowerForces, Forces, follower_forces
 from centrode.cams.sampled import angles_of
@@ -17,6 +16,7 @@ from centrode.errors import Status
 from centrode.kinematics.dataset import Variable, named
 from centrode.model.cams.files import AnyCam, cam_text, with_follower
 from centrode.model.cams.plate import PlateCam
+from centrode.version import __version__
 
 Array = npt.NDArray[np.float64]
 
