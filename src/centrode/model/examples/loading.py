@@ -11,10 +11,11 @@ from centrode.model.cams.description import Cam
 from centrode.model.cams.files import AnyCam, parse_cam, read_cam
 from centrode.model.cams.plate import PlateCam
 from centrode.model.examples import example_names, example_text
-from centrode.model.files import is_cam, parse_mechanism, read_mechanism, toml_tables
+from centrode.model.files import parse_mechanism, read_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import likely, shown
 from centrode.model.reading import read_file
+from centrode.model.toml_text import is_cam, toml_tables
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
 PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]
