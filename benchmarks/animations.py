@@ -15,7 +15,7 @@ ROUNDS = 3
 FRAMES = 60
 EXAMPLE = "six-bar-press"
 MOST = 6.0
-"""Seconds that so many frames of the six-bar may take as a GIF, the start of the program included."""
+"""Seconds of a processor that so many frames of the six-bar may take as a GIF, the start of the program included."""
 EVERYTHING = "paths,velocities,accelerations,centres,centrodes,forces,loads"
 
 
@@ -32,12 +32,14 @@ def animations() -> Iterator[Row]:
             "--out",
             "a.gif",
         ],
+        "cam-driven-linkage, GIF": ["cam-driven-linkage", "--out", "a.gif"],
+        "valve-cam, GIF": ["valve-cam", "--out", "a.gif"],
         "walking-wheel-three-legs, GIF": ["walking-wheel-three-legs", "--out", "a.gif"],
     }
     for name, words in tasks.items():
         elapsed, used = (min(times) for times in zip(*map(_run, [words] * ROUNDS), strict=True))
-        what = f"{FRAMES} frames of {EXAMPLE} as GIF [s]"
-        promises = [Promise(what, elapsed, at_most=MOST)] if name.endswith("paths, GIF") else []
+        what = f"{FRAMES} frames of {EXAMPLE} as GIF, processor [s]"
+        promises = [Promise(what, used, at_most=MOST)] if name.endswith("paths, GIF") else []
         yield Row(name, {"elapsed [s]": elapsed, "processor [s]": used}, promises=promises)
 
 

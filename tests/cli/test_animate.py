@@ -104,6 +104,14 @@ def test_an_mp4_takes_even_sizes(centrode: Centrode, folder: Path) -> None:
     assert (folder / "wheel.mp4").read_bytes()[4:8] == b"ftyp"
 
 
+@pytest.mark.parametrize("name", ["valve-cam", "indexing-cam"])
+def test_a_cam_turns_below_its_follower(centrode: Centrode, folder: Path, name: str) -> None:
+    done = centrode("animate", name, *SMALL, "--dark")
+    assert (done.code, done.err) == (0, "")
+    assert done.rows["loop"] == "round, without a jump"
+    assert frames(folder / f"{name}.gif")[0] == 6
+
+
 def test_a_file_that_is_there_is_kept(centrode: Centrode, folder: Path) -> None:
     (folder / "old.gif").write_text("old")
     done = centrode("animate", "crank-rocker", *SMALL, "--out", "old.gif")
@@ -147,6 +155,8 @@ def test_a_file_that_is_there_is_kept(centrode: Centrode, folder: Path) -> None:
         (("walking-wheel-four-legs", "--from", "0"), "a cam is shown as a whole"),
         (("walking-wheel-four-legs", "--speed", "1"), "a cam has no speed of its own"),
         (("cam-from-curvature",), "a profile needs a roller"),
+        (("valve-cam", "--show", "paths"), "a cam is shown as a whole"),
+        (("indexing-cam", "--to", "90 deg"), "a cam is shown as a whole"),
         (("scissor-lift", "--show", "centrodes", "--link", "frame"), "frame"),
         ((), "FILE_OR_EXAMPLE"),
     ],

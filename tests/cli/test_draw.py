@@ -27,6 +27,19 @@ def test_drawings_are_written(centrode: Centrode, tmp_path: Path) -> None:
     assert "names" not in {entity.dxf.layer for entity in ezdxf.readfile(dxf).modelspace()}
 
 
+def test_a_driving_cam_is_drawn(centrode: Centrode, tmp_path: Path) -> None:
+    svg, dxf = tmp_path / "a.svg", tmp_path / "a.dxf"
+    assert centrode("draw", "cam-driven-linkage", "--at", "0.1 s", "--out", svg).code == 0
+    assert "cams" in {group.attrib["id"] for group in ET.parse(svg).getroot()}
+    assert centrode("draw", "cam-driven-linkage", "--at", "0.1 s", "--out", dxf).code == 0
+    document = ezdxf.readfile(dxf)
+    assert not document.audit().errors
+    assert {entity.dxftype() for entity in document.modelspace().query('*[layer=="cams"]')} == {
+        "CIRCLE",
+        "LWPOLYLINE",
+    }
+
+
 def test_what_cannot_be_drawn_is_told(centrode: Centrode, tmp_path: Path) -> None:
     for words, told in (
         (("six-bar-press", "--out", tmp_path / "a.pdf"), "no kind of file for drawings"),
@@ -35,6 +48,7 @@ def test_what_cannot_be_drawn_is_told(centrode: Centrode, tmp_path: Path) -> Non
         (("six-bar-press", "--at", "1 kg", "--out", tmp_path / "a.svg"), "--at"),
         (("hookes-joint", "--out", tmp_path / "a.svg"), "planar"),
         (("six-bar-press", "--out", tmp_path), "no kind of file"),
+        (("valve-cam", "--out", tmp_path / "a.svg"), "this describes a cam, not a linkage"),
     ):
         done = centrode("draw", *words)
         assert (done.code, told in done.err) == (2, True), done.err

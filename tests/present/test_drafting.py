@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -139,6 +142,49 @@ def test_pitch_circles_touch() -> None:
     assert first.radius / second.radius == pytest.approx(2.0, rel=1e-12)  # the second turns twice as fast
 
 
+def test_a_driving_cam_stands_on_its_own_layer() -> None:
+    """The roller of 12 mm at the arm's end touches the profile; the axis is 110 mm from the pivot; no line twice."""
+    mechanism = ct.example("cam-driven-linkage")
+    motion = ct.motion(mechanism, at=[0.1])
+    drawing = ct.mechanism_drawing(mechanism, motion, 0)
+    (roller,) = [ring for ring in drawing.rings if ring.layer == "cams"]
+    arm = 1e3 * motion.position.sel(point="R").to_numpy()[0]
+    assert roller.radius == pytest.approx(12.0, rel=1e-12)
+    assert np.abs(np.array(roller.centre) - arm).max() <= RINGS
+    strokes = [stroke.places for stroke in drawing.strokes if stroke.layer == "cams"]
+    profile, mark = sorted(strokes, key=len, reverse=True)  # and no arm: the link has its line
+    step = np.hypot(*np.diff(profile, axis=0).T).max()
+    gap = np.hypot(*(profile - arm).T).min() - 12.0
+    assert -RINGS <= gap <= (step / 2) ** 2 / 12.0
+    hub = mark[0]
+    assert np.hypot(*hub) == pytest.approx(110.0, rel=1e-12)
+    assert any(np.abs(np.array(r.centre) - hub).max() <= RINGS for r in drawing.rings if r.layer == "hinges")
+
+
+def test_a_face_that_no_link_has_is_drawn() -> None:
+    text = """
+    kind = "cam"
+    cam = { base_radius = "30 mm", speed = "60 rpm" }
+    follower = { kind = "translating", contact = "flat" }
+    segments = [
+        { angle = "180 deg", to = "5 mm", curve = "cycloidal" }, { angle = "180 deg", to = 0, curve = "cycloidal" }
+    ]
+    """
+    linkage = ct.Mechanism(
+        frame={"points": {"O": [0, 0]}},
+        links={"AB": {"length": 0.05}, "OB": {"length": 0.06}},
+        guides=[{"point": "A", "on": "frame", "through": [0.07, 0], "direction": [0, 1]}],
+        drives=[{"guide": "A", "start": 0, "cam": ct.parse_cam(text)}],
+        assembly={"sides": {"B": "left"}},
+    )
+    motion = ct.motion(linkage, at=[0.125])
+    drawing = ct.mechanism_drawing(linkage, motion, 0)
+    lines = [one.places for one in drawing.strokes if one.layer == "cams" and len(one.places) == 2]
+    (face,) = [line for line in lines if abs(line[0, 1] - line[1, 1]) <= RINGS]
+    lift = 5.0 * (0.25 - math.sin(math.tau / 4) / math.tau)  # cycloidal, at a quarter of the rise
+    assert face[0, 1] == pytest.approx(lift, abs=RINGS)
+
+
 def test_the_same_drawing_gives_the_same_bytes(tmp_path: Path) -> None:
     _mechanism, _motion, drawing = drawing_of("six-bar-press")
     for name in ("a", "b"):
@@ -146,6 +192,24 @@ def test_the_same_drawing_gives_the_same_bytes(tmp_path: Path) -> None:
         ct.write_drawing_svg(drawing, tmp_path / f"{name}.svg")
     for kind in ("dxf", "svg"):
         assert (tmp_path / f"a.{kind}").read_bytes() == (tmp_path / f"b.{kind}").read_bytes()
+
+
+def test_processes_that_hash_texts_differently_write_the_same_bytes(tmp_path: Path) -> None:
+    program = """
+import centrode as ct
+press = ct.example("six-bar-press")
+ct.write_drawing_dxf(ct.mechanism_drawing(press, ct.motion(press, at=[0.0])), "drawing.dxf")
+cam = ct.follower_cam(ct.example("valve-cam"))
+ct.write_outlines_dxf(ct.follower_outlines(cam), "profile.dxf")
+"""
+    written = []
+    for seed in ("0", "4"):  # they put texts into sets in different orders
+        folder = tmp_path / seed
+        folder.mkdir()
+        environment = os.environ | {"PYTHONHASHSEED": seed}
+        subprocess.run([sys.executable, "-c", program], cwd=folder, env=environment, check=True)
+        written.append([(folder / name).read_bytes() for name in ("drawing.dxf", "profile.dxf")])
+    assert written[0] == written[1]
 
 
 def test_hostile_text_is_text(tmp_path: Path) -> None:

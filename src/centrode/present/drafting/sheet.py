@@ -34,6 +34,8 @@ METRE = 1000.0
 """Millimetres."""
 FARTHEST = 1.0
 """How far from the middle of the drawing centrodes are drawn, in its sizes."""
+DOUBLE = 1e-6
+"""Lines whose ends are nearer than this share of them are one."""
 LINE = 1.8
 """Height of a line of the title, in heights of its letters."""
 
@@ -85,11 +87,25 @@ def mechanism_drawing(
         with board.on("names"):
             draw_names(board, scene, sample)
     drawing: Drawing = board.drawing
+    drawing.strokes = [one for one in drawing.strokes if one.layer != "cams" or not _doubled(one, drawing)]
     drawing.strokes += [Stroke("paths", board.scale * scene.tracks[name]) for name in paths]
     for pair in centrodes:
         drawing.strokes += _centrode(scene, pair, sample, board.scale)
     _title(drawing, scene, motion, sample, 10.0 * board.letters)
     return drawing
+
+
+def _doubled(line: Stroke, drawing: Drawing) -> bool:
+    """Whether a link has the same straight line: the arm that carries the roller."""
+    if len(line.places) != 2:
+        return False
+    room = DOUBLE * float(np.ptp(line.places, axis=0).max())
+    for link in (one.places for one in drawing.strokes if one.layer == "links"):
+        for ends in (line.places, line.places[::-1]):
+            apart = np.maximum(np.abs(link[:-1] - ends[0]), np.abs(link[1:] - ends[1])).max(axis=1)
+            if (apart <= room).any():
+                return True
+    return False
 
 
 def _centrode(scene: Scene, pair: xarray.Dataset, sample: int, scale: float) -> list[Stroke]:
