@@ -55,3 +55,8 @@ def two_points(name: str) -> tuple[str, str] | None:
     if not match or match.group(1) == match.group(2):
         return None
     return match.group(1), match.group(2)
+
+
+def body_word(name: str) -> str:
+    """A link by its name, the frame by its word in the reader's language."""
+    return _("frame") if name == FRAME else name

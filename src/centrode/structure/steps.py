@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from centrode.locale import _, ngettext
+from centrode.model.names import body_word
 from centrode.structure.groups import (
     Aim,
     Group,
@@ -39,7 +40,7 @@ def step_of(group: Group) -> str:
             )
         if isinstance(group.turning, Rolled):
             return _("wheel {link} about {point}, turned by rolling on {on}").format(
-                link=group.link, point=group.pivot, on=group.turning.rolling.on
+                link=group.link, point=group.pivot, on=body_word(group.turning.rolling.on)
             )
         if group.turning.drive is not None:
             return _("link {link} about {point}, turned by its drive").format(

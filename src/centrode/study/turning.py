@@ -12,8 +12,9 @@ from centrode.analysis.turning.four_bars import FourBar
 from centrode.analysis.turning.swings import Dwell, Extreme, Swing
 from centrode.analysis.turning.transmission import Transmission
 from centrode.kinematics.several_drives.holding import unit_of_value
-from centrode.locale import _, ngettext
+from centrode.locale import _, mark, ngettext
 from centrode.model.mechanism import Mechanism
+from centrode.model.names import body_word
 from centrode.study.wording import value_text
 
 Rows: TypeAlias = list[tuple[str, str]]
@@ -36,8 +37,12 @@ def rotatability_text(found: Rotatability) -> str:
 
 
 def _loop(loop: FourBar) -> Rows:
-    name = "-".join(loop.bodies)
+    name = "-".join(body_word(body) for body in loop.bodies)
     return [(_("loop {name}").format(name=name), _(loop.kind)), ("", loop.inequality)]
+
+
+SIDES = (mark("left"), mark("right"), mark("ahead"), mark("behind"))
+"""Words of the sides, in which a description names them."""
 
 
 class _Words:
@@ -111,7 +116,7 @@ class _Words:
 
     def branch(self, branch: Branch) -> str:
         """A branch by its sides, and from where to where it goes."""
-        sides = ", ".join(f"{point} {word}" for point, word in branch.sides.items()) or _("no sides")
+        sides = ", ".join(f"{point} {_(word)}" for point, word in branch.sides.items()) or _("no sides")
         if branch.low is None and branch.high is None:
             return _("{sides}: everywhere").format(sides=sides)
         ends = (

@@ -17,6 +17,7 @@ from centrode.geometry.plane import cross, subtract
 from centrode.kinematics.ready import Ready
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
+from centrode.model.names import body_word
 from centrode.quantities import display_unit
 from centrode.structure.dimensions import Dimensions
 
@@ -111,7 +112,7 @@ def _hinged(
     sign = "=" if verdict is None else "<" if verdict else ">"
     inequality = f"{_shown(mechanism, numbers, short)} {sign} {_shown(mechanism, numbers, long)}: " + _(
         "shortest and longest ({one}, {other}) against the others"
-    ).format(one=bodies[shortest], other=bodies[longest])
+    ).format(one=body_word(bodies[shortest]), other=body_word(bodies[longest]))
     kind = _kind(mechanism, bodies, shortest, verdict)
     return FourBar(bodies, lengths, reduced, verdict, bodies[shortest], kind, inequality)
 

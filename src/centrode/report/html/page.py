@@ -43,14 +43,14 @@ def _page(report: Report) -> str:
     chapters = [_chapter(chapter, k, elements) for k, chapter in enumerate(report.chapters, start=1)]
     scripts = [_script(names) for names in SCRIPTS]
     contents = "".join(_entry(chapter, k) for k, chapter in enumerate(report.chapters, start=1))
-    title = html.escape(report.title)
+    title, heading = html.escape(report.title), html.escape(_("Contents"))
     return (
         f'<!DOCTYPE html>\n<html lang="{html.escape(report.language)}">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(scripts)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{title}</title>\n<style>{_style()}{formulas.style}</style>\n</head>\n<body>\n"
         f'{elements.drawings.shared()}\n<div class="sheet">\n'
-        f"<nav><details open><summary>{html.escape(_('Contents'))}</summary><ol>{contents}</ol></details></nav>\n"
+        f"<nav><details open><summary>{heading}</summary><ol>{contents}</ol></details></nav>\n"
         f"<main>\n<header><h1>{title}</h1>"
         f'<p class="subtitle">{html.escape(report.subtitle)}</p></header>\n'
         f"{''.join(chapters)}</main>\n</div>\n"

@@ -86,16 +86,17 @@ def _controls(moving: Moving) -> str:
         return html.escape(text)
 
     play, back, on = word(_("Play")), word(_("One step back")), word(_("One step on"))
+    position, speed, paths, names = word(_("Position")), word(_("speed")), word(_("paths")), word(_("names"))
     return (
         '<div class="controls" hidden>'
         f'<button type="button" data-do="play" title="{play}" aria-label="{play}">\u25b6\ufe0e</button>'
         f'<button type="button" data-do="back" title="{back}" aria-label="{back}">\u2039</button>'
         f'<button type="button" data-do="on" title="{on}" aria-label="{on}">\u203a</button>'
-        f'<input type="range" data-do="seek" min="0" max="1" step="any" aria-label="{word(_("Position"))}">'
+        f'<input type="range" data-do="seek" min="0" max="1" step="any" aria-label="{position}">'
         f"<output>{word(moving.drive_texts[moving.start] if moving.drive_texts else '')}</output>"
-        f'<label>{word(_("speed"))} <input type="range" data-do="speed" min="-3" max="2" step="0.5" value="0"></label>'
-        f'<label><input type="checkbox" data-do="paths" checked> {word(_("paths"))}</label>'
-        f'<label><input type="checkbox" data-do="names" checked> {word(_("names"))}</label></div>'
+        f'<label>{speed} <input type="range" data-do="speed" min="-3" max="2" step="0.5" value="0"></label>'
+        f'<label><input type="checkbox" data-do="paths" checked> {paths}</label>'
+        f'<label><input type="checkbox" data-do="names" checked> {names}</label></div>'
     )
 
 

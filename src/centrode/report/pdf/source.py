@@ -52,10 +52,11 @@ class Source:
         self.text = "\n".join(self._document(report)) + "\n"
 
     def _document(self, report: Report) -> Iterator[str]:
+        contents = _("Contents")
         yield '#import "style.typ": *'
         yield (
             f"#show: document.with(title: {quoted(report.title)}, subtitle: {quoted(report.subtitle)},"
-            f" language: {quoted(report.language)}, contents: {quoted(_('Contents'))})"
+            f" language: {quoted(report.language)}, contents: {quoted(contents)})"
         )
         for chapter in report.chapters:
             yield from self._chapter(chapter)

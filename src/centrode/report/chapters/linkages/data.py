@@ -149,6 +149,8 @@ class _Data:
             return _("{formula}, in SI").format(formula=shown(drive.law))
         if drive.table is not None:
             return _("table of {count} rows").format(count=len(drive.table))
+        if drive.segments is None:
+            return _("by a cam")
         return _("{count} segments of motion").format(count=len(drive.segments or ()))
 
 
