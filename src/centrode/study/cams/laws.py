@@ -14,7 +14,7 @@ from centrode.quantities import QUANTITIES
 from centrode.study.cams.said import Asked, CamPart, Table, Units
 
 CURVES = (
-    mark("uniform"), mark("harmonic"), mark("cycloidal"), mark("3-4-5"), mark("4-5-6-7"), mark("modified sine"),
+    mark("uniform"), mark("harmonic"), mark("cycloidal"), mark("modified sine"),
     mark("modified trapezoid"), mark("dwell"), mark("polynomial"), mark("b-spline"),
 )  # fmt: skip
 """Names of the curves, in which descriptions give them."""
