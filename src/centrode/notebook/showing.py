@@ -39,13 +39,14 @@ def mechanism_html(mechanism: Mechanism) -> str:
     except CentrodeError as failure:
         drawing = f"<p>{html.escape(str(failure))}</p>"
     rows = [(name, *_link(mechanism, name)) for name in mechanism.links]
-    return f"{drawing}{_table((_('link'), _('points'), _('length')), rows)}"
+    heads = (_("link"), _("points"), _("length"))
+    return drawing + _table(heads, rows)
 
 
 def check_html(checked: Check) -> str:
     """A structure as a table: mobility, redundant constraints, loops, groups, initial position."""
-    title = f"<h4>{html.escape(_(checked.title))}</h4>" if checked.title else ""
-    return title + _table((), check_rows(checked))
+    title = html.escape(_(checked.title))
+    return (f"<h4>{title}</h4>" if title else "") + _table((), check_rows(checked))
 
 
 def motion_html(dataset: xarray.Dataset) -> str:
