@@ -156,7 +156,7 @@ def _scalars(body: FollowerCam) -> dict[str, Scalar]:
     at, value = max(
         ((steep.at_least, -steep.least), (steep.at_greatest, steep.greatest)), key=lambda one: one[1]
     )
-    found = {"greatest_pressure_angle": (value, at, "rad"), "least_bend": (*body.least_bend, "m")}
+    found = {"greatest_pressure_angle": (abs(value), at, "rad"), "least_bend": (*body.least_bend, "m")}
     if isinstance(body.touch, Face):
         numbers |= {"face_from": (body.face.least, "m"), "face_to": (body.face.greatest, "m")}
     else:
