@@ -200,3 +200,8 @@ def test_friction_that_locks():
     met = meeting.on_centre(rows, 0.0, 0.05, 1.0, rolling=False)
     assert np.isfinite(met.normal_force(np.array([1.0, 1.0]), 0.2499)).all()
     assert np.isinf(met.normal_force(np.array([1.0, 1.0]), 0.2501)).tolist() == [False, True]
+
+
+def test_what_is_zero_is_not_told_below_zero():
+    free = least(MOTION, lambda rows: 0.0 * rows[0])
+    assert free.value == 0.0 and math.copysign(1.0, free.value) == 1.0

@@ -106,7 +106,7 @@ class FollowerForces:
     def least_torque(self) -> Extreme:
         """The least torque [N m] and where [rad]: below zero the follower drives the cam."""
         found = self._greatest(lambda one: -one.torque)
-        return Extreme(-found.value, found.angle)
+        return Extreme(0.0 - found.value, found.angle)  # no zero below zero
 
     @cached_property
     def greatest_stress(self) -> Extreme:
