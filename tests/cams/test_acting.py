@@ -130,6 +130,49 @@ def test_friction_of_an_edge_locks():
     assert any("friction locks" in one for one in failures(steep))
 
 
+def test_what_locks_between_the_samples_is_told_and_has_no_greatest_force():
+    # An edge locks where tan alpha = 1/mu: with a hair more friction than the steepest place allows, nowhere else.
+    body = ct.follower_cam(plate("edge"))
+    steepest = body.pressure.greatest
+    for share, locks in ((1 - 1e-9, False), (1 + 1e-9, True)):
+        cam = plate("edge", friction=share / math.tan(steepest))
+        found = ct.cam_forces(cam, 13)
+        assert not np.isnan(found["contact_force"].to_numpy()).any()
+        assert math.isinf(found.attrs["greatest_force"]) == locks
+        assert math.isinf(found.attrs["greatest_torque"]) == locks
+        assert any("friction locks" in one for one in failures(cam)) == locks
+        assert ("without bound" in dict(ct.forces_rows(cam, found))["greatest contact force"]) == locks
+
+
+def test_a_stress_that_is_not_admissible_fails():
+    greatest = ct.cam_forces(plate("roller")).attrs["greatest_stress"]
+    for share, fails in ((1 - 1e-9, True), (1 + 1e-9, False)):
+        cam = plate("roller")
+        bound = ct.PlateCam(**{**cam.model_dump(by_alias=True), "bounds": {"stress": share * greatest}})
+        assert any("stress is not admissible" in one for one in failures(bound)) == fails
+
+
+def test_no_greatest_stress_is_told_of_a_profile_that_is_undercut():
+    # Towards a cusp the curvature grows without bound, and the stress with it.
+    cam = plate("roller", roller_radius="39 mm")
+    shown = ct.PlateCam(
+        **{
+            **cam.model_dump(by_alias=True),
+            "segments": [
+                {"angle": "50 deg", "to": "18 mm", "curve": "cycloidal"},
+                {"angle": "50 deg", "to": 0, "curve": "cycloidal"},
+                {"angle": "260 deg", "curve": "dwell"},
+            ],
+            "study": {"show_undercut": True},
+        }
+    )
+    forces = ct.follower_forces(shown)
+    cusp = forces.body.undercuts[0].start
+    near = forces.at(cusp - np.array([1e-3, 1e-5, 1e-7])).strip
+    assert near is not None and np.all(np.diff(near.pressure) > 2 * near.pressure[:-1])
+    assert math.isnan(forces.greatest_stress.value)
+
+
 def test_without_speed_forces_are_those_at_rest():
     cam = plate("face", body={"speed": None})
     found = ct.cam_forces(cam, 73)

@@ -160,12 +160,14 @@ def test_torque_is_that_of_virtual_work(name):
     assert np.all(np.abs(torque - PUSH * rows[1]) <= 16 * EPS * size)
 
 
+@pytest.mark.parametrize("flank", [1.0, -1.0])
 @pytest.mark.parametrize("name", MEETINGS)
-def test_friction_costs_what_slips(name):
-    # Power of the cam = power of the follower + friction force times speed of sliding.
+def test_friction_costs_what_slips(name, flank):
+    # Power of the cam = power of the follower + friction force times speed of sliding, on both flanks of a groove.
     met, rows = MEETINGS[name]
-    friction = 0.12
-    force = met.normal_force(PUSH, friction)
+    friction, push = 0.12, flank * PUSH
+    force = met.normal_force(push, friction)
+    assert np.all(flank * force > 0)
     torque = met.torque(force, friction)
     cam = met.sense * np.stack([-met.place[:, 1], met.place[:, 0]], axis=1)
     if name[:-2] in ("arm", "arm-edge", "turning-face"):
@@ -180,7 +182,7 @@ def test_friction_costs_what_slips(name):
     assert np.all(along == 0) if rolling else np.all(along > 0)
     across = np.abs(np.sum(slip * met.normal, axis=1))
     assert np.all(across <= 16 * EPS * np.linalg.norm(slip, axis=1))
-    lost = torque - PUSH * rows[1] - friction * force * along
+    lost = torque - push * rows[1] - friction * np.abs(force) * along
     assert np.all(np.abs(lost) <= 32 * EPS * np.abs(force) * np.linalg.norm(met.place, axis=1))
 
 
@@ -198,3 +200,8 @@ def test_friction_that_locks():
     met = meeting.on_centre(rows, 0.0, 0.05, 1.0, rolling=False)
     assert np.isfinite(met.normal_force(np.array([1.0, 1.0]), 0.2499)).all()
     assert np.isinf(met.normal_force(np.array([1.0, 1.0]), 0.2501)).tolist() == [False, True]
+
+
+def test_what_is_zero_is_not_told_below_zero():
+    free = least(MOTION, lambda rows: 0.0 * rows[0])
+    assert free.value == 0.0 and math.copysign(1.0, free.value) == 1.0

@@ -173,3 +173,37 @@ def test_a_knife_edge_is_bound_by_curvature_only_where_asked() -> None:
     bent = least_base_radius(layout, MOTION, Admissible(RISE, FALL, 0.03))
     assert free.by == "pressure angle" and bent.by == "curvature"
     assert layout.cam(MOTION, bent.base_radius).least_bend[0] == pytest.approx(0.03, rel=64 * EPS)
+
+
+SLOW = lift_of((180, 0.2, "harmonic"), (180, 0.0, "harmonic"))
+"""Radians: so slow that an arm may stand as it likes."""
+
+
+def test_bounds_that_decide_nothing_are_told() -> None:
+    """s + s'' of a slow harmonic lift h (1 - cos phi)/2 is h/2 everywhere: a flat face needs no base circle at all."""
+    slow = lift_of((180, 0.02, "harmonic"), (180, 0.0, "harmonic"))
+    assert least_base_radius(Layout("translating", Face()), slow, Admissible(1.0, 1.0)).by == "nothing"
+    bent = least_base_radius(Layout("translating", Face()), slow, Admissible(bend=0.03))
+    assert bent.by == "curvature" and bent.base_radius == pytest.approx(0.02, rel=64 * EPS)
+    # The end of an arm stays on one side of the pivot: base and roller are more than |d - l|, whatever is asked.
+    arm = Layout("oscillating", Point(0.01), arm=0.1, distance=0.12)
+    free = least_base_radius(arm, SLOW, Admissible(bend=0.001))
+    assert free.by == "nothing" and 0 < free.base_radius - 0.01 < 1e-10
+
+
+@pytest.mark.parametrize("most", [1.1, 1.3, 1.5])
+def test_the_least_cam_of_an_arm_that_hardly_reaches(most: float) -> None:
+    """Below the least radius the pressure angle is broken, however near that is to the one the arm reaches."""
+    arm = Layout("oscillating", Point(0.01), arm=0.1, distance=0.12)
+    found = least_base_radius(arm, SLOW, Admissible(most, most))
+    assert found.by == "pressure angle"
+
+    def steepest(base: float) -> float:
+        # tan(alpha) = (l (psi' + 1) - d cos(psi))/(d sin(psi)), the textbook's
+        start = math.acos((0.1**2 + 0.12**2 - (base + 0.01) ** 2) / (2 * 0.1 * 0.12))
+        lift, slope = SLOW.lift(MANY, 1)
+        psi = start + lift
+        tangent = (0.1 * (slope + 1) - 0.12 * np.cos(psi)) / (0.12 * np.sin(psi))
+        return float(np.abs(np.arctan(tangent)).max())
+
+    assert steepest(found.base_radius * (1 + 1e-6)) < most < steepest(found.base_radius * (1 - 1e-6))

@@ -188,6 +188,7 @@ def test_undercut_is_refused_or_shown(
     done = centrode("cam", write(*UNDERCUT, more="[study]\nshow_undercut = true\n"), "--out", "out")
     assert done.code == 0, done.err
     assert "undercut                            at 26.6717 to 36.5583 deg" in done.out
+    assert "mm where it is undercut, at " in done.out and "where it is convex" not in done.out
     numbers = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
     assert numbers["cam_undercuts"]["value"] == 1 and numbers["cam_least_bend"]["value"] < 0
 
@@ -241,3 +242,48 @@ def test_refusals(
     refuses: Callable[..., str], write: Callable[..., str], pairs: list[tuple[str, str]], more: str, said: str
 ) -> None:
     assert said in refuses(write(*pairs, more=more))
+
+
+SLOW = """
+kind = "cam"
+display = { length = "mm", angle = "deg" }
+[follower]
+contact = "flat"
+[[segments]]
+angle = "180 deg"
+to = "20 mm"
+curve = "harmonic"
+[[segments]]
+angle = "180 deg"
+to = 0
+curve = "harmonic"
+[bounds]
+pressure_angle = "30 deg"
+"""
+
+
+def test_bounds_that_decide_no_base_radius(
+    refuses: Callable[..., str], centrode: Centrode, folder: Path
+) -> None:
+    # s + s'' is h/2 everywhere: no cam is too small, as the face is square to its way whatever the cam.
+    (folder / "slow.toml").write_text(SLOW, encoding="utf-8")
+    assert "[cam] base_radius: no bound decides the base radius" in refuses("slow.toml")
+    (folder / "slow.toml").write_text('cam = { base_radius = "5 mm" }\n' + SLOW, encoding="utf-8")
+    done = centrode("cam", "slow.toml", "--out", "out", "--samples", "19", "--no-figures")
+    assert done.code == 0, done.err
+    assert done.rows["least base radius"] == "none: no bound decides it"
+    numbers = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert "cam_least_base_radius" not in numbers
+    assert str(numbers["cam_greatest_pressure_angle"]["value"]) == "0.0"  # not -0.0
+
+
+def test_the_greatest_radius_lies_where_the_lift_rests(centrode: Centrode, folder: Path) -> None:
+    # A polynomial swings beyond the height of its ends; over a centred edge the profile is r0 + s in polar form.
+    text = SLOW.replace("flat", "knife").replace('"harmonic"', '"polynomial"\nat_start = [0.02, 0]', 1)
+    (folder / "swing.toml").write_text('cam = { base_radius = "40 mm" }\n' + text, encoding="utf-8")
+    assert centrode("cam", "swing.toml", "--out", "out", "--no-figures", "--samples", "3").code == 0
+    numbers = json.loads((folder / "out" / "summary.json").read_text(encoding="utf-8"))
+    lift = numbers["follower_greatest_lift"]["value"]
+    assert lift > 0.021
+    # two roundings of the sum
+    assert numbers["cam_profile_greatest_radius"]["value"] == pytest.approx(0.04 + lift, rel=4.5e-16, abs=0)

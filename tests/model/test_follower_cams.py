@@ -233,6 +233,7 @@ def lessened(old: str, new: str, text: str = FULL) -> str:
             'stiffness = "5 N*m/deg"',
             "[follower.spring] stiffness: expected a stiffness (N/m)",
         ),
+        ("to = 0", "to = 1e-60", "stay above 1e-50"),
         ('load = "20 N"', 'load = "20 N*m"', "[follower] load: expected a force (N)"),
         ('base_radius = "4 cm"', 'base_radius = "-4 cm"', "[cam]: base_radius must be positive"),
         ('turn = "clockwise"', 'turn = "left"', 'expected one of "counter-clockwise", "clockwise"'),

@@ -31,9 +31,8 @@ def read_samples(value: object) -> int:
         raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=shown(value)))
     if not 1 <= value <= limits.SAMPLES:
         what = _("{key} must lie between 1 and {most}, got {value}")
-        raise Problem(
-            what.format(key=KEY, most=limits.SAMPLES, value=shown(value)), _("ask for fewer samples")
-        )
+        repair = _("ask for fewer samples") if value > 0 else _("ask for more samples")
+        raise Problem(what.format(key=KEY, most=limits.SAMPLES, value=shown(value)), repair)
     return value
 
 

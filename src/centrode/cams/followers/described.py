@@ -25,8 +25,9 @@ def follower_cam(cam: AnyCam) -> FollowerCam:
     Raises
     ------
     InputError
-        A cam that is given by a curvature law; neither a base radius nor bounds; a follower that cannot be led; a
-        profile that is undercut, unless `[study] show_undercut` is set: the least radius that is not is told.
+        A cam that is given by a curvature law; neither a base radius nor bounds that decide one; a follower that
+        cannot be led; a profile that is undercut, unless `[study] show_undercut` is set: the least radius that is not
+        is told.
     MotionError
         No base radius keeps the bounds.
     """
@@ -44,7 +45,11 @@ def _body(cam: PlateCam) -> FollowerCam:
         if not bounded(cam):
             what = _("a profile needs the cam's base radius")
             raise InputError("[cam] base_radius", what, _("give it, or write [bounds] that it is to keep"))
-        base = least_base_radius(layout, motion, admissible_of(cam)).base_radius
+        least = least_base_radius(layout, motion, admissible_of(cam))
+        if least.by == "nothing":
+            what = _("no bound decides the base radius: a cam as small as one likes keeps them all")
+            raise InputError("[cam] base_radius", what, _("give it, or bound the radius of curvature"))
+        base = least.base_radius
     return layout.cam(motion, base)
 
 

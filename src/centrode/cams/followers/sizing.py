@@ -27,6 +27,10 @@ STEEPEST = 1e6
 """Tangents of pressure angles from which on a bound is none."""
 BACK = 0.8
 """Share of the least radius for one offset from which on that for the next is looked for."""
+UNDECIDED = 1e-6
+"""A margin of the least cam that is greater is none of rounding: no bound decides that radius."""
+REACHED = 1e-9
+"""From which share of the least radius that a follower reaches on a cam is tried."""
 OFFSET = 1e-9
 """A best offset is looked for to this share of the speed of the lift."""
 
@@ -40,8 +44,9 @@ class Least:
     base_radius : float [m]
     at : float [rad]
         The angle that decides it.
-    by : "pressure angle" or "curvature"
-        What decides it there.
+    by : "pressure angle", "curvature" or "nothing"
+        What decides it there; where nothing does, smaller cams keep the bounds too, and the radius is the least that
+        was tried.
     offset : float [m]
         Of a translating follower.
     """
@@ -82,7 +87,7 @@ def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least
     if tried.reaches(low) and exact(low) < 0.0 <= exact(high):
         found = _root(exact, low, high)
     at = exact_margin(tried.cam(found), layout, kept)
-    return Least(found, at.at, at.by, layout.offset)
+    return Least(found, at.at, at.by if at.least < UNDECIDED else "nothing", layout.offset)
 
 
 def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
@@ -189,10 +194,29 @@ class _Tried:
         for base in self._radii(near if near > lowest and self.margin(near).least < 0.0 else lowest):
             found = self.margin(base)
             if found.least >= 0.0:
-                return float(base) if not before else _root(lambda one: self.margin(one).least, before, base)
+                return self._between(before, float(base))
             best = max(best, found, key=lambda one: one.least)
             before = base if found.least > -math.inf else 0.0
         raise self._none(best)
+
+    def _between(self, broken: float, kept: float) -> float:
+        """The least radius that keeps the bounds, from one that breaks them, or 0, to one that keeps them."""
+        if not broken:
+            broken = max(self._reached(), kept / STEP) * (1.0 + REACHED)
+        least = self.margin(broken).least
+        if not broken < kept or least >= 0.0:
+            return min(broken, kept)
+        if least == -math.inf:
+            return kept
+        return _root(lambda one: self.margin(one).least, broken, kept)
+
+    def _reached(self) -> float:
+        """The least base radius that the follower reaches; 0 of a flat face."""
+        layout = self.layout
+        if layout.flat:
+            return 0.0
+        apart = layout.offset if layout.kind == "translating" else layout.distance - layout.arm
+        return max(abs(apart) - layout.touch.roller, 0.0)
 
     def _radii(self, least: float) -> Array:
         count = 2 + int(math.log(max(GREATEST * self.size / least, STEP)) / math.log(STEP))
@@ -202,9 +226,7 @@ class _Tried:
         """A radius below which none keeps the bounds."""
         layout, small = self.layout, SMALLEST * self.size
         if layout.kind == "oscillating":
-            return (
-                small if layout.flat else max(small, abs(layout.distance - layout.arm) - layout.touch.roller)
-            )
+            return max(small, self._reached())
         if layout.flat:
             return small
         heights = self._heights()

@@ -13,6 +13,7 @@ from pydantic import Field, PlainValidator, ValidationInfo, field_validator
 from centrode import laws
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model import limits
 from centrode.model.part import Part, missing_key
 from centrode.model.problems import Problem, shown
 from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
@@ -126,6 +127,9 @@ def _lift_of(value: object) -> float:
     if lift < 0:
         what = _("the lift is counted from its lowest place and not negative, got {value}")
         raise Problem(what.format(value=shown(value)), _("let the base circle be that of the lowest place"))
+    if 0 < lift < limits.LEAST:
+        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        raise Problem(what, _("stay above {least:g}").format(least=limits.LEAST))
     return lift
 
 

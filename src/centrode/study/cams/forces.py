@@ -119,6 +119,11 @@ def _springs(facts: dict[str, float], said: _Said) -> Rows:
 
 def _greatest(facts: dict[str, float], said: _Said) -> Rows:
     """Greatest force, torque, stress."""
+    if math.isinf(facts["greatest_force"]):
+        told = _("without bound: friction locks the follower at {angle}")
+        return [
+            (_("greatest contact force"), told.format(angle=said.units.angle(facts["greatest_force_at"])))
+        ]
     if not math.isfinite(facts["greatest_force"]):
         return [(_("greatest contact force"), _("none is known"))]
     rows = [
@@ -170,15 +175,12 @@ def _failures(cam: PlateCam, forces: xr.Dataset) -> tuple[str, ...]:
             repair = _("turn it slower than {speed}, or preload the spring with {value}")
             what += "; " + repair.format(speed=_turns(speed), value=said.pushed(preload))
         told.append(what)
-    if _locks(forces):
+    if math.isinf(facts["greatest_force"]):
         told.append(_("friction locks the follower: no force of the cam moves it"))
+    if facts.get("greatest_stress", math.nan) > facts.get("admissible_stress", math.inf):
+        what = _("the contact stress is not admissible at {angle}")
+        told.append(what.format(angle=said.units.angle(facts["greatest_stress_at"])))
     return tuple(told)
-
-
-def _locks(forces: xr.Dataset) -> bool:
-    push = forces["follower_moment" if "follower_moment" in forces else "follower_push"].to_numpy()
-    locked = forces["contact_force"].isnull().to_numpy() & (push > 0)
-    return bool(locked.any())
 
 
 def _scalars(cam: PlateCam, forces: xr.Dataset) -> dict[str, Scalar]:

@@ -95,7 +95,7 @@ def _sizes(cam: PlateCam, motion: FollowerMotion) -> tuple[Rows, dict[str, Scala
 
 
 ROUNDING = 1e-12
-"""Share of the greatest lift that rounding may take from its least value."""
+"""Share of the greatest value, of the lift or a derivative, that rounding may leave of a zero."""
 
 
 def _clear(value: float, greatest: float) -> float:
@@ -187,6 +187,9 @@ def _instants(cam: PlateCam, motion: FollowerMotion) -> list[Table]:
     shown = [(QUANTITIES[name].symbol, *units.shown(QUANTITIES[name].unit)) for name in names]
     header = (f"φ, {angle}", *(symbol if unit == "1" else f"{symbol}, {unit}" for symbol, _f, unit in shown))
     values = motion.lift(cam.study.instants, len(names) - 1)
+    for order, row in enumerate(values):
+        size = abs(greatest_size(extremes_of(motion.law, order + 1, derivative(order)))[0])
+        row[abs(row) <= ROUNDING * size] = 0.0
     lines = [
         (
             f"{phi * turn:.6g}",

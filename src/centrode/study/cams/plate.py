@@ -8,6 +8,7 @@ import numpy as np
 
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.contact import Face
+from centrode.cams.followers.crossing import FLAT_HALVINGS, crossings, nodes_of
 from centrode.cams.followers.cutting import check_cutter
 from centrode.cams.followers.described import bounded, follower_cam, stretches_text
 from centrode.cams.followers.guidance import Oscillating
@@ -66,8 +67,9 @@ def _size(cam: PlateCam, body: FollowerCam, units: Units) -> Rows:
 
 
 def _greatest(body: FollowerCam) -> float:
-    """The greatest polar radius of the profile among 720 places and the joints."""
-    phi = np.concatenate([np.linspace(body.edges[0], body.edges[-1], 721)[:-1], body.edges[:-1]])
+    """The greatest polar radius of the profile: it lies where the lift rests, as the normal then meets the centre."""
+    rests = crossings(lambda phi: np.asarray(body.motion.lift(phi, 1)[1]), body.edges, FLAT_HALVINGS)
+    phi = np.concatenate([nodes_of(body.edges), rests])
     return float(np.hypot(*body.contact(phi).place.T).max())
 
 
@@ -89,6 +91,8 @@ def _curvature(body: FollowerCam, units: Units) -> Rows:
     rows, label = [], _("radius of curvature of the profile")
     if math.isfinite(bend):
         text = _("from {radius} where it is convex, at {at}")
+        if bend <= 0.0:
+            text = _("from {radius} where it is undercut, at {at}")
         rows.append((label, text.format(radius=units.text(bend), at=units.angle(at))))
         label = ""
     if 0.0 < hollow < math.inf:
@@ -156,7 +160,7 @@ def _scalars(body: FollowerCam) -> dict[str, Scalar]:
     at, value = max(
         ((steep.at_least, -steep.least), (steep.at_greatest, steep.greatest)), key=lambda one: one[1]
     )
-    found = {"greatest_pressure_angle": (value, at, "rad"), "least_bend": (*body.least_bend, "m")}
+    found = {"greatest_pressure_angle": (abs(value), at, "rad"), "least_bend": (*body.least_bend, "m")}
     if isinstance(body.touch, Face):
         numbers |= {"face_from": (body.face.least, "m"), "face_to": (body.face.greatest, "m")}
     else:

@@ -41,8 +41,10 @@ def bounds_told(cam: PlateCam, body: FollowerCam) -> BoundsTold:
     try:
         least = least_base_radius(layout, body.motion, kept)
         told.rows.append((_("least base radius"), _decided(least, units)))
-        told.scalars["cam_least_base_radius"] = Scalar(least.base_radius, "m")
-        if layout.kind == "translating":
+        free = least.by == "nothing"
+        if not free:
+            told.scalars["cam_least_base_radius"] = Scalar(least.base_radius, "m")
+        if layout.kind == "translating" and (layout.flat or not free):
             _offset(told, best_offset(layout, body.motion, kept), units, flat=layout.flat)
     except MotionError as refusal:
         told.rows.append((_("least base radius"), refusal.what))
@@ -51,7 +53,7 @@ def bounds_told(cam: PlateCam, body: FollowerCam) -> BoundsTold:
         text = _("{bound} is not admissible at {at}").format(
             bound=_(DECIDES[margin.by]), at=units.angle(margin.at)
         )
-        if least is not None:
+        if least is not None and least.by != "nothing":
             text += "; " + _("take a base radius from {least} on").format(least=units.text(least.base_radius))
         told.failures.append(text)
     return told
@@ -70,6 +72,8 @@ def _admissible(cam: PlateCam, units: Units) -> str:
 
 
 def _decided(least: Least, units: Units) -> str:
+    if least.by == "nothing":
+        return _("none: no bound decides it")
     return _("{radius}, decided by {bound} at {at}").format(
         radius=units.text(least.base_radius), bound=_(DECIDES[least.by]), at=units.angle(least.at % math.tau)
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -93,24 +94,44 @@ class FollowerForces:
 
     @cached_property
     def greatest_normal(self) -> Extreme:
-        """The greatest normal force [N] and where [rad]."""
-        return self._greatest(lambda one: np.abs(one.normal))
+        """The greatest normal force [N] and where [rad]; infinite where friction locks."""
+        return self.locked or self._greatest(lambda one: np.abs(one.normal))
 
     @cached_property
     def greatest_torque(self) -> Extreme:
-        """The greatest torque [N m] and where [rad]."""
-        return self._greatest(lambda one: one.torque)
+        """The greatest torque [N m] and where [rad]; infinite where friction locks."""
+        return self.locked or self._greatest(lambda one: one.torque)
 
     @cached_property
     def least_torque(self) -> Extreme:
         """The least torque [N m] and where [rad]: below zero the follower drives the cam."""
         found = self._greatest(lambda one: -one.torque)
-        return Extreme(-found.value, found.angle)
+        return Extreme(0.0 - found.value, found.angle)  # no zero below zero
 
     @cached_property
     def greatest_stress(self) -> Extreme:
-        """The greatest contact stress [Pa] and where [rad]; NaN where it is not known."""
-        return self._greatest(lambda one: _pressure(one.strip, one.phi))
+        """The greatest contact stress [Pa] and where [rad]; NaN where it is not known.
+
+        Of a profile that is undercut it is not: towards a cusp the stress has no bound, and behind it no meaning.
+        """
+        if self.width is None or self.modulus is None or self.body.touch.roller == 0.0 or self.body.undercuts:
+            return Extreme(math.nan, math.nan)
+        return self.locked or self._greatest(lambda one: _pressure(one.strip, one.phi))
+
+    @cached_property
+    def locked(self) -> Extreme | None:
+        """An infinite force, and where [rad] friction holds the follower fastest; None where it moves all the way."""
+        if not self.friction:
+            return None
+
+        def held(phi: Array) -> Array:
+            rows = self.body.motion.lift(phi, 2)
+            push = self.burden.needed(rows, self.speed)
+            share = meeting_of(self.body, rows).share(push, self.friction)
+            return np.where((push > 0) | self.led, -share, np.nan)
+
+        worst = greatest_between(self.body.edges, held)
+        return Extreme(math.inf, worst.angle) if worst.value >= 0 else None
 
     def _greatest(self, value: Callable[[Forces], Array]) -> Extreme:
         return greatest_between(self.body.edges, lambda phi: value(self.at(phi)))

@@ -71,7 +71,7 @@ def _peak(value: Callable[[Array], Array], start: float, stop: float) -> Extreme
 def least(motion: Lifting, value: OfRows) -> Extreme:
     """The least value over a turn, as `greatest`."""
     found = greatest(motion, lambda rows: -value(rows))
-    return Extreme(-found.value, found.angle)
+    return Extreme(0.0 - found.value, found.angle)  # no zero below zero
 
 
 def slope_drops(motion: Lifting) -> list[float]:

@@ -41,9 +41,17 @@ class Meeting:
     lever: Array
     sense: float
 
-    def directions(self, friction: float = 0.0) -> Array:
-        """The force on the follower by a normal force of one (n, 2), with friction by a coefficient."""
-        return self.normal + friction * self.slip
+    def directions(self, flank: Array, friction: float = 0.0) -> Array:
+        """The force on the follower by a normal force of one (n, 2), with friction by a coefficient.
+
+        `flank` (n) has the sign of the normal force. On the other flank of a groove it is negative, but the cam's
+        surface drags the follower the same way: friction turns round in relation to it.
+        """
+        return self.normal + friction * np.where(flank < 0, -1.0, 1.0)[:, None] * self.slip
+
+    def share(self, flank: Array, friction: float = 0.0) -> Array:
+        """What a normal force of one does along the motion [1, or m]; zero or less where friction holds it fast."""
+        return np.asarray(np.sum(self.lever * self.directions(flank, friction), axis=1))
 
     def normal_force(self, push: Array, friction: float = 0.0) -> Array:
         """Normal force [N] that gives a push [N, or N m] along the motion.
@@ -51,12 +59,12 @@ class Meeting:
         Infinite with the push's sign where friction lets no force along the normal move the follower.
         """
         with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.sum(self.lever * self.directions(friction), axis=1)
+            share = self.share(push, friction)
             return np.asarray(np.where(share > 0, push / share, np.copysign(np.inf, push)))
 
     def torque(self, force: Array, friction: float = 0.0) -> Array:
         """Torque [N m] that drives the cam against a normal force [N], positive along its turning."""
-        along = self.directions(friction)
+        along = self.directions(force, friction)
         moment = self.place[:, 0] * along[:, 1] - self.place[:, 1] * along[:, 0]
         return np.asarray(self.sense * force * moment)
 
