@@ -54,7 +54,7 @@ SIZE = "800x600"
 @click.option(
     "--against", metavar=mark("LINK"), help=mark("The link that it rolls on; the frame if left out.")
 )
-@click.option("--size", metavar=mark("SIZE"), help=mark("Width and height in pixels; 800x600 if left out."))
+@click.option("--size", metavar="WxH", help=mark("Width and height in pixels; 800x600 if left out."))
 @click.option("--frames", type=int, metavar=mark("N"), help=mark("Number of frames; 60 if left out."))
 @click.option("--fps", type=float, metavar=mark("N"), help=mark("Frames a second; 20 if left out."))
 @click.option("--duration", type=float, metavar=mark("S"), help=mark("Seconds until it begins again."))

@@ -76,17 +76,24 @@ class _Said:
 def _pushing(facts: dict[str, float], said: _Said) -> Rows:
     """The least push, and the speed of jumping."""
     if facts["led"]:
-        return [(_("contact"), _("nothing presses the follower on the cam: it has to be led both ways"))]
+        return [
+            (
+                _("contact of cam and follower"),
+                _("nothing presses the follower on the cam: it has to be led both ways"),
+            )
+        ]
     least = facts["least_push"]
     if least == -math.inf:
         told = _("lost: the speed of the lift falls by a step at {angle}")
-        rows = [(_("contact"), told.format(angle=said.units.angle(facts["least_push_at"])))]
+        rows = [
+            (_("contact of cam and follower"), told.format(angle=said.units.angle(facts["least_push_at"])))
+        ]
     elif least < 0:
         told = _("lost: {push} along the follower").format(push=said.pushed(least))
-        rows = [(_("contact"), said.at(told, facts["least_push_at"]))]
+        rows = [(_("contact of cam and follower"), said.at(told, facts["least_push_at"]))]
     else:
         told = _("kept: at least {push} along the follower").format(push=said.pushed(least))
-        rows = [(_("contact"), said.at(told, facts["least_push_at"]))]
+        rows = [(_("contact of cam and follower"), said.at(told, facts["least_push_at"]))]
     return [*rows, (_("the follower jumps"), _jumps(facts, said))]
 
 

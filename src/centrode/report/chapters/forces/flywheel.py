@@ -29,8 +29,8 @@ COURSE = (
     ("moment_of_loads", "M_upright(c)"),
     ("work_of_loads", "A_upright(c)"),
     ("work_of_drive", "A_upright(d)"),
-    ("inertia_of_links", "J_upright(II)"),
-    ("energy_of_links", "T_upright(II)"),
+    ("inertia_of_links", 'J_upright("II")'),
+    ("energy_of_links", 'T_upright("II")'),
     ("energy_change", "Delta T_upright(I)"),
 )
 
@@ -70,7 +70,7 @@ def _meaning(found: Flywheel) -> tuple[Block, ...]:
     )
     groups = _(
         "Group I is what turns with the drive at a constant ratio, shafts and flywheel; group II the links, whose"
-        " inertia $J_upright(II)$ changes with the position."
+        ' inertia $J_upright("II")$ changes with the position.'
     )
     return Paragraph(cycle.format(n=found.turns)), Paragraph(groups)
 
@@ -86,11 +86,11 @@ def _works(study: ReportStudy, found: Flywheel) -> Lines:
     fraction = f"-frac({numbers.math(work)}, {turn})"
     mean = "overline(M)_upright(d)" if driven is not None and driven.driving else "M_upright(d)"
     lines.append((mean, f"-frac(A_upright(c), {turn})", fraction, with_unit(numbers, moment, "N m")))
-    lines.append(("T_upright(II)", "1/2 J_upright(II) omega_upright(m)^2"))
+    lines.append(('T_upright("II")', '1/2 J_upright("II") omega_upright(m)^2'))
     lines.append(
         (
             "Delta T_upright(I)",
-            "integral_0^phi (M_upright(d) + M_upright(c)) thin d phi - T_upright(II)",
+            'integral_0^phi (M_upright(d) + M_upright(c)) thin d phi - T_upright("II")',
         )
     )
     for name, value, at in (

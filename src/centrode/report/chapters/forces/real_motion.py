@@ -37,8 +37,8 @@ OMEGA = (
 )
 EPSILON = (
     "epsilon",
-    "frac(M_upright(c) + M_upright(d), J_upright(I) + J_upright(II))"
-    " - frac(omega^2 J'_upright(II), 2 (J_upright(I) + J_upright(II)))",
+    'frac(M_upright(c) + M_upright(d), J_upright(I) + J_upright("II"))'
+    ' - frac(omega^2 J\'_upright("II"), 2 (J_upright(I) + J_upright("II")))',
 )
 
 
