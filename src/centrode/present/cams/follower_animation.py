@@ -71,10 +71,17 @@ def animate_follower(
 
 def _drawn(cam: DrivingCam, sample: int, title: str) -> Figure:
     """The cam and its follower at a sample, without scales."""
-    low, high, size = _window(cam)
+    low, high, _size = window_of(cam)
     wide, tall = INCHES * (high - low) / float(np.max(high - low))
     figure = Figure(figsize=(wide, tall + HEADROOM))
-    axes = figure.add_axes((0.0, 0.0, 1.0, tall / (tall + HEADROOM)))
+    draw_turning(figure.add_axes((0.0, 0.0, 1.0, tall / (tall + HEADROOM))), cam, sample)
+    write_title(figure, title, "")
+    return figure
+
+
+def draw_turning(axes: Axes, cam: DrivingCam, sample: int) -> None:
+    """Draw the cam and its follower at a sample, in their window."""
+    low, high, size = window_of(cam)
     axes.set_aspect("equal")
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
@@ -85,11 +92,9 @@ def _drawn(cam: DrivingCam, sample: int, title: str) -> Figure:
     else:
         signs.fixed_hinge(axes, cam.factor * cam.pivot, size)
     axes.set_axis_off()
-    write_title(figure, title, "")
-    return figure
 
 
-def _window(cam: DrivingCam) -> tuple[Array, Array, float]:
+def window_of(cam: DrivingCam) -> tuple[Array, Array, float]:
     """Corners of the picture, and the radius of a hinge in it."""
     reach = cam.reach()
     low, high = reach.min(axis=0), reach.max(axis=0)
@@ -97,12 +102,12 @@ def _window(cam: DrivingCam) -> tuple[Array, Array, float]:
     # Room for the feet of hinges, and for a stem with its guide.
     low, high = low - 5.0 * size, high + 2.0 * size
     if cam.pivot is None:
-        high[1] = max(high[1], _top(cam) + (STEM + 4.0) * size)
+        high[1] = max(high[1], top_of(cam) + (STEM + 4.0) * size)
     room = MARGIN * float(np.max(high - low)) / 2
     return low - room, high + room, size
 
 
-def _top(cam: DrivingCam) -> float:
+def top_of(cam: DrivingCam) -> float:
     """The highest place of a translating follower's roller, edge or face."""
     lifts = cam.body.motion.lift(np.linspace(0.0, cam.body.edges[-1], 361))[0]
     roller = cam.body.touch.roller if math.isfinite(cam.body.touch.roller) else 0.0
@@ -111,7 +116,7 @@ def _top(cam: DrivingCam) -> float:
 
 def _draw_stem(axes: Axes, cam: DrivingCam, sample: int, size: float) -> None:
     """The stem of a translating follower, between the walls of its guide."""
-    foot, top = cam.foot(sample), _top(cam)
+    foot, top = cam.foot(sample), top_of(cam)
     end = np.array([0.0, STEM * size + top - cam.factor * cam.body.guide.start])
     axes.plot(*np.array([foot, foot + end]).T, color=INK, linewidth=1.6, zorder=2.3)
     for side in (-1.0, 1.0):

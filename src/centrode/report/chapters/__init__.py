@@ -21,6 +21,8 @@ from centrode.report.chapters.cams.chapters import (
     cam_routes_chapter,
     cam_walking_chapter,
 )
+from centrode.report.chapters.followers.given import follower_data_chapter
+from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.flywheel import flywheel_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.forces.joints import reactions_chapter
@@ -68,8 +70,8 @@ def either(*makers: Make) -> Make:
 
 
 CHAPTERS: Mapping[str, Kind] = {
-    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter)),
-    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter)),
+    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)),
+    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
