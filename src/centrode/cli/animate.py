@@ -151,11 +151,11 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(name for name in names if name and name != "none")
 
 
-def _end(description: ct.Mechanism | ct.Cam, text: str | None, where: str) -> float | None:
+def _end(description: ct.Mechanism | ct.Cam | ct.PlateCam, text: str | None, where: str) -> float | None:
     """An end of the range."""
     if text is None:
         return None
-    if isinstance(description, ct.Cam):
+    if isinstance(description, ct.Cam | ct.PlateCam):
         raise InputError(where, _("a cam is shown as a whole"), _("take it out"))
     return ct.range_value(description, text, where)
 

@@ -14,7 +14,12 @@ from centrode.locale import _
 
 if TYPE_CHECKING:
     from centrode.present.animations.animate import animate
-    from centrode.present.animations.given import animate_centrodes, animate_motion, animate_walking
+    from centrode.present.animations.given import (
+        animate_centrodes,
+        animate_follower,
+        animate_motion,
+        animate_walking,
+    )
     from centrode.present.animations.paces import Animation, Pace
     from centrode.present.animations.shown import Shown
     from centrode.present.cams.bodies import cam_body_figures
@@ -27,7 +32,6 @@ if TYPE_CHECKING:
         cam_path_figure,
         cam_routes_figure,
     )
-    from centrode.present.cams.follower_animation import animate_follower
     from centrode.present.cams.forces import cam_forces_figure
     from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
     from centrode.present.cams.outline_dxf import write_outlines_dxf
@@ -180,7 +184,6 @@ _attached, __dir__, _names = lazy_loader.attach(
         "forces.balance_tables": ["write_balance_csv", "write_harmonics_csv"],
         "cams.bodies": ["cam_body_figures"],
         "cams.drawing": ["cam_curves_figure", "cam_figures", "cam_path_figure", "cam_routes_figure"],
-        "cams.follower_animation": ["animate_follower"],
         "cams.forces": ["cam_forces_figure"],
         "cams.motion_drawing": ["cam_motion_figure", "laws_figure"],
         "cams.choice": ["choice_figures", "trade_off_figure"],
@@ -198,7 +201,12 @@ _attached, __dir__, _names = lazy_loader.attach(
         "centres": ["centres_figure"],
         "centres_tables": ["write_centres_csv", "write_centrodes_csv"],
         "animations.animate": ["animate"],
-        "animations.given": ["animate_centrodes", "animate_motion", "animate_walking"],
+        "animations.given": [
+            "animate_centrodes",
+            "animate_follower",
+            "animate_motion",
+            "animate_walking",
+        ],
         "animations.paces": ["Animation", "Pace"],
         "animations.shown": ["Shown"],
         "centrodes": ["centrodes_figure"],

@@ -40,7 +40,14 @@ def dxf_document(path: Path) -> Iterator[tuple[Any, Any]]:
         document = library.new(VERSION, units=MILLIMETRES)
         document.header["$MEASUREMENT"] = 1
         yield library, document
+        _declare(document)
         document.saveas(path, encoding="utf-8")
+
+
+def _declare(document: Any) -> None:
+    """Declare the classes of what is drawn in alphabetical order; the library would take that of a set of texts."""
+    for name in sorted({entity.dxftype() for entity in document.entitydb.values()}):
+        document.classes.add_class(name)
 
 
 @contextmanager

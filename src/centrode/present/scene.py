@@ -13,7 +13,7 @@ from centrode.present.sheet import Sheet
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Guide, Link
-    from centrode.present.cams.driving import DrivingCam
+    from centrode.present.cams.driving_cam import DrivingCam
 
 Array = NDArray[np.float64]
 Samples = int | slice

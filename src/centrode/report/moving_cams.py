@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,9 +12,9 @@ from matplotlib.figure import Figure
 
 from centrode.locale import _
 from centrode.model.asked import Display
-from centrode.present.cams.driving import DrivingCam
-from centrode.present.cams.driving_drawing import MARK
-from centrode.present.cams.follower_animation import STEM, draw_turning, top_of, window_of
+from centrode.present.animations.followers import GAP, WALLS, FollowerLayer
+from centrode.present.animations.layers import View
+from centrode.present.drawing import MARGIN
 from centrode.present.style import GROUND, INK, MUTED, house_style
 from centrode.report.blocks import Moving, Outline, shown
 from centrode.report.circles import AT_REST, LIFT, Array, Samples, circle, hatched
@@ -22,6 +23,7 @@ from centrode.report.numbers import Numbers
 
 if TYPE_CHECKING:
     from centrode.cams.followers.bodies import FollowerCam
+    from centrode.present.cams.driving_cam import DrivingCam
 
 TURN = 180
 """Pictures of a turn."""
@@ -33,15 +35,14 @@ def cam_shapes(cam: DrivingCam, samples: Samples, size: float) -> Iterator[Outli
     """A cam with what its follower touches it with, in units of the cam's picture; `size` is the radius of a hinge."""
     turned = (1.0 if cam.forward else -1.0) * cam.angles[samples]
     poses = np.column_stack([np.tile(cam.hub, (len(samples), 1)), turned])
-    still = DrivingCam(cam.body, cam.centre, cam.axes, np.zeros(1), cam.pivot, cam.factor)
+    still = replace(cam, angles=np.zeros(1))
     profile = still.outline(0) - cam.hub
     yield Outline(profile, poses, MUTED, filled=True)
-    mark = cam.factor * np.array([[0.0, 0.0], [0.0, MARK * cam.body.base_radius]]) @ cam.axes
-    yield Outline(np.concatenate([profile, profile[:1], LIFT, mark]), poses, INK)
-    for line in (cam.arm, cam.face):
-        ends = [line(int(sample)) for sample in samples]
-        if ends[0] is not None:
-            yield _rod(np.array(ends))
+    closed = np.concatenate([profile, profile[:1], LIFT, still.mark(0) - cam.hub])
+    yield Outline(closed, poses, INK)
+    lines = np.array([cam.lines(int(sample)) for sample in samples])
+    for k in range(lines.shape[1]):
+        yield _rod(lines[:, k])
     rollers = [cam.roller(int(sample)) for sample in samples]
     if rollers[0] is not None:
         centres = np.array([one[0] for one in rollers if one is not None])
@@ -70,11 +71,15 @@ def moving_follower(body: FollowerCam, title: str = "") -> Moving:
         Of the cam, as its user wrote it.
     """
     angles = math.tau * np.arange(TURN + 1) / TURN
-    cam = DrivingCam.alone(body, angles, 1.0)
-    samples = np.arange(TURN + 1)
-    low, high, size = window_of(cam)
+    layer = FollowerLayer(body, angles, 1.0)
+    cam, samples = layer.cam, np.arange(TURN + 1)
+    reach = layer.reach()
+    low, high = reach.min(axis=0), reach.max(axis=0)
+    view = View(low, high, float(np.max(high - low)) / INCHES)
+    layer.stand(view)
+    size = view.sign
     tips = np.array([cam.foot(int(sample)) for sample in samples])
-    marks = body.in_frame(np.array([[0.0, MARK * body.base_radius]]), angles)
+    marks = np.array([cam.mark(int(sample))[1] for sample in samples])
     places = {"O": np.zeros((1, 2)), "K": marks, "A": tips}
     bodies = {"cam": ("O", "K")}
     loose = ["K", *(["A"] if not 0.0 < body.touch.roller < math.inf else [])]
@@ -84,7 +89,7 @@ def moving_follower(body: FollowerCam, title: str = "") -> Moving:
             bodies["arm"] = ("C", "A")
     shapes = list(cam_shapes(cam, samples, size))
     if cam.pivot is None:
-        shapes += _stem(cam, tips, size)
+        shapes += _stem(layer, tips)
     numbers = Numbers(Display(), DIGITS)
     degrees = numbers.column(np.degrees(angles).tolist(), least=1e-9)
     return Moving(
@@ -96,7 +101,7 @@ def moving_follower(body: FollowerCam, title: str = "") -> Moving:
         drive=angles,
         drive_texts=tuple(f"φ = {one}°" for one in degrees),
         tracks=(),
-        still=picture(_still(cam), ""),
+        still=picture(_still(layer, view), ""),
         caption=_("Motion of {title}").format(title=shown(title) or _("the cam and its follower")),
         shapes=tuple(shapes),
         driven=("K",),
@@ -105,23 +110,29 @@ def moving_follower(body: FollowerCam, title: str = "") -> Moving:
     )
 
 
-def _stem(cam: DrivingCam, tips: Array, size: float) -> Iterator[Outline]:
+def _stem(layer: FollowerLayer, tips: Array) -> Iterator[Outline]:
     """The stem of a translating follower, and the walls of its guide."""
-    top = top_of(cam)
-    length = STEM * size + top - cam.factor * cam.body.guide.start
     poses = np.column_stack([tips, np.zeros(len(tips))])
-    yield Outline(np.array([[0.0, 0.0], [0.0, length]]), poses, INK)
+    yield Outline(np.array([[0.0, 0.0], [0.0, layer.stem]]), poses, INK)
+    low = layer.top + GAP * layer.far
     for side in (-1.0, 1.0):
-        x = tips[0, 0] + 1.2 * side * size
-        ends = np.array([x, top + 2.0 * size]), np.array([x, top + 9.0 * size])
-        yield Outline(hatched(*ends, np.array([side, 0.0]), size), AT_REST, GROUND)
+        x = tips[0, 0] + 1.2 * side * layer.size
+        ends = np.array([x, low]), np.array([x, low + WALLS * layer.far])
+        yield Outline(hatched(*ends, np.array([side, 0.0]), layer.size), AT_REST, GROUND)
 
 
-def _still(cam: DrivingCam) -> Figure:
+def _still(layer: FollowerLayer, view: View) -> Figure:
     """The cam and its follower at the beginning of a turn."""
-    low, high, _size = window_of(cam)
+    room = MARGIN * float(np.max(view.high - view.low))
+    low, high = view.low - room, view.high + room
     with house_style():
         wide, tall = INCHES * (high - low) / float(np.max(high - low))
         figure = Figure(figsize=(wide, tall))
-        draw_turning(figure.add_axes((0.0, 0.0, 1.0, 1.0)), cam, 0)
+        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        axes.set_aspect("equal")
+        axes.set_xlim(low[0], high[0])
+        axes.set_ylim(low[1], high[1])
+        layer.ground(axes)
+        layer.draw(axes, 0)
+        axes.set_axis_off()
     return figure

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model.cams.description import Cam
+from centrode.model.cams.plate import PlateCam
 from centrode.present.animations.captions import instant_captions
 from centrode.present.animations.encoding import Said, need_video, no_progress
 from centrode.present.animations.layers import Layer
@@ -31,7 +32,7 @@ _of_cams = functools.partial(importlib.import_module, "centrode.present.animatio
 
 
 def animate(
-    described: Mechanism | Cam,
+    described: Mechanism | Cam | PlateCam,
     path: str | Path,
     shown: Shown | None = None,
     pace: Pace | None = None,
@@ -49,8 +50,8 @@ def animate(
 
     Parameters
     ----------
-    described : Mechanism or Cam
-        Of a cam with a mover the walking wheel is shown, of another the cam that turns below its roller.
+    described : Mechanism, Cam or PlateCam
+        Of a cam with a mover the walking wheel is shown, of another the cam that turns below its roller or follower.
     path : str or Path
         The file; it appears whole or not at all, and replaces one that is there.
     shown : Shown
@@ -75,7 +76,7 @@ def animate(
     kind = kind_of(path)
     if kind == ".mp4":
         need_video()
-    if isinstance(described, Cam):
+    if isinstance(described, Cam | PlateCam):
         if shown is not None or start is not None or stop is not None:
             raise InputError("show", _("a cam is shown as a whole"), _("take it out"))
         found: Animation = _of_cams().animate_cam(described, path, pace, size, dark, said)

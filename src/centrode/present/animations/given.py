@@ -1,4 +1,4 @@
-"""Animations of results that are there already: a motion, centrodes, a walking wheel."""
+"""Animations of results that are there already: a motion, centrodes, a walking wheel, a cam with its follower."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ import numpy as np
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.present.animations import timing
 from centrode.present.animations.animate import stage_of
 from centrode.present.animations.cams import WalkingLayer
 from centrode.present.animations.captions import turned_caption
 from centrode.present.animations.centrodes import CentrodesLayer
 from centrode.present.animations.encoding import Said, no_progress
+from centrode.present.animations.followers import follower_stage
 from centrode.present.animations.motions import scene_of_film
 from centrode.present.animations.paces import write_stage
 from centrode.present.animations.shown import Shown
@@ -27,6 +29,7 @@ from centrode.study.moving.films import film_from, frame_ways
 if TYPE_CHECKING:
     import xarray
 
+    from centrode.cams.followers.bodies import FollowerCam
     from centrode.cams.wheel.walking import Mover
     from centrode.model.asked import Display
     from centrode.model.mechanism import Mechanism
@@ -34,6 +37,7 @@ if TYPE_CHECKING:
 FRAMES = 48
 FRAMES_OF_A_STEP = 36
 PER_SECOND = 100.0 / 7.0
+FRAMES_OF_A_TURN, PER_SECOND_OF_A_TURN = timing.FRAMES, timing.PER_SECOND
 
 
 def animate_motion(
@@ -130,3 +134,35 @@ def animate_walking(
         [layer], count, SIZE, title, lambda frame: turned_caption(float(angles[frame]), display), dark=dark
     )
     write_stage(stage, Path(path), Timing(count, PER_SECOND), said)
+
+
+def animate_follower(
+    body: FollowerCam,
+    path: Path,
+    title: str = "",
+    display: Display | None = None,
+    *,
+    frames: int | None = None,
+    dark: bool = False,
+    said: Said = no_progress,
+) -> None:
+    """Write an animation (GIF or MP4) of one turn of a cam below its follower.
+
+    Parameters
+    ----------
+    body : FollowerCam
+        Of `follower_cam`.
+    path : Path
+        The file.
+    title : str
+    display : Display, optional
+        Its units of length and angle; metres and radians if left out.
+    frames : int
+        Of a turn; 60 if left out.
+    dark : bool
+        Light lines on a dark ground.
+    said : callable
+        Told after each frame how many are done, and of how many.
+    """
+    stage = follower_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
+    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND_OF_A_TURN), said)

@@ -1,4 +1,4 @@
-"""Layers of the mechanism itself: frame, links, sliders, wheels, hinges, names; in the plane and on the sphere."""
+"""Layers of the mechanism itself: frame, cams, links, wheels, hinges, names; in the plane and on the sphere."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from centrode.present import signs
 from centrode.present.animations.layers import Array, View
 from centrode.present.animations.motions import MotionLayer
+from centrode.present.cams.driving_drawing import draw_axes_of_cams, draw_turned_cams
 from centrode.present.drawing import NAME_POINTS, draw_drive, draw_frame, draw_hinges, draw_links, used_points
 from centrode.present.labels import steady_offsets
 from centrode.present.obstacles import lines
@@ -57,6 +58,7 @@ class LinksLayer(MotionLayer):
             axes.set_ylim(limits[1])
         else:
             draw_frame(axes, self.scene, 0)
+            draw_axes_of_cams(axes, self.scene)
         if self.film.course.loop == "back":  # the sense of the drive changes
             return
         if isinstance(self.scene, Globe):
@@ -72,6 +74,7 @@ class LinksLayer(MotionLayer):
             draw_arcs(axes, self.scene, sample, self.pens)
             draw_points(axes, self.scene, sample, self.pens)
         else:
+            draw_turned_cams(axes, self.scene, sample)
             draw_links(axes, self.scene, sample, self.pens)
             draw_hinges(axes, self.scene, sample, self.pens)
             self._draw_fixed_hinges(axes, self.scene, sample)
@@ -86,6 +89,8 @@ class LinksLayer(MotionLayer):
         for name in scene.mechanism.frame.points:
             if name in used and name in places:
                 signs.hinge(axes, places[name], scene.sign, GROUND)
+        for cam in scene.cams:
+            signs.hinge(axes, cam.hub, scene.sign, GROUND)
 
     def _segments(self, sample: int) -> list[tuple[Array, Array]]:
         if isinstance(self.scene, Globe):

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from importlib.util import find_spec
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import lazy_loader
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from centrode.errors import InputError
-from centrode.locale import _
 from centrode.present.cams.outline_strokes import STROKES, grouped
+from centrode.present.dxf_files import dxf_document
 
 if TYPE_CHECKING:
     from centrode.cams.profiles.outlines import Outline
 
-VERSION = "R2010"
-MILLIMETRES = 4
 DEGREE = 3
 CENTRE = 4.0
 """Half the length of the strokes of the centre mark [mm]."""
@@ -29,8 +22,6 @@ TEXT = 3.5
 """Height of the title [mm]."""
 CREASE = 1e-9
 """Pieces whose ends are nearer than this share of a metre are one polyline."""
-
-_ezdxf = functools.partial(lazy_loader.load, "ezdxf")  # an extra, and slow to import
 
 
 def write_outlines_dxf(outlines: Sequence[Outline], path: Path, title: str = "") -> None:
@@ -45,16 +36,7 @@ def write_outlines_dxf(outlines: Sequence[Outline], path: Path, title: str = "")
     InputError
         The extra `drawings` is not installed.
     """
-    if find_spec("ezdxf") is None:
-        raise InputError(
-            str(path),
-            _("DXF needs ezdxf, which is not installed"),
-            _('install it with pip install "centrode[drawings]"'),
-        )
-    library = _ezdxf()
-    with _fixed(library):
-        document = library.new(VERSION, units=MILLIMETRES)
-        document.header["$MEASUREMENT"] = 1
+    with dxf_document(path) as (_library, document):
         space = document.modelspace()
         for layer, pieces in grouped(outlines).items():
             stroke = STROKES[layer]
@@ -66,19 +48,6 @@ def write_outlines_dxf(outlines: Sequence[Outline], path: Path, title: str = "")
                 space.add_lwpolyline(places.tolist(), dxfattribs={"layer": f"points-{layer}"})
         _centre(document, space)
         _title(document, space, outlines, title)
-        document.saveas(path, encoding="utf-8")
-
-
-@contextmanager
-def _fixed(library: Any) -> Iterator[None]:
-    """Context in which files carry no time and no chance identity."""
-    options = library.options
-    before = options.write_fixed_meta_data_for_testing
-    options.write_fixed_meta_data_for_testing = True
-    try:
-        yield
-    finally:
-        options.write_fixed_meta_data_for_testing = before
 
 
 def _spline(space: Any, piece: Outline, layer: str) -> None:

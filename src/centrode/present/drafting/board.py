@@ -19,6 +19,8 @@ ROUND = 48
 HEAD = (7.0, 2.2)
 """Length and half width of an arrow's head, in points of the letters."""
 OPEN, CLOSED = "hinges", "pitch-circles"
+ROLLING = ("cams",)
+"""Layers whose open circles are rollers, not hinges."""
 
 
 class Board:
@@ -62,7 +64,8 @@ class Board:
         x, y = self.scale * np.asarray(patch.center, dtype=float)
         radius = self.scale * patch.radius
         white = tuple(patch.get_facecolor()) == WHITE
-        layer = OPEN if white else CLOSED if patch.get_linestyle() not in ("-", "solid") else self.layer
+        open_hinge = white and self.layer not in ROLLING
+        layer = OPEN if open_hinge else CLOSED if patch.get_linestyle() not in ("-", "solid") else self.layer
         if _is_drawn(patch.get_edgecolor()) or not _is_faint(patch.get_facecolor()):
             self.drawing.rings.append(Ring(layer, (float(x), float(y)), float(radius), level))
         if white:

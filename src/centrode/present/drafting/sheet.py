@@ -1,4 +1,4 @@
-"""A mechanism at one instant as a drawing at full size: links, frame, guides, wheels, paths, centrodes, a title."""
+"""A mechanism at one instant as a drawing at full size: links, frame, wheels, cams, paths, centrodes, a title."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from centrode.errors import NotComputedYet
 from centrode.locale import _
+from centrode.present.cams.driving_drawing import draw_axes_of_cams, draw_turned_cams
 from centrode.present.drafting.board import Board, on_paper
 from centrode.present.drafting.strokes import Drawing, Stroke, Words
 from centrode.present.drawing import (
@@ -71,6 +72,9 @@ def mechanism_drawing(
     links = pens(mechanism.link_names)
     with board.on("frame"):
         draw_frame(board, scene, sample)
+        draw_axes_of_cams(board, scene)
+    with board.on("cams"):
+        draw_turned_cams(board, scene, sample)
     with board.on("links"):
         draw_links(board, scene, sample, links)
     with board.on("hinges"):

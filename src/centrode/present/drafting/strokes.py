@@ -30,6 +30,7 @@ LAYERS = {
     "centrodes": Look(6, "#CC79A7", 0.35),
     "frame": Look(8, "#404040", 0.35),
     "pitch-circles": Look(5, "#0072B2", 0.25, CHAIN),
+    "cams": Look(4, "#332288", 0.5),
     "links": Look(7, "#202020", 0.7),
     "hinges": Look(7, "#202020", 0.35),
     "drive": Look(1, "#D55E00", 0.35),

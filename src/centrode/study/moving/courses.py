@@ -109,7 +109,7 @@ def course_from(
     places = places_of(mechanism, part)
     if places[0] == places[-1]:
         raise InputError("", _("only one position is reached: nothing moves"), _("ask for another range"))
-    loop: Loop = "round" if whole.all() and closes(part) else "back"
+    loop: Loop = "round" if whole.all() and closes(part) and _cams_close(mechanism, part) else "back"
     asked = asked or len(whole)
     reached = len(part["sample"]) if reached is None else reached
     return Course(mechanism, part, places, loop, turns, asked - reached, asked)
@@ -133,6 +133,13 @@ def closes(found: xr.Dataset) -> bool:
     turned = found["angle"].isel(sample=-1).to_numpy() - found["angle"].isel(sample=0).to_numpy()
     turned = turned[np.isfinite(turned)]
     return bool((np.abs(np.remainder(turned + math.pi, math.tau) - math.pi) <= math.tau * CLOSED).all())
+
+
+def _cams_close(mechanism: Mechanism, found: xr.Dataset) -> bool:
+    """Whether every cam that drives has turned fully: in a rest of its follower nothing else tells."""
+    time = found["time"].to_numpy()
+    turned = [(drive.turning or 0.0) * float(time[-1] - time[0]) for drive in mechanism.drives]
+    return all(abs(math.remainder(angle, math.tau)) <= math.tau * CLOSED for angle in turned)
 
 
 def _part(whole: npt.NDArray[np.bool_], distance: Array) -> tuple[int, int]:
