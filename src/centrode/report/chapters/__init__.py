@@ -22,6 +22,7 @@ from centrode.report.chapters.cams.chapters import (
     cam_walking_chapter,
 )
 from centrode.report.chapters.followers.given import follower_data_chapter
+from centrode.report.chapters.followers.lift import lift_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.flywheel import flywheel_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
@@ -92,6 +93,7 @@ CHAPTERS: Mapping[str, Kind] = {
     "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
     "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
+    "lift": Kind(mark("Motion of the follower"), lift_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
     "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),

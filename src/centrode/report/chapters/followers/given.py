@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import numpy as np
 from centrode.locale import _
 from centrode.report.blocks import Block, Chapter, Section, Table
 from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.report.numbers import NARROW, spelled_unit
 from centrode.study.cams.motion import CONTACTS, KINDS
 
 if TYPE_CHECKING:
@@ -43,7 +45,7 @@ def given_rows(cam: PlateCam, numbers: Numbers) -> Iterator[tuple[str, str]]:
     turns = {"counter-clockwise": _("counter-clockwise"), "clockwise": _("clockwise")}
     yield _("the cam turns"), turns[body.turn]
     if body.speed is not None:
-        yield _("speed of the cam"), numbers.measured(body.speed, "rad/s")
+        yield _("speed of the cam"), turning_text(body.speed, numbers)
     if body.thickness is not None:
         yield _("thickness of the cam"), numbers.measured(body.thickness, "m")
     yield from _material(_("material of the cam"), body.material, numbers)
@@ -62,6 +64,13 @@ def given_rows(cam: PlateCam, numbers: Numbers) -> Iterator[tuple[str, str]]:
     yield from _burden(cam, numbers)
     if cam.tool is not None:
         yield _("radius of the cutter"), numbers.measured(cam.tool.radius, "m")
+
+
+def turning_text(speed: float, numbers: Numbers) -> str:
+    """The speed of a cam [rad/s] in turns a minute and in radians."""
+    told = _("{turns} turns a minute, {rate}")
+    turns = numbers.plain(speed * 30.0 / math.pi)
+    return told.format(turns=turns, rate=f"{numbers.plain(speed)}{NARROW}{spelled_unit('rad/s')}")
 
 
 def _burden(cam: PlateCam, numbers: Numbers) -> Iterator[tuple[str, str]]:
@@ -112,7 +121,8 @@ def segment_tables(cam: PlateCam, numbers: Numbers) -> Iterator[Table]:
         rows.append((number, segment.curve, start, start + segment.angle, before, after))
         start, before = start + segment.angle, after
     columns = [
-        numbers.column([row[k] for row in rows], of) for k, of in ((2, "rad"), (3, "rad"), (4, unit), (5, unit))
+        tuple(numbers.plain(row[k] * numbers.shown(of)[0]) for row in rows)
+        for k, of in ((2, "rad"), (3, "rad"), (4, unit), (5, unit))
     ]
     head = (
         _("segment"), _("curve"), numbers.head(_("$phi$ from"), "rad"), numbers.head(_("$phi$ to"), "rad"),

@@ -8,8 +8,10 @@ import numpy as np
 
 from centrode.cams.followers.described import bounded, follower_cam
 from centrode.cams.followers.motion import FollowerMotion, follower_motion
+from centrode.report.blocks import Block, Check, Section, Table
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.report.rows import told
 from centrode.study.cams.results import FOLLOWER_PARTS
 from centrode.study.cams.said import Asked, CamPart
 
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from centrode.cams.followers.bodies import FollowerCam
-    from centrode.report.blocks import Table
     from centrode.report.study import ReportStudy
 
 MEGA = 1e-6
@@ -65,3 +66,13 @@ def course(study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]],
         scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
         found.append(Column(f"${letter}$", shown_unit, scale * values))
     return over_samples(study.numbers, found, few(data.sizes["sample"], ROWS), caption)
+
+
+def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[Section, ...]:
+    """Sections with something in them."""
+    return tuple(Section(title, blocks) for title, blocks in titled if blocks)
+
+
+def told_failures(study: ReportStudy, part: CamPart) -> tuple[Check, ...]:
+    """What the cam cannot do."""
+    return tuple(Check(told(f"{one}.", study.numbers), False) for one in part.failures)

@@ -9,7 +9,7 @@ from centrode.locale import _
 from centrode.model.cams.plate import PlateCam
 from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
 from centrode.report.blocks import Block, Chapter, Section, Table, shown
-from centrode.report.chapters.followers.given import given_rows, segment_tables
+from centrode.report.chapters.followers.given import given_rows, segment_tables, turning_text
 from centrode.report.numbers import Numbers
 from centrode.report.study import ReportStudy
 
@@ -145,7 +145,7 @@ class _Data:
         """A cam that drives, with its follower's motion."""
         rows = [*given_rows(cam, self.numbers)]
         speed = next((k for k, row in enumerate(rows) if row[0] == _("speed of the cam")), None)
-        turning = (_("speed of the cam"), self.numbers.measured(drive.turning or 0.0, "rad/s"))
+        turning = (_("speed of the cam"), turning_text(drive.turning or 0.0, self.numbers))
         rows = [row for k, row in enumerate(rows) if k != speed] + [turning]
         rows.append((_("angle of the cam at $t = 0$"), self.numbers.measured(drive.cam_angle, "rad")))
         if drive.cam_point is not None:
