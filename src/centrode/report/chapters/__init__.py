@@ -22,7 +22,10 @@ from centrode.report.chapters.cams.chapters import (
     cam_walking_chapter,
 )
 from centrode.report.chapters.followers.given import follower_data_chapter
+from centrode.report.chapters.followers.laws import laws_chapter
 from centrode.report.chapters.followers.lift import lift_chapter
+from centrode.report.chapters.followers.profile import follower_profile_chapter
+from centrode.report.chapters.followers.sizing import base_radius_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.flywheel import flywheel_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
@@ -94,9 +97,11 @@ CHAPTERS: Mapping[str, Kind] = {
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
     "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
     "lift": Kind(mark("Motion of the follower"), lift_chapter),
+    "laws": Kind(mark("Laws of motion for one rise"), laws_chapter),
+    "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
-    "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
+    "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
