@@ -11,7 +11,7 @@ from centrode.present.cams.bodies import cam_body_figures
 from centrode.present.cams.plate_curves import plate_curves_figure
 from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph
 from centrode.report.chapters.followers.parts import body_of, course, part_of, sections_of, told_failures
-from centrode.report.chapters.followers.profile_checks import by_formulas, by_instant_centre
+from centrode.report.chapters.followers.profile_checks import by_formulas, by_instant_centre, not_undercut
 from centrode.report.chapters.followers.spelled import Spelled
 from centrode.report.figures import picture
 from centrode.report.rows import rows_table, told
@@ -62,7 +62,14 @@ def _formulas(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
             " along the axes of the frame:"
         ))  # fmt: skip
     yield Formula((*letters, *((name, text) for name, text in spelled.aids()), *((a, b) for a, b, _c in spelled.place())))
-    yield Paragraph(_("For example, where the pressure angle or the slope of the lift is greatest:"))
+    told_angle = study.numbers.measured(phi, "rad")
+    if study.wishes.instants:
+        example = _("For example at the chosen angle, $phi$ = {angle}:")
+    elif spelled.book.has_pressure_angle:
+        example = _("For example where the pressure angle is greatest, at $phi$ = {angle}:")
+    else:
+        example = _("For example where the velocity is greatest, at $phi$ = {angle}:")
+    yield Paragraph(example.format(angle=told_angle))
     kept = ("u_x", "u_y", "w_x", "w_y", "K", "R")
     worked = [line if line[0] not in kept[:4] else (line[0], line[-1]) for line in spelled.radius()]
     yield Formula((*spelled.start(), *spelled.lift(), *spelled.pressure(), *worked,
@@ -84,8 +91,7 @@ def _shown_angle(study: ReportStudy, body: FollowerCam) -> float:
 def _undercut(body: FollowerCam, study: ReportStudy) -> Block:
     """Whether the follower cuts the profile away."""
     if not body.undercuts:
-        text = _("The profile is not undercut: its curvature changes its sign nowhere but through straight places.")
-        return Check(text, True)
+        return not_undercut(body)
     text = _("The profile is undercut at {stretches} deg: there the lift is lost.")
     return Check(told(text.format(stretches=stretches_text(body.undercuts)), study.numbers), False)
 

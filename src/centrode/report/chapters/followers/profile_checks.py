@@ -9,13 +9,13 @@ import numpy as np
 
 from centrode.cams.followers.forces.meeting_of import meeting_of
 from centrode.locale import _
+from centrode.report.blocks import Check
 from centrode.report.chapters.followers.parts import ROUNDED
 from centrode.report.chapters.followers.textbook import Array, Textbook
 from centrode.report.telling import measured
 
 if TYPE_CHECKING:
     from centrode.cams.followers.bodies import FollowerCam
-    from centrode.report.blocks import Check
     from centrode.report.study import ReportStudy
 
 PLACES = 721
@@ -69,3 +69,14 @@ def by_instant_centre(body: FollowerCam) -> Check:
         " to {share} of $r_0$."
     )
     return measured(text, apart, body.base_radius, ROUNDED)
+
+
+def not_undercut(body: FollowerCam) -> Check:
+    """The closed forms against a profile on which no stretch runs back."""
+    book, phi = Textbook(body), angles()
+    rows = body.motion.lift(phi, 3)
+    if book.flat:
+        positive = bool(np.all(book.radius(rows) > 0.0))
+        return Check(_("The profile is not undercut: at 720 angles the formula of $R$ stays positive."), positive)
+    positive = bool(np.all(1.0 - book.roller * book.bending(rows) > 0.0))
+    return Check(_("The profile is not undercut: at 720 angles $1 - r K$ stays positive."), positive)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.cams.followers.guidance import Oscillating
-from centrode.report.chapters.followers.textbook import Textbook
+from centrode.report.chapters.followers.textbook import Array, Textbook
 from centrode.report.formulas import factor, with_unit
 
 if TYPE_CHECKING:
@@ -19,13 +19,25 @@ if TYPE_CHECKING:
 Lines = Iterator[tuple[str, ...]]
 
 
+ROUNDING = 1e-12
+"""Share of its greatest size below which a derivative is rounding."""
+NOTHING = 1e-9
+"""Share of the base radius below which a radius of curvature is that of a cusp."""
+
+
+def _clean(rows: Array, body: FollowerCam) -> Array:
+    """Lift and derivatives without what rounding has left of zero."""
+    sizes = np.abs(body.motion.lift(np.linspace(0.0, math.tau, 361), len(rows) - 1)).max(axis=1)
+    return np.where(np.abs(rows) <= ROUNDING * sizes[:, None], 0.0, rows)
+
+
 class Spelled:
     """Formulas of one cam, with numbers at an angle [rad]; lengths in the unit of the display, psi in radians."""
 
     def __init__(self, body: FollowerCam, numbers: Numbers, phi: float) -> None:
         self.body, self.numbers, self.phi = body, numbers, phi
         self.book = Textbook(body)
-        self.rows = body.motion.lift(np.array([phi]), 3)
+        self.rows = _clean(body.motion.lift(np.array([phi]), 3), body)
         self.turned = body.guide.start + float(self.rows[0, 0])
         self.sign, self.other = ("+", "-") if body.sense > 0 else ("-", "+")
 
@@ -130,7 +142,7 @@ class Spelled:
         elif not isinstance(guide, Oscillating):
             base = self.length(guide.start)
             worked = f"{base} + {self.length(value)} + {self.length(second)}"
-            yield "R", "r_0 + s + s''", worked, self.told(found)
+            yield "R", "r_0 + s + s''", worked, self.told(0.0 if abs(found) < NOTHING * guide.start else found)
         else:
             d, pace = self.length(guide.distance), f"(1 {self.sign} psi')"
             waves = [f"{wave} ({self.angle(self.turned)})" for wave in ("sin", "cos")]
@@ -195,7 +207,7 @@ class Spelled:
         turns = ("cos phi", "sin phi")
         if self.book.flat and not self.book.swings:
             return (
-                f"{minus}((r_0 + s) {turns[1]} + s' {turns[0]})",
+                f"(r_0 + s) {turns[1]} + s' {turns[0]}" if not minus else f"-((r_0 + s) {turns[1]} + s' {turns[0]})",
                 f"(r_0 + s) {turns[0]} - s' {turns[1]}",
             )
         if self.book.flat:
