@@ -131,4 +131,4 @@ def _table(study: ReportStudy, data: xr.Dataset) -> Table:
     if "contact_stress" in data:
         columns += [("contact_stress", "sigma"), ("contact_half_width", "a")]
     caption = _("Forces over a turn; a dash where the contact is lost or nothing is known")
-    return course(study, data, columns, caption)
+    return course(study, data, columns, caption, brief=True)

@@ -28,7 +28,6 @@ from centrode.report.chapters.followers.parts import (
 from centrode.report.chapters.followers.segments import segment_blocks
 from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.report.figures import picture
-from centrode.report.formulas import with_unit
 from centrode.report.numbers import NOTHING
 from centrode.report.rows import rows_table
 
@@ -140,11 +139,11 @@ def _tables(study: ReportStudy) -> Iterator[Table]:
     caption = _("Lift and derivatives by the angle of the cam; where a derivative jumps, from there on")
     if study.wishes.instants:
         yield _at_instants(study)
-    yield course(study, data, columns, caption)
+    yield course(study, data, columns, caption, brief=True)
     if motion.speed is not None:
         letters = ("dot(psi)", "dot.double(psi)", "dot.triple(psi)") if motion.swings else ("v", "a", "j")
         caption = _("Velocity, acceleration and jerk at the speed of the cam")
-        yield course(study, data, list(zip(in_time, letters, strict=True)), caption)
+        yield course(study, data, list(zip(in_time, letters, strict=True)), caption, brief=True)
 
 
 def _at_instants(study: ReportStudy) -> Table:
@@ -157,7 +156,3 @@ def _at_instants(study: ReportStudy) -> Table:
         columns.append(Column(f"${rate(letter, order)}$", QUANTITIES[name].unit, values))
     return over_samples(study.numbers, columns, range(len(phi)), _("At the chosen angles"))
 
-
-def speed_text(study: ReportStudy, speed: float) -> str:
-    """A speed of the cam as mathematics, in turns a minute."""
-    return with_unit(study.numbers, speed * 30.0 / math.pi, "1") + ' thin "min"^(-1)'

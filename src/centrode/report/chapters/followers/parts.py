@@ -8,6 +8,7 @@ import numpy as np
 
 from centrode.cams.followers.described import bounded, follower_cam
 from centrode.cams.followers.motion import FollowerMotion, follower_motion
+from centrode.locale import _
 from centrode.report.blocks import Block, Check, Section, Table
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.tables import Column, over_samples
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 MEGA = 1e-6
 ROUNDED = float(np.finfo(float).eps) * (1 << 12)
 """What rounding may leave, in parts of a size: some dozens of operations, and a few angles in between."""
+SAME = 1e-12
+"""Share of a column's greatest size below which a difference is rounding."""
 ROWS = 37
 """Rows of a table over a turn: every ten degrees of 361 samples."""
 
@@ -58,14 +61,34 @@ def rate(letter: str, order: int) -> str:
     return letter + "'" * order
 
 
-def course(study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]], caption: str) -> Table:
-    """Variables of a dataset over the angle of the cam, at even steps; stresses in MPa."""
+def course(
+    study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]], caption: str, *, brief: bool = False
+) -> Table:
+    """Variables of a dataset over the angle of the cam, at even steps; stresses in MPa.
+
+    A `brief` one has of rows that are alike, but for the angle, only the first and the last.
+    """
     found = [Column("$phi$", "rad", data["cam_angle"].to_numpy())]
     for name, letter in columns:
         values, unit = data[name].to_numpy(), str(data[name].attrs["units"])
         scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
         found.append(Column(f"${letter}$", shown_unit, scale * values))
-    return over_samples(study.numbers, found, few(data.sizes["sample"], ROWS), caption)
+    kept = few(data.sizes["sample"], ROWS)
+    if brief:
+        kept = _unlike(kept, found[1:])
+        if len(kept) < len(few(data.sizes["sample"], ROWS)):
+            caption = _("{caption}; of alike rows the first and the last").format(caption=caption)
+    return over_samples(study.numbers, found, kept, caption)
+
+
+def _unlike(kept: list[int], columns: list[Column]) -> list[int]:
+    """Rows without those between others that are the same."""
+    values = np.array([one.values[kept] for one in columns])
+    sizes = np.nanmax(np.abs(values), axis=1, initial=0.0, keepdims=True)
+    step = np.abs(np.diff(values, axis=1)) <= SAME * sizes
+    alike = (step | (np.isnan(values[:, 1:]) & np.isnan(values[:, :-1]))).all(axis=0)
+    inner = np.flatnonzero(alike[1:] & alike[:-1]) + 1
+    return [row for k, row in enumerate(kept) if k not in set(inner.tolist())]
 
 
 def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[Section, ...]:
