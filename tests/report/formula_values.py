@@ -87,10 +87,7 @@ class _Reader:
             self.take(")")
             return above / below
         if token in FUNCTIONS:
-            self.take("(")
-            value = self.sum()
-            self.take(")")
-            return FUNCTIONS[token](value)
+            return FUNCTIONS[token](self.factor())
         if token == "pi":
             return +mpmath.pi
         if token == "degree":

@@ -74,6 +74,9 @@ def _least(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
         return
     admissible = _("The bounds of the description decide it.")
     none = _("No bounds are given: the profile is only kept from being undercut.")
+    if not bounded(cam) and least.by == "pressure angle":
+        yield Paragraph(_("No bounds are given, and no base radius undercuts the profile: the size of the cam is free."))
+        return
     yield Paragraph(admissible if bounded(cam) else none)
     decided = {
         "pressure angle": _("The least base radius is {radius}. The pressure angle decides it, at $phi$ = {angle}:"),

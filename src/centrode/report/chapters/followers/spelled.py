@@ -176,7 +176,7 @@ class Spelled:
         yield "K", letters, worked, with_unit(self.numbers, curvature, "1/m")
         size = self.told(1.0 / curvature if curvature else math.inf)
         if not self.book.roller:
-            yield "R", "frac(1, K)", size
+            yield "R", "frac(1, K)", f"frac(1, {self.numbers.math(curvature, '1/m')})", size
             return
         shown = f"{self.length(1.0 / curvature)} - {self.length(self.book.roller)}" if curvature else size
         yield "R", "frac(1, K) - r", shown, self.told(found)
