@@ -8,7 +8,6 @@ from dataclasses import replace
 import mpmath
 import numpy as np
 import pytest
-from report.formula_values import value_of
 
 import centrode as ct
 from centrode.cams.followers.motion import FollowerMotion
@@ -23,6 +22,7 @@ from centrode.report.chapters.followers.spelled import Spelled
 from centrode.report.chapters.followers.textbook import Textbook
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
+from report.formula_values import value_of
 
 EPS = float(np.finfo(float).eps)
 NAMES = ("data", "motion", "lift", "laws", "base-radius", "profile", "cam-forces")
@@ -160,7 +160,9 @@ def test_letters_of_printed_formulas(follower: str, turn: str) -> None:
         assert abs(known["x"] - contact.place[0, 0]) <= size and abs(known["y"] - contact.place[0, 1]) <= size
         assert known["R"] == pytest.approx(float(contact.bend[0]), rel=1e4 * EPS)
         if "tan alpha" in known:
-            assert known["tan alpha"] == pytest.approx(math.tan(float(contact.pressure_angle[0])), abs=1e4 * EPS)
+            assert known["tan alpha"] == pytest.approx(
+                math.tan(float(contact.pressure_angle[0])), abs=1e4 * EPS
+            )
 
 
 @pytest.mark.parametrize("follower", list(FOLLOWERS))
@@ -190,11 +192,15 @@ def test_hand_calculation_of_the_valve_cam(valve: ReportStudy) -> None:
     beta = math.radians(75)
     lines = [line for block in blocks_of(CHAPTERS["lift"].make(valve), Formula) for line in block.lines]
     told = {line[0]: line[-1] for line in lines}
-    assert value_of(told["abs(s')_\"max\""]) == pytest.approx(15 / 8 * 8 / beta, rel=1e-4)
+    assert value_of(told['abs(s\')_"max"']) == pytest.approx(15 / 8 * 8 / beta, rel=1e-4)
     assert value_of(told["abs(s'')_\"max\""]) == pytest.approx(10 / 3**0.5 * 8 / beta**2, rel=1e-4)
-    forces = [line for block in blocks_of(CHAPTERS["cam-forces"].make(valve), Formula) for line in block.lines]
+    forces = [
+        line for block in blocks_of(CHAPTERS["cam-forces"].make(valve), Formula) for line in block.lines
+    ]
     assert ("N", "frac(Q, b_n + mu b_t)", "frac(380, 1 + 0.08 dot.op 0)", '380 thin "N"') in forces
-    least = [line for block in blocks_of(CHAPTERS["base-radius"].make(valve), Formula) for line in block.lines]
+    least = [
+        line for block in blocks_of(CHAPTERS["base-radius"].make(valve), Formula) for line in block.lines
+    ]
     decided = [line for line in least if line[0] == "R" and len(line) > 2]
     assert decided[0][-1].startswith("0 ")
 
@@ -234,7 +240,10 @@ def test_a_wrong_profile_is_found(indexing: ReportStudy) -> None:
     assert profile_checks.by_instant_centre(body).holds and profile_checks.by_formulas(body).holds
     other = replace(body, touch=replace(body.touch, roller=body.touch.roller * (1 + 1e-11)))
     monkey = Textbook(other).place(np.array([1.0]), body.motion.lift(np.array([1.0]), 3))
-    assert np.abs(monkey - body.contact(np.array([1.0])).place).max() > profile_checks.ROUNDED * body.base_radius * 1e-3
+    assert (
+        np.abs(monkey - body.contact(np.array([1.0])).place).max()
+        > profile_checks.ROUNDED * body.base_radius * 1e-3
+    )
 
 
 def test_an_undercut_profile_is_told() -> None:
@@ -258,7 +267,9 @@ def test_a_follower_that_jumps_is_told() -> None:
     chapter = CHAPTERS["cam-forces"].make(study_of(fast))
     failed = [one.text for one in blocks_of(chapter, Check) if not one.holds]
     assert len(failed) == 1 and "jumps off the cam" in failed[0]
-    needed = [line for block in blocks_of(chapter, Formula) for line in block.lines if line[0].startswith("F_(0")]
+    needed = [
+        line for block in blocks_of(chapter, Formula) for line in block.lines if line[0].startswith("F_(0")
+    ]
     assert value_of(needed[0][-1]) > 180.0
 
 
@@ -266,7 +277,9 @@ def test_virtual_work_finds_a_wrong_torque(indexing: ReportStudy, monkeypatch: p
     forces = ct.follower_forces(indexing.plate)
     assert forces_checks.by_virtual_work(forces).holds
     real = type(forces).at
-    monkeypatch.setattr(type(forces), "at", lambda self, phi: replace(real(self, phi), torque=real(self, phi).torque * 1.001))
+    monkeypatch.setattr(
+        type(forces), "at", lambda self, phi: replace(real(self, phi), torque=real(self, phi).torque * 1.001)
+    )
     assert not forces_checks.by_virtual_work(forces).holds
 
 
@@ -283,7 +296,9 @@ def test_cams_without_a_size_tell_their_motion() -> None:
 
 def test_wishes_of_a_cam(valve: ReportStudy) -> None:
     cam = described()
-    asked = ct.parse_cam(ct.cam_text(cam) + '\n[report]\nchapters = ["lift"]\ninstants = ["30 deg", "60 deg"]\ndigits = 7\n')
+    asked = ct.parse_cam(
+        ct.cam_text(cam) + '\n[report]\nchapters = ["lift"]\ninstants = ["30 deg", "60 deg"]\ndigits = 7\n'
+    )
     made = ct.report(asked)
     assert [chapter.name for chapter in made.chapters] == ["lift"]
     table = next(one for one in blocks_of(made.chapters[0], Table) if one.caption == "At the chosen angles")
@@ -338,7 +353,9 @@ def test_chapters_of_linkages_are_none_of_follower_cams(valve: ReportStudy) -> N
 
 def test_same_input_same_bytes(tmp_path: object) -> None:
     del tmp_path
-    first, second = (ct.report(ct.load_cam("valve-cam"), ReportOptions(chapters=("motion", "profile"))) for _k in range(2))
+    first, second = (
+        ct.report(ct.load_cam("valve-cam"), ReportOptions(chapters=("motion", "profile"))) for _k in range(2)
+    )
 
     def blocks(report: object) -> list[Block]:
         return [block for chapter in report.chapters for one in chapter.sections for block in one.blocks]  # type: ignore[attr-defined]

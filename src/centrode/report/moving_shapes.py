@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from centrode.model.mechanism import Guide, Rolling
 
 
-
 def shapes_of(scene: Scene, samples: Samples) -> tuple[Outline, ...]:
     """The outlines of a planar mechanism [m], those below first."""
     found = [*_grounds(scene), *_wheels(scene, samples), *_slots(scene, samples), *_cylinders(scene, samples)]

@@ -75,7 +75,9 @@ def either(*makers: Make) -> Make:
 
 
 CHAPTERS: Mapping[str, Kind] = {
-    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)),
+    "data": Kind(
+        mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
+    ),
     "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),

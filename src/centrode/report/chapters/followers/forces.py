@@ -7,11 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.forces.acting import FollowerForces, follower_forces
+from centrode.cams.followers.forces.acting import follower_forces
 from centrode.locale import _
 from centrode.present.cams.forces import cam_forces_figure
 from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Table
-from centrode.report.chapters.followers.forces_checks import at_speed_of_jumping, by_virtual_work, strip_loads, with_spring
+from centrode.report.chapters.followers.forces_checks import (
+    at_speed_of_jumping,
+    by_virtual_work,
+    strip_loads,
+    with_spring,
+)
 from centrode.report.chapters.followers.forces_spelled import Worked
 from centrode.report.chapters.followers.parts import course, part_of, sections_of, told_failures
 from centrode.report.figures import picture
@@ -105,7 +110,10 @@ def _torque(worked: Worked, data: xr.Dataset) -> Iterator[Block]:
     """The greatest and the least torque; negative where the follower drives the cam."""
     for name, told in (
         ("greatest_torque", _("The camshaft has to give its greatest torque at $phi$ = {angle}:")),
-        ("least_torque", _("It is least at $phi$ = {angle}; where it is negative the follower drives the cam:")),
+        (
+            "least_torque",
+            _("It is least at $phi$ = {angle}; where it is negative the follower drives the cam:"),
+        ),
     ):
         at = float(data.attrs[f"{name}_at"])
         yield Paragraph(told.format(angle=worked.numbers.measured(at, "rad")))
@@ -119,7 +127,9 @@ def _stress(worked: Worked, data: xr.Dataset) -> Iterator[Block]:
     if not np.isfinite(stress):
         return
     at = float(data.attrs["greatest_stress_at"])
-    told = _("Along the strip of contact of the length $b$ Hertz's formulas hold; the stress is greatest at $phi$ = {angle}:")
+    told = _(
+        "Along the strip of contact of the length $b$ Hertz's formulas hold; the stress is greatest at $phi$ = {angle}:"
+    )
     yield Paragraph(told.format(angle=worked.numbers.measured(at, "rad")))
     yield Formula(worked.stress(at))
     yield strip_loads(worked.forces)

@@ -1,4 +1,4 @@
-"""Second routes to the forces of a follower: virtual work with the friction's share, springs put in, loads of strips."""
+"""Second routes to the forces of a follower: virtual work with its friction, springs put in, loads of strips."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 NODES = 16
 """Of the rule of Gauss and Chebyshev, which integrates an ellipse exactly."""
 FLAT_TOP = 1e-9
-"""What the place of an extreme, known to some 1e-8 of its stretch, and its refinement leave of a value that vanishes."""
+"""What the place of an extreme, known to some 1e-8 of its stretch, leaves of a value that vanishes."""
 
 
 def by_virtual_work(forces: FollowerForces) -> Check:
-    """The torque against what the push does on the follower's way, and friction on the way that surfaces slide."""
+    """The torque against what push and friction do on the follower's way and on that of the sliding surfaces."""
     phi = angles()
     rows, found = forces.body.motion.lift(phi, 2), forces.at(phi)
     met = meeting_of(forces.body, rows)
@@ -51,7 +51,12 @@ def by_virtual_work(forces: FollowerForces) -> Check:
 
 def at_speed_of_jumping(forces: FollowerForces, speed: float) -> Check:
     """The least push at the speed of jumping, which is zero."""
-    return _vanishes(forces, forces.burden, speed, _("At this speed the least push over the turn is {share} of the greatest."))
+    return _vanishes(
+        forces,
+        forces.burden,
+        speed,
+        _("At this speed the least push over the turn is {share} of the greatest."),
+    )
 
 
 def with_spring(forces: FollowerForces, preload: float) -> Check:
@@ -80,5 +85,9 @@ def strip_loads(forces: FollowerForces) -> Check:
     apart = np.abs(ellipse * strip.half_width * strip.pressure - load)
     known = np.isfinite(apart)
     text = _("The elliptic pressures, added up across the strip, carry the load to {share} of it.")
-    share = float(np.max(apart[known] / load[known], initial=0.0, where=load[known] > 0.0)) if known.any() else math.nan
+    share = (
+        float(np.max(apart[known] / load[known], initial=0.0, where=load[known] > 0.0))
+        if known.any()
+        else math.nan
+    )
     return measured(text, share, 1.0, ROUNDED)

@@ -38,7 +38,10 @@ class Worked:
     def rows(self, at: float) -> list[float]:
         """Lift, slope, second derivative at an angle, rounding left out; at an edge what is nearer inside."""
         found = self.forces.body.motion.lift(np.array([at]), 2)[:, 0]
-        return [0.0 if abs(one) <= ROUNDING * size else float(one) for one, size in zip(found, self.sizes, strict=True)]
+        return [
+            0.0 if abs(one) <= ROUNDING * size else float(one)
+            for one, size in zip(found, self.sizes, strict=True)
+        ]
 
     def letters(self) -> tuple[tuple[str, ...], ...]:
         """Push, normal force, torque."""
@@ -65,7 +68,9 @@ class Worked:
         if burden.load:
             found.append(("P", factor(one, burden.load)))
         if burden.stiffness:
-            found.append((f"k {self.lettered}", f"{one.math(burden.stiffness)} dot.op {factor(one, rows[0])}"))
+            found.append(
+                (f"k {self.lettered}", f"{one.math(burden.stiffness)} dot.op {factor(one, rows[0])}")
+            )
         if burden.inertia and speed:
             worked = f"{one.math(burden.inertia)} dot.op {one.math(speed)}^2 dot.op {factor(one, rows[2])}"
             found.append((f"{self.inertia} omega^2 {self.lettered}''", worked))
@@ -141,7 +146,10 @@ class Worked:
             for one in (met.normal, met.slip)
         ]
         size, reach = float(np.linalg.norm(met.lever)), float(np.linalg.norm(met.place))
-        return (clean(on_way[0], size), clean(on_way[1], size)), (clean(arms[0], reach), clean(arms[1], reach))
+        return (clean(on_way[0], size), clean(on_way[1], size)), (
+            clean(arms[0], reach),
+            clean(arms[1], reach),
+        )
 
     def torque(self, at: float) -> Lines:
         """The torque about the cam's axis."""
@@ -180,7 +188,7 @@ class Worked:
         letters, worked = (" + ".join(part[k] for part in parts) for k in (0, 1))
         degrees = f"{self.si.math(math.degrees(at))} degree"
         return (
-            (f"phi", degrees),
+            ("phi", degrees),
             ('F_(0, "least")', f"-({letters})", f"-({worked})", with_unit(self.si, needed, self.unit)),
         )
 

@@ -116,13 +116,13 @@ def segment_tables(cam: PlateCam, numbers: Numbers) -> Iterator[Table]:
     unit, letter = ("rad", "psi") if cam.swings else ("m", "s")
     start = before = 0.0
     rows = []
-    for number, segment in enumerate(cam.segments, 1):
+    for segment in cam.segments:
         after = before if segment.to is None else segment.to
-        rows.append((number, segment.curve, start, start + segment.angle, before, after))
+        rows.append((start, start + segment.angle, before, after))
         start, before = start + segment.angle, after
     columns = [
         tuple(numbers.plain(row[k] * numbers.shown(of)[0]) for row in rows)
-        for k, of in ((2, "rad"), (3, "rad"), (4, unit), (5, unit))
+        for k, of in enumerate(("rad", "rad", unit, unit))
     ]
     head = (
         _("segment"), _("curve"), numbers.head(_("$phi$ from"), "rad"), numbers.head(_("$phi$ to"), "rad"),
@@ -130,7 +130,8 @@ def segment_tables(cam: PlateCam, numbers: Numbers) -> Iterator[Table]:
         numbers.head(_("${letter}$ to").format(letter=letter), unit),
     )  # fmt: skip
     cells = tuple(
-        (str(row[0]), _(row[1]), *(column[k] for column in columns)) for k, row in enumerate(rows)
+        (str(k + 1), _(segment.curve), *(column[k] for column in columns))
+        for k, segment in enumerate(cam.segments)
     )
     yield Table(head, cells, _("Segments of a turn"), (True, False, True, True, True, True))
     for number, segment in enumerate(cam.segments, 1):

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from centrode.report.study import ReportStudy
 
 FOUND = 1e-12
-"""What is allowed between a coefficient found by search and its closed form: flat tops to rounding, jets of degree 7."""
+"""What is allowed between a coefficient found by search and its closed form: jets of degree 7."""
 
 
 def laws_chapter(study: ReportStudy) -> Chapter | None:
@@ -62,7 +62,7 @@ def _rises(study: ReportStudy) -> bool:
 
 def _closed(data: xr.Dataset) -> list[tuple[str, ...]]:
     """A line for each curve that is there: C_v, C_a, C_j of curve k."""
-    found = []
+    found: list[tuple[str, ...]] = []
     for name in data["law"].to_numpy().tolist():
         if name in PEAKS:
             spelled = ", quad ".join(
@@ -80,5 +80,7 @@ def _check(data: xr.Dataset) -> Check:
             closed = np.array(PEAKS[name][1])
             found = data["peak_coefficient"].sel(law=name).to_numpy()[1:]
             worst = max(worst, float(np.max(np.abs(found - closed) / np.where(closed > 0, closed, 1.0))))
-    text = _("Looked for on the exact derivatives, the greatest values are those of the closed forms to {share}.")
+    text = _(
+        "Looked for on the exact derivatives, the greatest values are those of the closed forms to {share}."
+    )
     return measured(text, worst, 1.0, FOUND)

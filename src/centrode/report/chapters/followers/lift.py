@@ -13,7 +13,7 @@ from centrode.cams.followers.labelled import motion_names
 from centrode.locale import _
 from centrode.present.cams.motion_drawing import cam_motion_figure
 from centrode.quantities import QUANTITIES
-from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table
+from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Table
 from centrode.report.chapters.followers.curves import CURVES
 from centrode.report.chapters.followers.lift_checks import integrated, proved
 from centrode.report.chapters.followers.parts import (
@@ -61,7 +61,7 @@ def _given(study: ReportStudy) -> Iterator[Block]:
         " by $phi$ in radians; in time"
     )
     yield Paragraph(text.format(letter=letter))
-    lines = [
+    lines: list[tuple[str, ...]] = [
         (name, "omega" + ("" if order == 1 else f"^{order}") + f" {rate(letter, order)}")
         for order, name in enumerate(("dot(psi)", "dot.double(psi)", "dot.triple(psi)") if study.plate.swings
                                      else ("v", "a", "j"), 1)
@@ -155,4 +155,3 @@ def _at_instants(study: ReportStudy) -> Table:
     ):
         columns.append(Column(f"${rate(letter, order)}$", QUANTITIES[name].unit, values))
     return over_samples(study.numbers, columns, range(len(phi)), _("At the chosen angles"))
-

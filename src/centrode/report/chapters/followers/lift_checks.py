@@ -37,7 +37,9 @@ def proved(cam: PlateCam, motion: FollowerMotion) -> Iterator[Check]:
             apart = np.abs(rows / scale[:, None] - shares).max(axis=1)
             worst = max(worst, float(np.max(apart / (1.0 + np.abs(shares).max(axis=1)))))
         before = after
-    text = _("The formulas, with numbers put in at 97 angles of each segment, give the motion to {share} of its size.")
+    text = _(
+        "The formulas, with numbers put in at 97 angles of each segment, give the motion to {share} of its size."
+    )
     yield measured(text, worst, 1.0, ROUNDED)
 
 

@@ -10,7 +10,7 @@ from centrode.locale import _
 from centrode.present.cams.bodies import cam_body_figures
 from centrode.present.cams.plate_curves import plate_curves_figure
 from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph
-from centrode.report.chapters.followers.parts import body_of, course, part_of, sections_of, told_failures
+from centrode.report.chapters.followers.parts import course, part_of, sections_of, told_failures
 from centrode.report.chapters.followers.profile_checks import by_formulas, by_instant_centre, not_undercut
 from centrode.report.chapters.followers.spelled import Spelled
 from centrode.report.figures import picture
@@ -61,7 +61,13 @@ def _formulas(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
             "$(u_x; u_y)$ is how the centre of the roller (the edge) goes in the cam, $(x_P; y_P)$ the contact, both"
             " along the axes of the frame:"
         ))  # fmt: skip
-    yield Formula((*letters, *((name, text) for name, text in spelled.aids()), *((a, b) for a, b, _c in spelled.place())))
+    yield Formula(
+        (
+            *letters,
+            *((name, text) for name, text in spelled.aids()),
+            *((a, b) for a, b, _c in spelled.place()),
+        )
+    )
     told_angle = study.numbers.measured(phi, "rad")
     if study.wishes.instants:
         example = _("For example at the chosen angle, $phi$ = {angle}:")

@@ -36,10 +36,17 @@ def closed_forms(study: ReportStudy, body: FollowerCam) -> Iterator[Check]:
         text = _("At 720 angles the formula of $alpha$ and the normal of the envelope agree to {share} rad.")
         yield measured(text, apart, 1.0, ROUNDED)
     with np.errstate(divide="ignore"):
-        apart = float(np.max(np.abs(1.0 / book.radius(rows) - found.curvature) / (1.0 / body.base_radius + np.abs(found.curvature))))
+        apart = float(
+            np.max(
+                np.abs(1.0 / book.radius(rows) - found.curvature)
+                / (1.0 / body.base_radius + np.abs(found.curvature))
+            )
+        )
     text = _("There the formula of $R$ and the curvature of the envelope agree to {share} of the curvature.")
     # near a cusp R is what is left of much greater numbers
-    worst = float(np.max(np.abs(found.path_curvature * found.bend), initial=1.0, where=np.isfinite(found.bend)))
+    worst = float(
+        np.max(np.abs(found.path_curvature * found.bend), initial=1.0, where=np.isfinite(found.bend))
+    )
     yield measured(text, apart, 1.0, ROUNDED * max(1.0, worst, *_lost(body, found.stretch)))
 
 
@@ -53,7 +60,9 @@ def by_formulas(body: FollowerCam) -> Check:
     """Points by the formulas above against those of the envelope."""
     phi = angles()
     apart = np.hypot(*(Textbook(body).place(phi, body.motion.lift(phi, 3)) - body.contact(phi).place).T)
-    text = _("At 720 angles the formulas give the points of the envelope of the follower's places, to {share} of $r_0$.")
+    text = _(
+        "At 720 angles the formulas give the points of the envelope of the follower's places, to {share} of $r_0$."
+    )
     return measured(text, float(apart.max()), body.base_radius, ROUNDED)
 
 
@@ -77,6 +86,8 @@ def not_undercut(body: FollowerCam) -> Check:
     rows = body.motion.lift(phi, 3)
     if book.flat:
         positive = bool(np.all(book.radius(rows) > 0.0))
-        return Check(_("The profile is not undercut: at 720 angles the formula of $R$ stays positive."), positive)
+        return Check(
+            _("The profile is not undercut: at 720 angles the formula of $R$ stays positive."), positive
+        )
     positive = bool(np.all(1.0 - book.roller * book.bending(rows) > 0.0))
     return Check(_("The profile is not undercut: at 720 angles $1 - r K$ stays positive."), positive)

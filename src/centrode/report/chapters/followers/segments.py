@@ -55,7 +55,9 @@ def size(study: ReportStudy, value: float, order: int = 0) -> str:
         unit = "rad" if order == 0 else ""
         text = study.numbers.math(value)
         return f'{text} thin "{unit}"' if unit else text
-    return with_unit(study.numbers, value, "m" + ("" if not order else "/rad" + (f"^{order}" if order > 1 else "")))
+    return with_unit(
+        study.numbers, value, "m" + ("" if not order else "/rad" + (f"^{order}" if order > 1 else ""))
+    )
 
 
 def bare(study: ReportStudy, value: float) -> str:
@@ -86,13 +88,17 @@ def _numbers(
             yield _in_time(study, name, order, symbol, speed, most)
 
 
-def _in_time(study: ReportStudy, name: str, order: int, symbol: str, speed: float, most: float) -> tuple[str, ...]:
+def _in_time(
+    study: ReportStudy, name: str, order: int, symbol: str, speed: float, most: float
+) -> tuple[str, ...]:
     """A greatest velocity or acceleration at the speed of the cam."""
     numbers, power = study.numbers, "" if order == 1 else f"^{order}"
     unit = ("rad" if study.plate.swings else "m") + "/s" + power
     value = speed**order * most
-    told = f'{numbers.math(value)} thin "{unit.replace("^2", "²")}"' if study.plate.swings else with_unit(
-        numbers, value, unit
+    told = (
+        f'{numbers.math(value)} thin "{unit.replace("^2", "²")}"'
+        if study.plate.swings
+        else with_unit(numbers, value, unit)
     )
     letter = {1: "dot(psi)", 2: "dot.double(psi)"}[order] if study.plate.swings else name
     worked = f"{numbers.math(speed)}{power} dot.op {bare(study, most)}"

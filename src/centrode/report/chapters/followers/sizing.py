@@ -14,7 +14,7 @@ from centrode.cams.followers.layouts import layout_of
 from centrode.cams.followers.margins import exact_margin
 from centrode.errors import CentrodeError
 from centrode.locale import _
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table, shown
+from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Table, shown
 from centrode.report.chapters.followers.parts import body_of, motion_of, sections_of
 from centrode.report.chapters.followers.profile_checks import closed_forms
 from centrode.report.chapters.followers.spelled import Spelled
@@ -75,16 +75,24 @@ def _least(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
     admissible = _("The bounds of the description decide it.")
     none = _("No bounds are given: the profile is only kept from being undercut.")
     if not bounded(cam) and least.by == "pressure angle":
-        yield Paragraph(_("No bounds are given, and no base radius undercuts the profile: the size of the cam is free."))
+        yield Paragraph(
+            _("No bounds are given, and no base radius undercuts the profile: the size of the cam is free.")
+        )
         return
     yield Paragraph(admissible if bounded(cam) else none)
     decided = {
-        "pressure angle": _("The least base radius is {radius}. The pressure angle decides it, at $phi$ = {angle}:"),
-        "curvature": _("The least base radius is {radius}. The radius of curvature decides it, at $phi$ = {angle}:"),
+        "pressure angle": _(
+            "The least base radius is {radius}. The pressure angle decides it, at $phi$ = {angle}:"
+        ),
+        "curvature": _(
+            "The least base radius is {radius}. The radius of curvature decides it, at $phi$ = {angle}:"
+        ),
     }
     at = least.at % math.tau
     text = decided[least.by]
-    yield Paragraph(text.format(radius=numbers.measured(least.base_radius, "m"), angle=numbers.measured(at, "rad")))
+    yield Paragraph(
+        text.format(radius=numbers.measured(least.base_radius, "m"), angle=numbers.measured(at, "rad"))
+    )
     there = layout_of(cam).cam(motion_of(study), least.base_radius * (1.0 + 1e-12))
     spelled = Spelled(there, numbers, at)
     decisive = spelled.pressure() if least.by == "pressure angle" else spelled.radius()
@@ -114,7 +122,9 @@ def _is_least(study: ReportStudy, least: Least) -> Check:
             return False
 
     right = keeps(least.base_radius * (1.0 + NEAR)) and not keeps(least.base_radius * (1.0 - NEAR))
-    text = _("With a base radius smaller by {share} of itself a bound is broken, with one so much greater none is.")
+    text = _(
+        "With a base radius smaller by {share} of itself a bound is broken, with one so much greater none is."
+    )
     return Check(text.format(share=small(NEAR)), right)
 
 
@@ -127,7 +137,9 @@ def _best_offset(study: ReportStudy, least: Least) -> Iterator[Block]:
         best = least_cam(cam, offset=True)
     except CentrodeError:
         return
-    text = _("With an offset of {offset} of the follower's axis the base radius could be {radius}, {share} % less.")
+    text = _(
+        "With an offset of {offset} of the follower's axis the base radius could be {radius}, {share} % less."
+    )
     saved = study.numbers.plain(100.0 * (1.0 - best.base_radius / least.base_radius), 3)
     offset = 0.0 if abs(best.offset) < 1e-9 * best.base_radius else best.offset
     shown_offset, radius = (study.numbers.measured(one, "m") for one in (offset, best.base_radius))
@@ -147,12 +159,18 @@ def _beside(study: ReportStudy, body: FollowerCam) -> Table:
             values.append(None)
     columns = [numbers.column(bases, "m")]
     heads = [numbers.head("$r_0$", "m")]
-    kinds = [(_("$alpha$ where it rises"), "rad", 0), (_("$alpha$ where it falls"), "rad", 1)] if pressed else []
+    kinds = (
+        [(_("$alpha$ where it rises"), "rad", 0), (_("$alpha$ where it falls"), "rad", 1)] if pressed else []
+    )
     for head, unit, k in (*kinds, (_("least $R$ where it bulges"), "m", 2)):
         shown_values = numbers.column([math.nan if one is None else one[k] for one in values], unit)
-        columns.append(tuple(NOTHING if one is None else text for one, text in zip(values, shown_values, strict=True)))
+        columns.append(
+            tuple(NOTHING if one is None else text for one, text in zip(values, shown_values, strict=True))
+        )
         heads.append(numbers.head(head, unit))
-    caption = _("Greatest pressure angles and least radius of curvature; a dash: the cam cannot lead the follower")
+    caption = _(
+        "Greatest pressure angles and least radius of curvature; a dash: the cam cannot lead the follower"
+    )
     return Table(tuple(heads), tuple(zip(*columns, strict=True)), caption, (True,) * len(heads))
 
 

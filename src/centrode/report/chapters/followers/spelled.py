@@ -59,7 +59,11 @@ class Spelled:
     def start(self) -> Lines:
         """Where the follower stands at lift 0."""
         guide, base, roller = self.body.guide, self.body.base_radius, self.book.roller
-        path, shown = ("r_0 + r", f"{self.length(base)} + {self.length(roller)}") if roller else ("r_0", self.length(base))
+        path, shown = (
+            ("r_0 + r", f"{self.length(base)} + {self.length(roller)}")
+            if roller
+            else ("r_0", self.length(base))
+        )
         bracket, number = (f"({path})", f"({shown})") if roller else (path, shown)
         if not isinstance(guide, Oscillating):
             if self.book.flat:
@@ -85,7 +89,11 @@ class Spelled:
         value, slope, second = (float(one) for one in self.rows[:3, 0])
         yield "phi", f"{self.numbers.math(math.degrees(self.phi))} degree"
         if self.book.swings:
-            yield "psi", f'{self.numbers.math(value)} thin "rad"', f"{self.numbers.math(math.degrees(value))} degree"
+            yield (
+                "psi",
+                f'{self.numbers.math(value)} thin "rad"',
+                f"{self.numbers.math(math.degrees(value))} degree",
+            )
             yield "psi'", self.numbers.math(slope)
             yield "psi''", self.numbers.math(second)
             return
@@ -113,7 +121,9 @@ class Spelled:
         else:
             cosine, sine = (f"{wave} ({self.angle(self.turned)})" for wave in ("cos", "sin"))
             d, arm = self.length(guide.distance), self.length(guide.arm)
-            above = f"{arm} dot.op ({self.numbers.math(slope)} {self.sign} 1) {self.other} {d} dot.op {cosine}"
+            above = (
+                f"{arm} dot.op ({self.numbers.math(slope)} {self.sign} 1) {self.other} {d} dot.op {cosine}"
+            )
             letters = f"frac(l (psi' {self.sign} 1) {self.other} d cos (psi_0 + psi), d sin (psi_0 + psi))"
             yield "tan alpha", letters, f"frac({above}, {d} dot.op {sine})", end
         yield "alpha", f"arctan ({end})", f"{self.numbers.math(math.degrees(math.atan(tangent)))} degree"
@@ -142,7 +152,12 @@ class Spelled:
         elif not isinstance(guide, Oscillating):
             base = self.length(guide.start)
             worked = f"{base} + {self.length(value)} + {self.length(second)}"
-            yield "R", "r_0 + s + s''", worked, self.told(0.0 if abs(found) < NOTHING * guide.start else found)
+            yield (
+                "R",
+                "r_0 + s + s''",
+                worked,
+                self.told(0.0 if abs(found) < NOTHING * guide.start else found),
+            )
         else:
             d, pace = self.length(guide.distance), f"(1 {self.sign} psi')"
             waves = [f"{wave} ({self.angle(self.turned)})" for wave in ("sin", "cos")]
@@ -207,7 +222,9 @@ class Spelled:
         turns = ("cos phi", "sin phi")
         if self.book.flat and not self.book.swings:
             return (
-                f"(r_0 + s) {turns[1]} + s' {turns[0]}" if not minus else f"-((r_0 + s) {turns[1]} + s' {turns[0]})",
+                f"(r_0 + s) {turns[1]} + s' {turns[0]}"
+                if not minus
+                else f"-((r_0 + s) {turns[1]} + s' {turns[0]})",
                 f"(r_0 + s) {turns[0]} - s' {turns[1]}",
             )
         if self.book.flat:

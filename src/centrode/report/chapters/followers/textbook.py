@@ -39,10 +39,13 @@ class Textbook:
         """Tangent of the pressure angle (n)."""
         guide, sense = self.body.guide, self.sense
         if not isinstance(guide, Oscillating):
-            return np.zeros(rows.shape[1]) if self.flat else (rows[1] - sense * guide.offset) / (guide.start + rows[0])
+            if self.flat:
+                return np.zeros(rows.shape[1])
+            return np.asarray((rows[1] - sense * guide.offset) / (guide.start + rows[0]))
         turn = guide.start + rows[0]
         if self.flat:
-            return -sense * guide.face_offset * (1.0 + sense * rows[1]) / (guide.distance * np.cos(turn))
+            below = guide.distance * np.cos(turn)
+            return np.asarray(-sense * guide.face_offset * (1.0 + sense * rows[1]) / below)
         above = guide.arm * (rows[1] + sense) - sense * guide.distance * np.cos(turn)
         return np.asarray(above / (guide.distance * np.sin(turn)))
 

@@ -153,7 +153,9 @@ class _Data:
         lift = _("lowers the value of the drive") if drive.lowers else _("raises the value of the drive")
         rows.append((_("lift"), lift))
         name = {"drive": shown(drive.id), "title": shown(_(cam.title))}
-        caption = _("Cam {title}, which moves drive {drive}") if cam.title else _("Cam that moves drive {drive}")
+        caption = (
+            _("Cam {title}, which moves drive {drive}") if cam.title else _("Cam that moves drive {drive}")
+        )
         yield Table((_("what"), _("value")), tuple(rows), caption.format(**name))
         yield from segment_tables(cam, self.numbers)
 
