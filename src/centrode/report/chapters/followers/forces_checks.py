@@ -27,7 +27,7 @@ FLAT_TOP = 1e-9
 
 
 def by_virtual_work(forces: FollowerForces) -> Check:
-    """The torque against what push and friction do on the follower's way and on that of the sliding surfaces."""
+    """The torque against what push and friction do on the follower's way and where surfaces slide."""
     phi = angles()
     rows, found = forces.body.motion.lift(phi, 2), forces.at(phi)
     met = meeting_of(forces.body, rows)
@@ -38,8 +38,8 @@ def by_virtual_work(forces: FollowerForces) -> Check:
     known = np.isfinite(apart)
     size = float(np.max(np.abs(found.normal[known]), initial=0.0)) * float(np.abs(met.place).max())
     text = _(
-        "At 720 angles the moment of the contact force about the cam's axis is what virtual work asks for, to {share} of"
-        " force times radius."
+        "At 720 angles the moment of the contact force about the cam's axis is what virtual work asks for, to {share}"
+        " of force times radius."
     )
     if forces.friction:
         text = _(

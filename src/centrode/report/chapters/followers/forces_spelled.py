@@ -110,7 +110,8 @@ class Worked:
             levers, _arms = self._levers(at)
             for name, value in zip(("b_n", "b_t"), levers, strict=True):
                 yield name, self._arm(value) if self.swings else self.si.math(value)
-            below = f"{self.si.math(levers[0])} + {self.si.math(self.forces.friction)} dot.op {factor(self.si, levers[1])}"
+            coefficient = self.si.math(self.forces.friction)
+            below = f"{self.si.math(levers[0])} + {coefficient} dot.op {factor(self.si, levers[1])}"
             yield "N", "frac(Q, b_n + mu b_t)", f"frac({factor(self.si, push)}, {below})", end
             return
         contact = body.contact(phi)
