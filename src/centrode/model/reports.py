@@ -34,7 +34,7 @@ class CamReportWishes(Part):
     ----------
     chapters : names of chapters (`centrode report --help` lists them), in any order
     instants : tuple of float [rad]
-        Angles of the carrier that tables show.
+        Angles of the carrier, or of a cam that turns, that tables show.
     digits : int
         Significant digits of numbers.
     """

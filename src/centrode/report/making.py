@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
-from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam
 from centrode.model.mechanism import Mechanism
 from centrode.report.blocks import Chapter, Report
 from centrode.report.chapters import CHAPTERS, Kind
@@ -21,7 +21,7 @@ Said: TypeAlias = Callable[[str, int, int], None]
 
 
 def report(
-    description: Mechanism | Cam,
+    description: Mechanism | AnyCam,
     options: ReportOptions | None = None,
     *,
     language: str | None = None,
@@ -32,7 +32,7 @@ def report(
 
     Parameters
     ----------
-    description : Mechanism or Cam
+    description : Mechanism, Cam or PlateCam
     options : ReportOptions, optional
         Go before the wishes of the description.
     language : "en", "ru" or "uk", optional

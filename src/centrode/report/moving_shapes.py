@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from centrode.model.sphere import unit_vector
 from centrode.present import signs
@@ -16,38 +15,17 @@ from centrode.present.sphere.globe import Globe
 from centrode.present.style import GROUND, INK, pens
 from centrode.present.wheels import BARREL, OVER, slides
 from centrode.report.blocks import Outline, Ring
+from centrode.report.circles import AT_REST, LIFT, Array, Samples, circle, hatched
+from centrode.report.moving_cams import cam_shapes
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Guide, Rolling
-
-Array = NDArray[np.float64]
-Samples = NDArray[np.intp]
-ROUND = 48
-"""Corners of a circle."""
-LIFT = np.full((1, 2), np.nan)
-AT_REST = np.zeros((1, 3))
-
-
-def circle(radius: float, spoke: bool = False) -> Array:
-    """A circle (n, 2) about the origin, with a spoke if asked."""
-    turn = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)
-    rim = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    return np.concatenate([rim, np.zeros((1, 2))]) if spoke else rim
-
-
-def hatched(start: Array, end: Array, away: Array, size: float) -> Array:
-    """A line (n, 2) with strokes on the side that the unit vector `away` points to."""
-    along = (end - start) / max(float(np.hypot(*(end - start))), np.finfo(float).tiny)
-    count = max(2, round(float(np.hypot(*(end - start))) / (0.9 * size)))
-    feet = start + (np.arange(1, count + 1) / count)[:, None] * (end - start)
-    tips = feet + 0.9 * size * (away - along)
-    strokes = np.stack([feet, tips, np.full_like(feet, np.nan)], axis=1).reshape(-1, 2)
-    return np.concatenate([[start, end], LIFT, strokes])
 
 
 def shapes_of(scene: Scene, samples: Samples) -> tuple[Outline, ...]:
     """The outlines of a planar mechanism [m], those below first."""
     found = [*_grounds(scene), *_wheels(scene, samples), *_slots(scene, samples), *_cylinders(scene, samples)]
+    found += [one for cam in scene.cams for one in cam_shapes(cam, samples, scene.sign)]
     return tuple(_in_metres(one, scene.factor) for one in found)
 
 

@@ -25,8 +25,8 @@ from centrode.present.cams.walking_drawing import (
 from centrode.present.signs import slider_outline
 from centrode.present.style import GROUND, MUTED, house_style
 from centrode.report.blocks import Moving, Outline, shown
+from centrode.report.circles import LIFT, Array, circle, hatched
 from centrode.report.figures import picture
-from centrode.report.moving_shapes import LIFT, Array, circle, hatched
 from centrode.report.numbers import Numbers
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import nearest, shown
 from centrode.model.reports import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
@@ -46,7 +46,7 @@ class Wishes:
     digits: int
 
 
-def settled(description: Mechanism | Cam, options: ReportOptions, known: Iterable[str]) -> Wishes:
+def settled(description: Mechanism | AnyCam, options: ReportOptions, known: Iterable[str]) -> Wishes:
     """The wishes of a caller, where there are none those of the description.
 
     Raises InputError for a chapter that is not in `known`, for a point that the mechanism has not, for digits out of
@@ -73,7 +73,7 @@ def settled(description: Mechanism | Cam, options: ReportOptions, known: Iterabl
     return found
 
 
-def instant(description: Mechanism | Cam, text: float | str, where: str) -> float:
+def instant(description: Mechanism | AnyCam, text: float | str, where: str) -> float:
     """The place of a motion that a number or a text with a unit names [rad, m or s]; `where` it was given."""
     if isinstance(description, Mechanism):
         return range_value(description, text, where)

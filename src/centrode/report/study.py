@@ -10,6 +10,8 @@ import xarray as xr
 from centrode.analysis.rotatability import Rotatability, rotatability
 from centrode.equations.derivation import Equations, equations
 from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam
+from centrode.model.cams.plate import PlateCam
 from centrode.model.mechanism import Mechanism
 from centrode.report.numbers import Numbers
 from centrode.report.options import Wishes
@@ -25,12 +27,12 @@ class ReportStudy:
 
     Attributes
     ----------
-    description : Mechanism or Cam
+    description : Mechanism, Cam or PlateCam
     wishes : what the report is to hold
     numbers : how it spells its numbers
     """
 
-    def __init__(self, description: Mechanism | Cam, wishes: Wishes) -> None:
+    def __init__(self, description: Mechanism | AnyCam, wishes: Wishes) -> None:
         self.description = description
         self.wishes = wishes
         self.numbers = Numbers(description.display, wishes.digits)
@@ -59,8 +61,13 @@ class ReportStudy:
 
     @property
     def is_cam(self) -> bool:
-        """Whether a cam is reported on."""
-        return isinstance(self.description, Cam)
+        """Whether a cam is reported on, of either kind."""
+        return isinstance(self.description, Cam | PlateCam)
+
+    @property
+    def is_plate_cam(self) -> bool:
+        """Whether a cam is reported on that its follower's lift gives."""
+        return isinstance(self.description, PlateCam)
 
     @property
     def is_planar(self) -> bool:
@@ -80,8 +87,14 @@ class ReportStudy:
 
     @property
     def cam(self) -> Cam:
-        """The cam; chapters of linkages do not ask."""
+        """The cam by a curvature law; other chapters do not ask."""
         assert isinstance(self.description, Cam)
+        return self.description
+
+    @property
+    def plate(self) -> PlateCam:
+        """The cam by its follower's lift; other chapters do not ask."""
+        assert isinstance(self.description, PlateCam)
         return self.description
 
     @property
@@ -117,7 +130,9 @@ class ReportStudy:
     @property
     def cam_results(self) -> CamResults:
         """Everything about a cam."""
-        return self.once("cam", lambda: cam_results(self.cam))
+        assert isinstance(self.description, Cam | PlateCam)
+        cam = self.description
+        return self.once("cam", lambda: cam_results(cam))
 
 
 class _Failed:

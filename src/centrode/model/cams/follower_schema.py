@@ -20,9 +20,12 @@ from centrode.model.cams.lifting import MOST, MOST_RATES, LiftSegment
 from centrode.model.cams.parts import Material
 from centrode.model.cams.plate import PlateCam
 from centrode.model.part import Part
+from centrode.model.reports import CamReportWishes
 from centrode.model.schema import (
     AMOUNT,
+    CHAPTERS,
     PROPERTIES,
+    REPORT_DIGITS,
     TEXT,
     Schema,
     above_zero,
@@ -83,6 +86,11 @@ PLATE_PROPERTIES: dict[type[Part], Schema] = {
         "chord_tolerance": above_zero("length"),
         "show_undercut": {"type": "boolean"},
     },
+    CamReportWishes: {
+        "chapters": CHAPTERS,
+        "instants": list_of(quantity_schema("angle"), 0, limits.INSTANTS),
+        "digits": REPORT_DIGITS,
+    },
     PlateCam: {
         "title": TEXT,
         "kind": {"const": "cam"},
@@ -93,6 +101,7 @@ PLATE_PROPERTIES: dict[type[Part], Schema] = {
         "bounds": reference_to(Bounds),
         "tool": reference_to(Tool),
         "study": reference_to(FollowerStudy),
+        "report": reference_to(CamReportWishes),
     },
 }
 """Keys of every part as a file spells them; a test compares them with the parts themselves."""

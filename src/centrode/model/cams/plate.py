@@ -13,6 +13,7 @@ from centrode.model.cams.followers import Bounds, CamBody, Follower, FollowerStu
 from centrode.model.cams.lifting import MOST, LiftSegment, lift_law, segment_problems
 from centrode.model.part import Part
 from centrode.model.problems import Problems
+from centrode.model.reports import CamReportWishes
 from centrode.model.segments import DRIVEN
 from centrode.model.values import Text, choice, listed
 
@@ -36,6 +37,7 @@ class PlateCam(Part):
     bounds : Bounds
     tool : Tool or None
     study : FollowerStudy
+    report : CamReportWishes
 
     Raises
     ------
@@ -52,6 +54,7 @@ class PlateCam(Part):
     bounds: Bounds = Bounds()
     tool: Tool | None = None
     study: FollowerStudy = FollowerStudy()
+    report: CamReportWishes = CamReportWishes()
 
     if TYPE_CHECKING:
 

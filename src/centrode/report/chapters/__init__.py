@@ -21,6 +21,13 @@ from centrode.report.chapters.cams.chapters import (
     cam_routes_chapter,
     cam_walking_chapter,
 )
+from centrode.report.chapters.followers.forces import cam_forces_chapter
+from centrode.report.chapters.followers.given import follower_data_chapter
+from centrode.report.chapters.followers.laws import laws_chapter
+from centrode.report.chapters.followers.lift import lift_chapter
+from centrode.report.chapters.followers.profile import follower_profile_chapter
+from centrode.report.chapters.followers.sizing import base_radius_chapter
+from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.flywheel import flywheel_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.forces.joints import reactions_chapter
@@ -68,8 +75,10 @@ def either(*makers: Make) -> Make:
 
 
 CHAPTERS: Mapping[str, Kind] = {
-    "data": Kind(mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter)),
-    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter)),
+    "data": Kind(
+        mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
+    ),
+    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
     "words": Kind(mark("How it works"), words_chapter),
     "structure": Kind(mark("Structure"), structure_chapter),
     "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
@@ -90,9 +99,13 @@ CHAPTERS: Mapping[str, Kind] = {
     "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
     "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
+    "lift": Kind(mark("Motion of the follower"), lift_chapter),
+    "laws": Kind(mark("Laws of motion for one rise"), laws_chapter),
+    "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
-    "profile": Kind(mark("Profile of the cam"), cam_profile_chapter),
+    "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
+    "cam-forces": Kind(mark("Forces on cam and follower"), cam_forces_chapter),
     "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),

@@ -28,14 +28,15 @@ ROUNDED = float(np.finfo(float).eps) * (1 << 16)
 
 def cam_data_chapter(study: ReportStudy) -> Chapter | None:
     """What the description gives."""
-    if not study.is_cam:
+    if not study.is_cam or study.is_plate_cam:
         return None
     return Chapter("data", _("Data"), (Section("", given_of(study)),))
 
 
 def cam_motion_chapter(study: ReportStudy) -> Chapter | None:
     """The wheel that walks, which a page plays."""
-    part = part_of(study, "walking") if study.is_cam and study.cam.mover is not None else None
+    curved = study.is_cam and not study.is_plate_cam
+    part = part_of(study, "walking") if curved and study.cam.mover is not None else None
     if part is None or "wheel" not in part.objects:
         return None
     moving = moving_wheel(part.objects["wheel"], _(study.cam.title))

@@ -32,7 +32,7 @@ def cam_of(study: ReportStudy) -> Cam:
 
 def part_of(study: ReportStudy, name: str) -> CamPart | None:
     """One part of the results; None where the description does not ask for it."""
-    if not study.is_cam:
+    if not study.is_cam or study.is_plate_cam:
         return None
     # the front of best designs takes longer than all the rest: only where the choice is what is asked for
     front = study.wishes.chapters is not None and "choice" in study.wishes.chapters

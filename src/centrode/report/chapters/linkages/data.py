@@ -6,8 +6,10 @@ import math
 from collections.abc import Iterator
 
 from centrode.locale import _
+from centrode.model.cams.plate import PlateCam
 from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
 from centrode.report.blocks import Block, Chapter, Section, Table, shown
+from centrode.report.chapters.followers.given import given_rows, segment_tables, turning_text
 from centrode.report.numbers import Numbers
 from centrode.report.study import ReportStudy
 
@@ -135,6 +137,27 @@ class _Data:
         rows = tuple(self._drive(drive) for drive in self.mechanism.drives)
         if rows:
             yield Table(head, rows, _("Drives"), (False, False, True, False))
+        for drive in self.mechanism.drives:
+            if drive.cam is not None:
+                yield from self._cam(drive, drive.cam)
+
+    def _cam(self, drive: Drive, cam: PlateCam) -> Iterator[Table]:
+        """A cam that drives, with its follower's motion."""
+        rows = [*given_rows(cam, self.numbers)]
+        speed = next((k for k, row in enumerate(rows) if row[0] == _("speed of the cam")), None)
+        turning = (_("speed of the cam"), turning_text(drive.turning or 0.0, self.numbers))
+        rows = [row for k, row in enumerate(rows) if k != speed] + [turning]
+        rows.append((_("angle of the cam at $t = 0$"), self.numbers.measured(drive.cam_angle, "rad")))
+        if drive.cam_point is not None:
+            rows.append((_("point of the link that the cam moves"), shown(drive.cam_point)))
+        lift = _("lowers the value of the drive") if drive.lowers else _("raises the value of the drive")
+        rows.append((_("lift"), lift))
+        name = {"drive": shown(drive.id), "title": shown(_(cam.title))}
+        caption = (
+            _("Cam {title}, which moves drive {drive}") if cam.title else _("Cam that moves drive {drive}")
+        )
+        yield Table((_("what"), _("value")), tuple(rows), caption.format(**name))
+        yield from segment_tables(cam, self.numbers)
 
     def _drive(self, drive: Drive) -> tuple[str, ...]:
         unit = "rad" if drive.kind == "angle" else "m"
@@ -145,6 +168,8 @@ class _Data:
         if drive.speed is not None:
             rate = self.numbers.measured(drive.speed, f"{unit}/s")
             return _("constant {rate}").format(rate=rate)
+        if drive.cam is not None:
+            return _("lift of a cam")
         if drive.law is not None:
             return _("{formula}, in SI").format(formula=shown(drive.law))
         if drive.table is not None:

@@ -1,0 +1,1 @@
+"""Chapters of cams that are given by their follower's lift."""

@@ -1,0 +1,101 @@
+"""Parts of the results of a cam with a follower, each computed when first asked for, once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.cams.followers.described import bounded, follower_cam
+from centrode.cams.followers.motion import FollowerMotion, follower_motion
+from centrode.locale import _
+from centrode.report.blocks import Block, Check, Section, Table
+from centrode.report.chapters.forces.places import few
+from centrode.report.chapters.forces.tables import Column, over_samples
+from centrode.report.rows import told
+from centrode.study.cams.results import FOLLOWER_PARTS
+from centrode.study.cams.said import Asked, CamPart
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.report.study import ReportStudy
+
+MEGA = 1e-6
+ROUNDED = float(np.finfo(float).eps) * (1 << 12)
+"""What rounding may leave, in parts of a size: some dozens of operations, and a few angles in between."""
+SAME = 1e-12
+"""Share of a column's greatest size below which a difference is rounding."""
+ROWS = 37
+"""Rows of a table over a turn: every ten degrees of 361 samples."""
+
+
+def part_of(study: ReportStudy, name: str) -> CamPart | None:
+    """One part of the results; None where the description does not ask for it."""
+    if not study.is_plate_cam:
+        return None
+    return study.once(("follower", name), lambda: FOLLOWER_PARTS[name](study.plate, Asked(laws=True)))
+
+
+def motion_of(study: ReportStudy) -> FollowerMotion:
+    """The follower's motion."""
+    return study.once("follower-motion", lambda: follower_motion(study.plate))
+
+
+def body_of(study: ReportStudy) -> FollowerCam | None:
+    """The cam; nothing where neither its size nor bounds are given. Raises as `follower_cam`."""
+    cam = study.plate
+    if cam.body.base_radius is None and not bounded(cam):
+        return None
+    return study.once("follower-cam", lambda: follower_cam(cam))
+
+
+def letter_of(study: ReportStudy) -> str:
+    """Of the lift, as mathematics."""
+    return "psi" if study.plate.swings else "s"
+
+
+def rate(letter: str, order: int) -> str:
+    """A derivative by the cam's angle, as mathematics."""
+    return letter + "'" * order
+
+
+def course(
+    study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]], caption: str, *, brief: bool = False
+) -> Table:
+    """Variables of a dataset over the angle of the cam, at even steps; stresses in MPa.
+
+    A `brief` one has of rows that are alike, but for the angle, only the first and the last.
+    """
+    found = [Column("$phi$", "rad", data["cam_angle"].to_numpy())]
+    for name, letter in columns:
+        values, unit = data[name].to_numpy(), str(data[name].attrs["units"])
+        scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
+        found.append(Column(f"${letter}$", shown_unit, scale * values))
+    kept = few(data.sizes["sample"], ROWS)
+    if brief:
+        kept = _unlike(kept, found[1:])
+        if len(kept) < len(few(data.sizes["sample"], ROWS)):
+            caption = _("{caption}; of alike rows the first and the last").format(caption=caption)
+    return over_samples(study.numbers, found, kept, caption)
+
+
+def _unlike(kept: list[int], columns: list[Column]) -> list[int]:
+    """Rows without those between others that are the same."""
+    values = np.array([one.values[kept] for one in columns])
+    sizes = np.nanmax(np.abs(values), axis=1, initial=0.0, keepdims=True)
+    step = np.abs(np.diff(values, axis=1)) <= SAME * sizes
+    alike = (step | (np.isnan(values[:, 1:]) & np.isnan(values[:, :-1]))).all(axis=0)
+    inner = np.flatnonzero(alike[1:] & alike[:-1]) + 1
+    return [row for k, row in enumerate(kept) if k not in set(inner.tolist())]
+
+
+def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[Section, ...]:
+    """Sections with something in them."""
+    return tuple(Section(title, blocks) for title, blocks in titled if blocks)
+
+
+def told_failures(study: ReportStudy, part: CamPart) -> tuple[Check, ...]:
+    """What the cam cannot do."""
+    return tuple(Check(told(f"{one}.", study.numbers), False) for one in part.failures)
