@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import re
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,7 +31,8 @@ def curves(rows: int, label: str = "v, m/s") -> Figure:
 
 
 def ticks(figure: Figure) -> list[str]:
-    FigureCanvasAgg(figure).draw()
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
     axes = figure.axes[0]
     return [label.get_text() for label in (*axes.get_xticklabels(), *axes.get_yticklabels())]
 
@@ -54,7 +56,7 @@ def test_curves_are_half_a_page_high_and_their_labels_apart(rows: int, label: st
     picture(figure, "")
     width, height = figure.get_size_inches()
     assert height <= FLAT * width * (1.0 + np.finfo(float).eps)
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
     boxes = [axes.yaxis.label.get_window_extent(canvas.get_renderer()) for axes in figure.axes]
     for upper, lower in pairwise(boxes):
