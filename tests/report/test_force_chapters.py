@@ -16,6 +16,7 @@ from centrode.report.chapters.forces import by_links, reduced_sums
 from centrode.report.making import report
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
+from report.made import undrawn
 from report.typst_reading import TypstReader
 
 FORCES = (
@@ -45,12 +46,14 @@ def value_of(part: str) -> float | None:
 
 @pytest.fixture(scope="module")
 def press() -> dict[str, Chapter]:
-    return {chapter.name: chapter for chapter in made("six-bar-press-printed", FORCES, digits=DIGITS)}
+    with undrawn():
+        return {chapter.name: chapter for chapter in made("six-bar-press-printed", FORCES, digits=DIGITS)}
 
 
 @pytest.fixture(scope="module")
 def corrected() -> dict[str, Chapter]:
-    return {chapter.name: chapter for chapter in made("six-bar-press", FORCES)}
+    with undrawn():
+        return {chapter.name: chapter for chapter in made("six-bar-press", FORCES)}
 
 
 def study_of(name: str) -> ReportStudy:
@@ -97,7 +100,8 @@ def test_numbers_put_in_give_the_numbers_told(press: dict[str, Chapter]) -> None
 
 
 def test_all_checks_hold(corrected: dict[str, Chapter]) -> None:
-    engine = made("single-cylinder-engine", ("reduction", "reactions", "force-polygons"))
+    with undrawn():
+        engine = made("single-cylinder-engine", ("reduction", "reactions", "force-polygons"))
     found = [one for chapter in (*corrected.values(), *engine) for one in blocks_of(chapter, Check)]
     assert len(found) >= 15
     assert [one.text for one in found if not one.holds] == []

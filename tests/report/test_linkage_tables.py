@@ -71,14 +71,13 @@ def test_the_assignment_s_table_is_that_of_the_report() -> None:
 
 
 def test_the_coursework_s_instant() -> None:
-    rows = {row[1]: row for row in tables(made("tables", ct.example("six-bar-press")), "OA = 120°")[0].rows}
+    links, places, *_others, analogs = tables(made("tables", ct.example("six-bar-press")), "OA = 120°")
+    rows = {row[1]: row for row in links.rows}
     # the source's phi2, phi3 at 120 deg, and its phi4, which it measures from H to D
     assert [round(number(rows[link][2]), 2) for link in ("AB", "CD")] == [22.17, 95.76]
-    points = {row[0]: row for row in tables(made("tables", ct.example("six-bar-press")), "OA = 120°")[1].rows}
+    points = {row[0]: row for row in places.rows}
     assert number(points["H"][1]) == pytest.approx(2.584, abs=5e-4 + 5e-5)
-    coefficients = {
-        row[0]: row for row in tables(made("tables", ct.example("six-bar-press")), "OA = 120°")[-1].rows
-    }
+    coefficients = {row[0]: row for row in analogs.rows}
     # the source's drive turns backwards: first derivatives have the other sign
     assert number(coefficients["H"][1]) == pytest.approx(-0.675, abs=5e-4 + 5e-6)
     assert number(coefficients["H"][3]) == pytest.approx(0.331, abs=5e-4 + 5e-6)
@@ -174,6 +173,8 @@ def test_checks_of_all_chapters_hold() -> None:
         keys = ("structure", "equations", "derivation", "tables")
         for chapter in report(mechanism, ReportOptions(chapters=keys), language="en").chapters:
             checks = [b for s in chapter.sections for b in s.blocks if isinstance(b, Check)]
+            no_loop = name == "two-link-arm" and chapter.name == "equations"  # nothing closes
+            assert checks or no_loop, (name, chapter.name)
             assert all(check.holds for check in checks), (name, [c.text for c in checks if not c.holds])
 
 

@@ -98,6 +98,11 @@ def test_the_decimal_mark_is_the_language_s() -> None:
         ("P20 at (0.25, -3) m", f"P20 at (0,25, {MINUS}3) m"),
         ("24 - 3 = 21", "24 - 3 = 21"),
         ("-0 m", "0 m"),
+        ("2.5 N m", "2,5 N·m"),
+        ("3.1e-05 kg m^2 of it", "3,1·10⁻⁵ kg·m² of it"),
+        ("kg m^2", "kg·m²"),
+        ("link N m", "link N m"),
+        ("4 N more", "4 N more"),
     ],
 )
 def test_numbers_inside_of_texts(text: str, told: str) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from centrode.report.blocks import Chapter, Formula, Paragraph, Report, Section
+from centrode.report.blocks import Chapter, Formula, Paragraph, Report, Section, Table
 from centrode.report.pdf.document import pdf_document
 from centrode.report.pdf.source import Source
 
@@ -84,6 +84,42 @@ def test_the_bytes_repeat_in_another_process() -> None:
     tests = str(Path(__file__).parents[1])
     done = subprocess.run([sys.executable, "-c", program, tests], capture_output=True, check=True)
     assert done.stdout == pdf_document(report())
+
+
+@reads_pdf
+def test_long_contents_share_a_page_with_the_first_chapter(tmp_path: Path) -> None:
+    for count, page in ((3, 1), (60, 1)):
+        chapters = tuple(
+            Chapter(f"c{k}", f"Chapter {k}", (Section("", (Paragraph(f"begin{k}"),)),)) for k in range(count)
+        )
+        (tmp_path / "a.pdf").write_bytes(pdf_document(Report("T", "", "en", chapters)))
+        pages = text_of(tmp_path / "a.pdf").split("\f")
+        assert "begin0" in pages[page], count
+        assert ("Chapter 59 ." in pages[page]) == (count > 50)  # the end of the contents
+
+
+@reads_pdf
+@pytest.mark.parametrize("lines", range(30, 50, 2))
+def test_a_table_begins_with_more_than_a_row(tmp_path: Path, lines: int) -> None:
+    rows = tuple((f"row{k}", "1") for k in range(40))
+    filling = tuple(Paragraph("filling") for _ in range(lines))
+    sections = (Section("", filling), Section("Headed", (Table(("a", "b"), rows, "Captioned"),)))
+    (tmp_path / "a.pdf").write_bytes(pdf_document(Report("T", "", "en", (Chapter("a", "A", sections),))))
+    _contents, *pages = text_of(tmp_path / "a.pdf").split("\f")
+    (page,) = (page for page in pages if "Captioned" in page)
+    assert "Headed" in page
+    assert page.count("row") >= 5
+
+
+def test_what_announces_a_line_stays_with_it() -> None:
+    blocks = (Paragraph("Group by group:"), Paragraph("point A"), Formula((("x", "1"),)), Paragraph("Last."))
+    source = Source(Report("", "", "en", (Chapter("a", "A", (Section("", blocks),)),))).text
+    kept = [line for line in source.splitlines() if "sticky: true" in line]
+    assert [any(word in line for line in kept) for word in ("Group", "point A", "Last")] == [
+        True,
+        True,
+        False,
+    ]
 
 
 def test_code_in_a_formula_is_a_fault() -> None:

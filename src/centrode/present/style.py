@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
@@ -19,6 +20,7 @@ DASHES: tuple[Any, ...] = ("-", (0, (5, 1.2)), (0, (5, 1.2, 1.2, 1.2)), (0, (1.2
 MUTED = "#8A8A8A"
 GROUND = "#404040"
 INK = "#202020"
+MATHTEXT = logging.getLogger("matplotlib.mathtext")
 BACKEND = ("backend", "backend_fallback")
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -62,7 +64,16 @@ def house_style() -> Iterator[None]:
     ours = {name: value for name, value in settings.items() if name not in BACKEND}
     with matplotlib.rc_context(ours), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")
-        yield
+        MATHTEXT.addFilter(_is_no_missing_letter)
+        try:
+            yield
+        finally:
+            MATHTEXT.removeFilter(_is_no_missing_letter)
+
+
+def _is_no_missing_letter(record: logging.LogRecord) -> bool:
+    """False of what the mathematics of figures says of letters that its font lacks."""
+    return "does not have a glyph" not in str(record.msg) and "substituting with" not in str(record.msg)
 
 
 def pens(names: Iterable[str]) -> Mapping[str, Pen]:

@@ -8,6 +8,7 @@ from centrode.locale import _
 from centrode.present.equations import page
 from centrode.report.blocks import Block, Formula, Paragraph, Section, System, Table, shown
 from centrode.report.numbers import respelled
+from centrode.report.rows import degrees
 
 
 def section_of(section: page.Section) -> Section:
@@ -35,5 +36,5 @@ def _block(entry: page.System | page.Symbols | page.Note) -> Block:
         return System(entry.matrix, entry.unknowns, entry.right)
     if isinstance(entry, page.Note):
         return Paragraph(entry.text)
-    rows = tuple((f"${name}$", respelled(value), shown(words)) for name, value, words in entry.rows)
+    rows = tuple((f"${name}$", respelled(degrees(value)), shown(words)) for name, value, words in entry.rows)
     return Table((_("symbol"), _("value"), _("meaning")), rows, "", (False, True, False))

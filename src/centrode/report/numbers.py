@@ -18,6 +18,7 @@ MOST_DECIMALS = 7
 """Zeros behind the decimal mark that can still be read; beyond them numbers get a power of ten."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _NUMBER = re.compile(r"(?<![\w.,^'])(-?)(\d+(?:\.\d+)?)(?:e([+-]?\d+))?(?![\w'])")
+_PRODUCT = re.compile(r"(?:(?<=[\d⁰¹²³⁴⁵⁶⁷⁸⁹] )|^)(k?N|kg) (?=(?:mm|m²|m|s)(?![\w']))")
 _UNIT_SIGNS = (("deg", "°"), ("um", "µm"))
 
 
@@ -36,7 +37,7 @@ def respelled(text: str) -> str:
         power = f"e{found[3]}" if found[3] else ""
         return spelled_number(found[1] + found[2] + power)
 
-    return typeset_unit(_NUMBER.sub(one, text))
+    return _PRODUCT.sub(r"\1·", typeset_unit(_NUMBER.sub(one, text)))
 
 
 def spelled_unit(unit: str) -> str:

@@ -61,6 +61,8 @@ def settled(description: Mechanism | AnyCam, options: ReportOptions, known: Iter
         options.digits if options.digits is not None else asked.digits or DIGITS,
     )
     where = "chapters" if options.chapters is not None else "[report] chapters"
+    if found.chapters is not None and not found.chapters:
+        raise InputError(where, _("no chapter is named"), nearest("", list(known)))
     _check(found.chapters, known, where, _("there is no chapter {name}"))
     names = description.points if isinstance(description, Mechanism) else ()
     _check(found.points, names, "points", _("unknown point {name}"))

@@ -13,6 +13,7 @@ from centrode.report.numbers import Numbers, respelled
 
 CONDITION = re.compile(r"\b(sin|cos)\(([^()]*\bphi\d+[^()]*)\) = 0")
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]\d+)?")
+POWER = re.compile(r"(?<![\w.,])(\d\.\d+)(?=e[+-]\d+(?![\w.]))")
 LONG = re.compile(r"(?<![\w.,])\d+\.\d+(?![\w.,]*\w)")
 DEGREES = re.compile(r"(?<=\d) deg\b(/?)|(?<=, )deg\b")
 
@@ -46,8 +47,14 @@ def sentence(text: str, numbers: Numbers) -> str:
 
 def _spelled(text: str, numbers: Numbers) -> str:
     apart = PAIR.sub(r"(\1; \2)", text)  # a comma would be taken for a decimal mark
-    short = LONG.sub(lambda found: _rounded(found[0], numbers.digits), apart)
-    return respelled(shown(DEGREES.sub(lambda found: f" °{found[1]}" if found[1] else "°", short)))
+    mantissas = POWER.sub(lambda found: _rounded(found[0], numbers.digits), apart)
+    short = LONG.sub(lambda found: _rounded(found[0], numbers.digits), mantissas)
+    return respelled(shown(degrees(short)))
+
+
+def degrees(text: str) -> str:
+    """A text with "30 deg" and "30 deg/s" as "30°" and "30 °/s"."""
+    return DEGREES.sub(lambda found: f" °{found[1]}" if found[1] else "°", text)
 
 
 def _rounded(text: str, digits: int) -> str:

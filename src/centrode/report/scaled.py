@@ -15,6 +15,7 @@ from matplotlib.transforms import Bbox
 from centrode.present.saving import METADATA
 from centrode.present.style import house_style
 from centrode.report.blocks import Picture
+from centrode.report.figures import spell_decimals
 
 INCH = 25.4
 ROOM = 2.0
@@ -30,6 +31,7 @@ def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Pi
     caption : what it is, with its scale
     right, top : where the page's column and its head begin [mm]
     """
+    spell_decimals(figure)
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     kept: list[Any] = []
@@ -38,9 +40,9 @@ def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Pi
             x, y = (float(value) for value in text.get_position())
             if _is_overlay(axes, figure) and (x >= right or y >= top):
                 text.remove()
-        kept += [
-            box for artist in axes.get_children() if (box := _extent(artist, axes, renderer)) is not None
-        ]
+        with house_style():
+            boxes = [_extent(artist, axes, renderer) for artist in axes.get_children()]
+        kept += [box for box in boxes if box is not None]
     inches = Bbox.union(kept).transformed(figure.dpi_scale_trans.inverted()) if kept else figure.bbox_inches
     page = np.array([right, top]) / INCH
     low = np.clip(np.array([inches.x0, inches.y0]) - ROOM / INCH, 0.0, page)

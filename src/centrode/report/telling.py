@@ -10,6 +10,7 @@ from centrode.report.blocks import Check, Picture, Table
 from centrode.report.figures import picture
 from centrode.report.numbers import NOTHING, Numbers, spelled_number
 from centrode.report.rows import rows_table, told
+from centrode.report.scaled import INCH, drawn_to_scale
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,13 +62,18 @@ def share_text(share: float) -> str:
 
 
 TO_SCALE = ("force-vectors",)
-"""Figures whose scales are true on paper."""
+"""Figures whose scales are true on paper; they are pages, of which only what is empty is cut off."""
 
 
 def pictures(figures: Mapping[str, Figure], captions: Mapping[str, str]) -> list[Picture]:
     """Figures by name as pictures, in the order of their captions; what was not drawn is left out."""
     return [
-        picture(figures[name], caption, to_scale=name in TO_SCALE)
+        _to_scale(figures[name], caption) if name in TO_SCALE else picture(figures[name], caption)
         for name, caption in captions.items()
         if name in figures
     ]
+
+
+def _to_scale(figure: Figure, caption: str) -> Picture:
+    width, height = (float(inches) * INCH for inches in figure.get_size_inches())
+    return drawn_to_scale(figure, caption, width, height)

@@ -72,9 +72,9 @@ class Source:
     def _section(self, section: Section) -> Iterator[str]:
         if section.title:
             yield f"#heading(level: 2, {quoted(section.title)})"
-        for block, following in zip(section.blocks, (*section.blocks[1:], None), strict=True):
+        for number, block in enumerate(section.blocks):
             shown = self._shown(block)
-            yield f"#block(sticky: true, {shown[1:]})" if _announces(block, following) else shown
+            yield f"#block(sticky: true, {shown[1:]})" if _announces(section.blocks[number:]) else shown
 
     @singledispatchmethod
     def _shown(self, block: Block) -> str:
@@ -123,11 +123,15 @@ class Source:
         return f"#check({'true' if block.holds else 'false'}, {content(block.text)})"
 
 
-def _announces(block: Block, following: Block | None) -> bool:
-    """Whether a block is a line that would be lost at the foot of a page without what it announces."""
-    if not isinstance(block, Paragraph) or following is None or isinstance(following, Paragraph):
+def _announces(blocks: Sequence[Block]) -> bool:
+    """Whether the first of these is a line that would be lost at the foot of a page without what it announces.
+
+    Lines that end with a colon announce a line too.
+    """
+    block, *others = blocks
+    if not isinstance(block, Paragraph) or not others or len(block.text) > ANNOUNCEMENT:
         return False
-    return len(block.text) <= ANNOUNCEMENT
+    return not isinstance(others[0], Paragraph) or (block.text.endswith(":") and _announces(others))
 
 
 def content(marked: str) -> str:

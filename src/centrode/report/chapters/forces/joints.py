@@ -16,6 +16,7 @@ from centrode.report.chapters.forces.inertia import inertia_at
 from centrode.report.chapters.forces.places import not_reached, titles
 from centrode.report.chapters.forces.results import has_forces, reactions_at_instants, reactions_of
 from centrode.report.chapters.forces.virtual_work import by_virtual_work
+from centrode.report.numbers import respelled
 from centrode.report.telling import facts, listed, measured, pictures
 from centrode.study.forces.bearing_loads import bearing_load_rows, bearing_loads
 from centrode.study.forces.bearings import bearings, motion_beside
@@ -51,7 +52,7 @@ def _made(study: ReportStudy) -> Chapter:
         Section(
             "", (*_meaning(study), facts(study.numbers, reaction_rows(mechanism, found)[: -len(CHECKS)]))
         ),
-        Section(_("Table of joints"), (Paragraph(told), listed(study.numbers, header, rows))),
+        Section(_("Table of joints"), (Paragraph(respelled(told)), listed(study.numbers, header, rows))),
     ]
     sections += [Section(title, tuple(_at(study, k))) for k, title in enumerate(titles(study))]
     sections.append(Section(_("Greatest reactions"), _greatest(study)))
