@@ -260,6 +260,7 @@ from .present import mjcf_text as mjcf_text
 from .present import write_motion_xlsx as write_motion_xlsx
 from .present import workbook_of_csv as workbook_of_csv
 from .present import spell_with_comma as spell_with_comma
+from .present import TableSpelling as TableSpelling
 from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_reduction_csv as write_reduction_csv
 from .present import write_reactions_csv as write_reactions_csv

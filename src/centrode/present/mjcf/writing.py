@@ -103,7 +103,7 @@ class _Model:
     @property
     def _nominal_inertia(self) -> float:
         """Moment of inertia of a body that the description gives none."""
-        return self.least * (0.1 * self.size) ** 2
+        return float(self.least * (0.1 * self.size) ** 2)
 
     def _direction(self, guide: Guide) -> Place:
         return _turned(guide.unit, self.angles[guide.on])
