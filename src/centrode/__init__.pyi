@@ -30,7 +30,7 @@ from .model.cams.schema import cam_schema as cam_schema
 from .model.examples.loading import load as load
 from .model.examples.loading import load_cam as load_cam
 from .model.examples.loading import example as example
-from .model.examples.loading import describes_cam as describes_cam
+from .model.examples.loading import load_either as load_either
 from .model.examples import example_names as example_names
 from .model.examples import example_text as example_text
 from .model.classics import four_bar as four_bar
@@ -252,6 +252,8 @@ from .study.sweep_summary import sweep_rows as sweep_rows
 from .present import sweep_csv as sweep_csv
 from .present import write_motion_csv as write_motion_csv
 from .present import write_motion_netcdf as write_motion_netcdf
+from .study.among import motion_among as motion_among
+from .study.among import moving_points as moving_points
 from .present import mechanism_drawing as mechanism_drawing
 from .present import drawing_svg as drawing_svg
 from .present import write_drawing_svg as write_drawing_svg
@@ -260,6 +262,7 @@ from .present import mjcf_text as mjcf_text
 from .present import write_motion_xlsx as write_motion_xlsx
 from .present import workbook_of_csv as workbook_of_csv
 from .present import spell_with_comma as spell_with_comma
+from .present import TableSpelling as TableSpelling
 from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_reduction_csv as write_reduction_csv
 from .present import write_reactions_csv as write_reactions_csv

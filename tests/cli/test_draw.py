@@ -53,3 +53,33 @@ def test_what_cannot_be_drawn_is_told(centrode: Centrode, tmp_path: Path) -> Non
         done = centrode("draw", *words)
         assert (done.code, told in done.err) == (2, True), done.err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_not_reached_is_told(centrode: Centrode, tmp_path: Path) -> None:
+    far = centrode("draw", "slider-between-cranks-locked", "--at", "150 deg", "--out", tmp_path / "a.svg")
+    assert (far.code, "no position" in far.err, (tmp_path / "a.svg").exists()) == (3, True, True)
+    still = centrode("draw", "parallelogram", "--centrodes", "AB", "--out", tmp_path / "b.svg")
+    assert (still.code, "no centre" in still.err, (tmp_path / "b.svg").exists()) == (3, True, False)
+
+
+def test_a_place_beyond_the_range_is_no_part_of_the_paths(centrode: Centrode, tmp_path: Path) -> None:
+    drawn = []
+    for name, at in (("a.svg", "100 deg"), ("b.svg", "820 deg")):  # two turns later
+        words = (
+            "draw",
+            "crank-rocker",
+            "--at",
+            at,
+            "--samples",
+            "73",
+            "--path",
+            "B",
+            "--out",
+            tmp_path / name,
+        )
+        assert centrode(*words).code == 0
+        (paths,) = (group for group in ET.parse(tmp_path / name).getroot() if group.attrib["id"] == "paths")
+        drawn.append([[float(x) for x in line.attrib["points"].replace(",", " ").split()] for line in paths])
+    for first, second in zip(*drawn, strict=True):
+        # millimetres of a sheet of some metres, in coordinates with six digits of it after the first
+        assert max(abs(a - b) for a, b in zip(first, second, strict=True)) <= 0.02

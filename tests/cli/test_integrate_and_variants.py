@@ -141,6 +141,25 @@ def test_variants(centrode: Centrode, folder: Path, table: Path) -> None:
     assert names == {".lock", "summary.csv", "variant-1", "variant-2", "variant-3"}
 
 
+def test_variants_with_workbooks_and_commas(centrode: Centrode, folder: Path, table: Path) -> None:
+    words = ("variants", "t.csv", "--topology", "slider-between-cranks", "--out", "r")
+    assert centrode(*words).code == 0
+    plain = {path: path.read_text(encoding="utf-8") for path in Path("r").rglob("*.csv")}
+    for _again in range(2):  # what is finished is not spelled again
+        assert centrode(*words, "--xlsx", "--decimal-comma").code == 0
+        for path, text in plain.items():
+            assert path.with_suffix(".xlsx").read_bytes()[:2] == b"PK"
+            found = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines(), delimiter=";"))
+            expected = list(csv.reader(text.splitlines()))
+            assert [[field.replace(",", ".") for field in row] for row in found] == [
+                [field.replace(",", ".") for field in row] for row in expected
+            ]
+            assert not any("." in field for field in found[-1] if field and field[0] in "0123456789-")
+    assert centrode(*words).code == 0
+    assert {path: path.read_text(encoding="utf-8") for path in Path("r").rglob("*.csv")} == plain
+    assert not list(Path("r").rglob("*.xlsx"))
+
+
 def test_variants_with_a_row_that_is_refused(centrode: Centrode, folder: Path, table: Path) -> None:
     table.write_text(TABLE + "4;-1;1,9;3,5\n5;9;1,9;3,5\n", encoding="utf-8")
     done = centrode("variants", "t.csv", "--topology", "slider-between-cranks", "--out", "r")

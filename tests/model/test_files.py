@@ -248,7 +248,10 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
             FOUR_BAR + "[study]\nsamples = 1000000000",
             "[study]: samples must lie between 1 and 1000000, got 1000000000",
         ),
-        (FOUR_BAR + "[study]\nsamples = 0", "samples must lie between 1 and 1000000, got 0; ask for more samples"),
+        (
+            FOUR_BAR + "[study]\nsamples = 0",
+            "samples must lie between 1 and 1000000, got 0; ask for more samples",
+        ),
         (FOUR_BAR + "[study]\nsamples = 3.5", "samples must be a whole number, got 3.5"),
         (FOUR_BAR + '[study]\ninstants = ["3 mm"]', "[study] instants: expected an angle (rad)"),
         (FOUR_BAR + '[display]\nlength = "kg"', 'press.toml, [display] length: expected one of "m", "mm"'),

@@ -102,3 +102,20 @@ def test_the_notebook_of_the_documentation_runs(monkeypatch: pytest.MonkeyPatch)
             [sorted(output.get("data", ())) for output in cell.get("outputs", ())] for cell in (old, new)
         ]
         assert kinds[0] == kinds[1]
+
+
+@pytest.mark.parametrize("name", ["six-bar-press", "spherical-four-bar"])
+def test_parts_of_a_motion_are_shown_as_xarray_shows_them(name: str) -> None:
+    motion = ct.motion(ct.example(name), 5)
+    broken = motion.copy()
+    broken.attrs["mechanism"] = "broken ["
+    parts = [
+        motion[["position", "status"]], motion[["position"]], motion.isel(sample=3), motion.isel(sample=slice(0, 0)),
+        motion.isel(point=1), motion.isel(point=slice(0, 0)), motion.isel(point=[1]), motion.isel(link=[0]),
+        motion.drop_vars("status"), motion.isel(axis=0), motion.transpose(), motion.rename(sample="k"),
+        motion.assign_attrs(mechanism=5), broken, motion.isel(sample=0, point=0), motion.swap_dims(sample="time"),
+    ]  # fmt: skip
+    for part in parts:
+        shown = notebook.motion_html(part)
+        assert shown.endswith(part._repr_html_()[-20:])
+        assert "xarray.Dataset" in shown

@@ -12,10 +12,15 @@ from xml.etree import ElementTree as ET
 import ezdxf
 import numpy as np
 import pytest
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
 
 import centrode as ct
 from centrode.present.drafting.hiding import visible
-from centrode.present.drafting.strokes import Cover, Drawing, Ring, Stroke
+from centrode.present.drafting.strokes import Cover, Drawing, Ring, Stroke, Words
+from centrode.present.drafting.svg import MARGIN
+from centrode.present.drawing import NAME_POINTS
+from centrode.present.reading import scene_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 RINGS = 1e-9
@@ -220,3 +225,80 @@ def test_hostile_text_is_text(tmp_path: Path) -> None:
     assert mechanism.title in ["".join(one.itertext()) for one in root.iter(f"{SVG}text")]
     ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
     assert not ezdxf.readfile(tmp_path / "a.dxf").audit().errors
+
+
+CAPITALS = 0.729
+"""Height of DejaVu's capitals, as a part of the size of its letters."""
+
+
+@pytest.mark.parametrize("text", [
+    "OA 1 rad (57.2958 deg), EC 1.14159265 rad (65.4084 deg)",
+    "Кривошипно-коромысловый четырёхзвенник",
+    "Механізм з двома кривошипами й повзуном",
+    "WWW MMM",
+])  # fmt: skip
+def test_the_sheet_has_room_for_its_words(text: str) -> None:
+    low, high = Drawing(words=[Words("title", text, (0.0, 0.0), 1.0, left=True)]).box()
+    set_width = text_to_path.get_text_width_height_descent(
+        text, FontProperties(family="DejaVu Sans", size=1.0 / CAPITALS), False
+    )[0]
+    # the margin of the sheet takes what single wide letters need
+    assert low[0] <= 0.0
+    assert (1.0 + MARGIN) * high[0] >= set_width
+
+
+def scaled(metres: float) -> ct.Mechanism:
+    return ct.parse_mechanism(f"""
+        title = "Crank-rocker"
+        links = {{ OA.length = {metres}, AB.length = {3.5 * metres}, DB.length = {3 * metres} }}
+        frame.points = {{ O = [0, 0], D = [{4 * metres}, 0] }}
+        drives = [{{ link = "OA", start = "30 deg", speed = "60 rpm" }}]
+        assembly.sides = {{ B = "left" }}
+        """)
+
+
+@pytest.mark.parametrize("metres", [1e-7, 1e-3, 1.0, 1e6])
+def test_drawings_of_any_size_are_as_exact(metres: float) -> None:
+    mechanism = scaled(metres)
+    motion = ct.motion(mechanism, 13)
+    root = ET.fromstring(ct.drawing_svg(ct.mechanism_drawing(mechanism, motion, 0)))
+    sheet = max(float(part) for part in root.attrib["viewBox"].split()[2:])
+    hinges = [
+        np.array([float(one.attrib["cx"]), float(one.attrib["cy"])]) for one in root.iter(f"{SVG}circle")
+    ]
+    apart = [math.dist(a, b) for a in hinges for b in hinges]
+    # coordinates have six digits of the sheet's size after the first
+    for length in (1.0, 3.5, 3.0):
+        assert min(abs(one - 1e3 * metres * length) for one in apart) <= 2e-6 * sheet
+
+
+def test_points_of_one_link_are_dots_and_hinges_open(tmp_path: Path) -> None:
+    mechanism, _motion, drawing = drawing_of("chebyshev-straight-line")
+    traced = 1e3 * ct.motion(mechanism, 1)["position"].sel(point="P")[0].to_numpy()
+    (dot,) = [ring for ring in drawing.rings if ring.filled]
+    assert math.dist(dot.centre, traced) <= RINGS * 1e3
+    root = ET.fromstring(ct.drawing_svg(drawing))
+    assert [one.get("fill") is not None for one in root.iter(f"{SVG}circle")].count(True) == 1
+    ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
+    (hatch,) = ezdxf.readfile(tmp_path / "a.dxf").modelspace().query("HATCH")
+    assert hatch.dxf.solid_fill == 1
+
+
+def test_links_lie_on_paths_in_both_kinds_of_file(tmp_path: Path) -> None:
+    mechanism = ct.example("scotch-yoke")  # H and T of one link go along the line that joins them
+    drawing = ct.mechanism_drawing(mechanism, ct.motion(mechanism, 13), 0, ["H", "T"])
+    ct.write_drawing_dxf(drawing, tmp_path / "a.dxf")
+    layers = [one.dxf.layer for one in ezdxf.readfile(tmp_path / "a.dxf").modelspace().query("LWPOLYLINE")]
+    assert max(k for k, layer in enumerate(layers) if layer == "paths") < layers.index("links")
+
+
+def test_names_are_as_large_as_their_places_are_made_for() -> None:
+    mechanism = ct.example("crank-rocker")
+    motion = ct.motion(mechanism, 61)
+    drawing = ct.mechanism_drawing(mechanism, motion, 0)
+    scene = scene_of(mechanism, motion)
+    point = 1e3 / scene.factor * scene.extent / (72.0 * scene.inches)
+    svg = ET.fromstring(ct.drawing_svg(drawing))
+    sizes = {one.attrib["font-size"] for one in svg.iter(f"{SVG}text") if one.text in ("O", "A", "B", "D")}
+    # the SVG tells six digits
+    assert [float(size) for size in sizes] == [pytest.approx(NAME_POINTS * point, rel=1e-5)]

@@ -108,3 +108,91 @@ def test_hostile_names_are_names() -> None:
     model = ct.mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))
     assert ET.fromstring(model).attrib["model"] == mechanism.title
     mujoco.MjModel.from_xml_string(model)
+
+
+WEDGES = """
+    title = "Wedge press"
+    links.wedge = { points = { W = [0, 0], V = [1, 0.5] }, angle = 0 }
+    links.ram = { points = { R = [0, 0] }, angle = 0 }
+    drives = [{ guide = "W", start = 0, speed = -0.1 }]
+    [[guides]]
+    point = "W"
+    on = "frame"
+    through = [0, 0]
+    direction = [1, 0]
+    link = "wedge"
+    [[guides]]
+    point = "R"
+    on = "frame"
+    through = [0.6, 0]
+    direction = [0, 1]
+    link = "ram"
+    [[guides]]
+    point = "R"
+    on = "wedge"
+    name = "face"
+    through = [0, 0]
+    direction = [2, 1]
+    link = "ram"
+    """
+
+
+def test_a_loop_of_prismatic_pairs_closes_in_a_carriage() -> None:
+    mechanism = ct.parse_mechanism(WEDGES)
+    text = ct.mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))
+    assert any(body.attrib["name"].startswith("carriage") for body in ET.fromstring(text).iter("body"))
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_step(model, data, round(2.0 / model.opt.timestep))
+    mujoco.mj_forward(model, data)
+    wedge, ram = data.site("wedge.W").xpos, data.site("ram.R").xpos
+    assert wedge[0] == pytest.approx(-0.2, rel=1e-3)  # -0.1 m/s for two seconds, less the run-up
+    left = float(np.abs(data.efc_pos).max(initial=0.0))
+    # on the face, which rises by half of its way
+    assert abs(ram[0] - 0.6) <= 2 * left + 1e-12
+    assert abs(ram[1] - 0.5 * (0.6 - wedge[0])) <= 2 * left + 1e-12
+
+
+@pytest.mark.parametrize("name", ["cam-driven-linkage", "wiper", "relative"])
+def test_a_law_is_followed_as_told(name: str) -> None:
+    """The drive lags by 2 tau: q + 2 tau q' + J q''/kp = v, J/kp <= tau^2; with v + 2 tau v' the lag is taken out."""
+    if name == "relative":
+        text = ct.example_text("two-link-arm").replace("speed = -2.0", 'law = "sin(2*t)"')
+        mechanism = ct.parse_mechanism(text)
+    else:
+        mechanism = ct.example(name)
+    start = ct.initial_place(mechanism)
+    model = mujoco.MjModel.from_xml_string(ct.mjcf_text(mechanism, ct.motion(mechanism, at=[start])))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    step = float(model.opt.timestep)
+    tau = 10 * step
+    times = start + step * np.arange(2000)
+    motion = ct.motion(mechanism, at=times)
+    ruled = [k for k, drive in enumerate(mechanism.drives) if drive.speed is None]
+    values = motion["drive_value"].to_numpy()[:, ruled]
+    values = values - values[0]
+    rates = np.gradient(values, step, axis=0)
+    bends = np.gradient(rates, step, axis=0)
+    found = []
+    for value, rate in zip(values, rates, strict=True):
+        data.ctrl[ruled] = value + 2 * tau * rate
+        mujoco.mj_forward(model, data)
+        found.append(data.actuator_length[ruled].copy())
+        mujoco.mj_step(model, data)
+    away = np.abs(np.array(found) - values)
+    assert away.max() <= tau**2 * np.abs(bends).max() + step * np.abs(rates).max()
+    assert np.abs(values).max() > 100 * away.max()  # it has moved
+
+
+def test_what_is_too_light_for_mujoco_is_refused() -> None:
+    links = "{ OA.length = 1e-6, AB.length = 3e-6, DB.length = 3e-6 }"
+    mechanism = ct.parse_mechanism(f"""
+        frame.points = {{ O = [0, 0], D = [4e-6, 0] }}
+        links = {links}
+        drives = [{{ link = "OA", start = 0, speed = 1 }}]
+        assembly.sides = {{ B = "left" }}
+        """)
+    with pytest.raises(ct.NotComputedYet, match="1e-15"):
+        ct.mjcf_text(mechanism, ct.motion(mechanism, at=[0.0]))

@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode import present
-from centrode.present.workbooks import MOST_COLUMNS, MOST_ROWS, write_workbook
+from centrode.present.workbooks import MOST_COLUMNS, MOST_ROWS, workbook_of_csv, write_workbook
 
 SIXTEEN_DIGITS = 5e-16 + 2.0**-53
 """Half a unit of the sixteenth digit of a number that begins with 1, and the rounding of what is read, relatively."""
@@ -88,3 +88,13 @@ def test_decimal_commas(tmp_path: Path) -> None:
         ["", "3"],
         ["1.2.3", "1,5e+20"],
     ]
+
+
+def test_names_that_python_reads_as_numbers_stay_names(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(
+        "joint,x [m],y [m]\n1_0,1.5,inf\nnan,,2.0\ninf,-1e-05,1e+16\n", encoding="utf-8"
+    )
+    workbook_of_csv(tmp_path / "a.csv", tmp_path / "a.xlsx")
+    assert list(sheets(tmp_path / "a.xlsx")["table"]) == [
+        ("joint", "x [m]", "y [m]"), ("1_0", 1.5, None), ("nan", None, 2), ("inf", -1e-5, 1e16)
+    ]  # fmt: skip

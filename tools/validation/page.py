@@ -45,7 +45,7 @@ def page() -> str:
 
 
 def _section(source: Source) -> str:
-    parts = [f"## {source.title}\n\n{textwrap.fill(source.about, WIDTH)}\n"]
+    parts = [f"## {source.title}\n\n{textwrap.fill(source.about, WIDTH, break_on_hyphens=False)}\n"]
     if source.columns:
         rows = [
             "| column | numbers | agree | farthest, in half units of the last digit |",

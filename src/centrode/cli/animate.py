@@ -85,7 +85,7 @@ def animate(
     force: bool,
 ) -> None:
     """Write the animation; exit code 3 if a range was asked for that is not all reached (the rest is written)."""
-    description = ct.load_cam(described) if ct.describes_cam(described) else ct.load(described)
+    description = ct.load_either(described)
     path = out if out is not None else Path(f"{Path(described).stem}.gif")
     if path.suffix.lower() not in ENDINGS:
         raise InputError("--out", _("an animation is a .gif or a .mp4"), _("name such a file"))

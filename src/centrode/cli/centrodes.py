@@ -20,9 +20,8 @@ from centrode.cli.arguments import (
     stop_option,
 )
 from centrode.cli.progress import Progress
-from centrode.cli.reached import is_moving, tell_absent
+from centrode.cli.reached import is_moving, tell_absent, tell_no_centre
 from centrode.cli.tables import tables_options
-from centrode.errors import MotionError
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
@@ -107,12 +106,7 @@ def centrodes(
     if looked is not None:
         tell_absent(mechanism, looked)
     if not (found["centrode_piece"] >= 0).any():
-        what = _("{link} has no centre against {other} in this range: it translates, or does not move")
-        raise MotionError(
-            mechanism,
-            what.format(link=link, other=against),
-            _("name another link, or another body with --against"),
-        )
+        tell_no_centre(mechanism, link, against)
 
 
 def _draw(

@@ -6,15 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-import numpy as np
 
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, samples_option, start_option, stop_option
-from centrode.errors import InputError
+from centrode.cli.reached import is_placed, tell_no_centre
+from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
-from centrode.model.problems import nearest, shown
 
 if TYPE_CHECKING:
     import xarray
@@ -70,33 +69,32 @@ def draw(
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")
     with about(mechanism):
-        motion, sample = _motion(description, place, samples, first, last)
-        rolled = [ct.centrodes(motion, link) for link in links]
+        course = ct.motion(description, samples, first, last)
+        motion, sample = ct.motion_among(description, course, place)
+        rolled = [_centrodes(mechanism, course, link) for link in links]
         drawing = ct.mechanism_drawing(
-            description, motion, sample, _points(description, paths), rolled, not no_names
+            description,
+            motion,
+            sample,
+            ct.moving_points(description, paths, "--path"),
+            rolled,
+            not no_names,
+            course,
         )
     with output.output_file(out, force=force) as draft:
         getattr(ct, KINDS[kind])(drawing, draft)
     click.echo(_("wrote {file}").format(file=out))
+    if not is_placed(motion, sample):
+        raise MotionError(
+            mechanism,
+            _("there is no position at {place}").format(place=ct.place_words(description, motion, sample)),
+            _("ask for a value between the limits"),
+        )
 
 
-def _motion(
-    mechanism: ct.Mechanism, place: float, samples: int | None, first: float | None, last: float | None
-) -> tuple[xarray.Dataset, int]:
-    """The motion with the instant asked for among its samples, and its number."""
-    whole = ct.motion(mechanism, samples, first, last)
-    by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    values = whole["drive_value"].to_numpy()[:, 0] if by_value else whole["time"].to_numpy()
-    places = np.unique(np.append(values, place))
-    return ct.motion(mechanism, at=places), int(np.searchsorted(places, place))
-
-
-def _points(mechanism: ct.Mechanism, paths: tuple[str, ...]) -> tuple[str, ...]:
-    """The points whose paths are asked for."""
-    if "all" in paths:
-        return mechanism.moving_points
-    for name in paths:
-        if name not in mechanism.moving_points:
-            what = _("there is no moving point {name}").format(name=shown(name))
-            raise InputError("--path", what, nearest(name, mechanism.moving_points))
-    return paths
+def _centrodes(mechanism: str, course: xarray.Dataset, link: str) -> xarray.Dataset:
+    """The centrodes of a link against the frame; MotionError where there are none."""
+    found = ct.centrodes(course, link)
+    if not (found["centrode_piece"] >= 0).any():
+        tell_no_centre(mechanism, link, "frame")
+    return found

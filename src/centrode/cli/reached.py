@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from centrode.errors import MotionError, Status
 from centrode.locale import _
@@ -18,6 +18,21 @@ MOVING = (Status.OK, Status.CUT_OFF)
 def is_moving(motion: xarray.Dataset, sample: int) -> bool:
     """Whether the mechanism has a position with velocities at a sample."""
     return Status(int(motion["status"][sample])) in MOVING
+
+
+def is_placed(motion: xarray.Dataset, sample: int) -> bool:
+    """Whether the mechanism has a position at a sample."""
+    return Status(int(motion["status"][sample])) in (*MOVING, Status.SINGULAR)
+
+
+def tell_no_centre(mechanism: str, link: str, other: str) -> NoReturn:
+    """Raise MotionError about a link that has no instant centre over a motion."""
+    what = _("{link} has no centre against {other} in this range: it translates, or does not move")
+    raise MotionError(
+        mechanism,
+        what.format(link=link, other=other),
+        _("name another link, or another body with --against"),
+    )
 
 
 def tell_absent(mechanism: str, motion: xarray.Dataset) -> None:

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from centrode.report.blocks import Report
 
 # What they import is too much for a list of commands.
-_loading, _options, _writing = (
+_options, _writing = (
     functools.partial(lazy_loader.load, f"centrode.{name}", suppress_warning=True)
-    for name in ("model.examples.loading", "report.options", "report.writing")
+    for name in ("report.options", "report.writing")
 )
 
 
@@ -70,7 +70,7 @@ def report(
     digits: int | None,
 ) -> None:
     """Write the documents; exit code 3 where a chapter could not be made (the others are there)."""
-    described = _loading().load_either(description)
+    described = ct.load_either(description)
     folder = output.folder_of(out, description, "report")
     kinds = _listed(formats)
     _writing().check_formats(kinds)

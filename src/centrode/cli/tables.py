@@ -37,12 +37,13 @@ def _keep(key: str) -> Callable[[click.Context, click.Parameter, bool], None]:
     return keep
 
 
-def spell_tables(folder: Path) -> None:
-    """Add workbooks and put decimal commas into the tables of a folder, as the running command was asked to."""
+def asked_spelling() -> ct.TableSpelling:
+    """How the running command was asked to spell its tables."""
     context = click.get_current_context(silent=True)
     asked = {} if context is None else context.meta
-    for table in sorted(folder.rglob("*.csv")):
-        if asked.get(XLSX):
-            ct.workbook_of_csv(table, table.with_suffix(".xlsx"))
-        if asked.get(COMMA):
-            ct.spell_with_comma(table)
+    return ct.TableSpelling(bool(asked.get(XLSX)), bool(asked.get(COMMA)))
+
+
+def spell_tables(folder: Path) -> None:
+    """Add workbooks and put decimal commas into the tables of a folder, as the running command was asked to."""
+    asked_spelling().spell(folder)

@@ -9,6 +9,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.progress import Progress
+from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
 
@@ -43,6 +44,7 @@ from centrode.locale import _, mark
     metavar=mark("KINDS"),
     help=mark("With --report: kinds of documents, separated by commas; html,pdf if left out."),
 )
+@tables_options
 def variants(
     table: str,
     topology: str,
@@ -56,6 +58,7 @@ def variants(
     if formats is not None and not reports:
         raise InputError("--format", _("it belongs to --report"), _("say that too"))
     kinds = tuple(part.strip() for part in (formats or "html,pdf").split(",") if part.strip())
+    spelling = asked_spelling()
     description = ct.load(topology)
     folder = output.folder_of(out, table, "variants")
     try:
@@ -66,11 +69,11 @@ def variants(
 
             if reports:
                 rows = ct.write_variant_reports(
-                    description, table, folder, jobs, figures, formats=kinds, progress=tell
+                    description, table, folder, jobs, figures, formats=kinds, progress=tell, spelling=spelling
                 )
             else:
                 rows = ct.write_variants(
-                    description, table, folder, jobs=jobs, figures=figures, progress=tell
+                    description, table, folder, jobs=jobs, figures=figures, progress=tell, spelling=spelling
                 )
     except KeyboardInterrupt:
         note = _("what is finished stays in {folder}; the same command goes on from there")

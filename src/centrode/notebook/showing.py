@@ -52,17 +52,24 @@ def check_html(checked: Check) -> str:
 def motion_html(dataset: xarray.Dataset) -> str:
     """A motion as a drawing over xarray's own view of it; any other dataset as xarray shows it."""
     own: str = dataset._repr_html_()
-    if (
-        "mechanism" not in dataset.attrs
-        or "position" not in dataset
-        or set(dataset["status"].dims) != {"sample"}
-    ):
+    if not _is_motion(dataset):
         return own
     try:
         mechanism = parse_mechanism(dataset.attrs["mechanism"])
         return _drawing(mechanism, dataset) + own
-    except CentrodeError:
+    except (CentrodeError, LookupError, ValueError):  # parts of a motion may lack what a drawing needs
         return own
+
+
+def _is_motion(dataset: xarray.Dataset) -> bool:
+    """Whether a dataset is a motion of one mechanism with its samples, points and statuses."""
+    return (
+        isinstance(dataset.attrs.get("mechanism"), str)
+        and {"position", "status"} <= set(dataset.variables)
+        and dataset["status"].dims == ("sample",)
+        and dataset["position"].dims == ("sample", "point", "axis")
+        and min(dataset["position"].shape) > 0
+    )
 
 
 def _drawing(mechanism: Mechanism, dataset: xarray.Dataset) -> str:

@@ -85,6 +85,7 @@ if TYPE_CHECKING:
     from centrode.present.region_tables import write_region_csv
     from centrode.present.regions import region_figure
     from centrode.present.saving import save_figures
+    from centrode.present.spelled_tables import TableSpelling
     from centrode.present.sweep_tables import sweep_csv
     from centrode.present.tables import motion_table, write_motion_csv, write_motion_netcdf
     from centrode.present.transmission_curves import transmission_figure
@@ -173,6 +174,7 @@ __all__ = [
     "write_region_csv",
     "write_variants",
     "spell_with_comma",
+    "TableSpelling",
     "workbook_of_csv",
     "write_motion_xlsx",
 ]
@@ -213,6 +215,7 @@ _attached, __dir__, _names = lazy_loader.attach(
         "curvature": ["curvature_figure"],
         "dark": ["darkened"],
         "decimal_comma": ["spell_with_comma"],
+        "spelled_tables": ["TableSpelling"],
         "drafting.dxf": ["write_drawing_dxf"],
         "drafting.sheet": ["mechanism_drawing"],
         "drafting.svg": ["drawing_svg", "write_drawing_svg"],

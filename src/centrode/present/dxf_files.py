@@ -16,6 +16,8 @@ from centrode.locale import _
 
 VERSION = "R2010"
 MILLIMETRES = 4
+FONT = "arial.ttf"
+"""Of all text: the usual stroked one has no letters but Latin ones."""
 
 _ezdxf = functools.partial(lazy_loader.load, "ezdxf")  # an extra, and slow to import
 
@@ -39,6 +41,7 @@ def dxf_document(path: Path) -> Iterator[tuple[Any, Any]]:
     with _fixed(library):
         document = library.new(VERSION, units=MILLIMETRES)
         document.header["$MEASUREMENT"] = 1
+        document.styles.get("Standard").dxf.font = FONT
         yield library, document
         _declare(document)
         document.saveas(path, encoding="utf-8")

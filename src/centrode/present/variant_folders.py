@@ -15,11 +15,12 @@ import multiprocessing
 import os
 import shutil
 import signal
+import tempfile
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
@@ -30,6 +31,7 @@ from centrode.locale import _
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.mechanism import Mechanism
 from centrode.present.integration_tables import write_integration_csv
+from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.present.tables import write_motion_csv
 from centrode.study.variants.computing import FAULT, STEPS, VariantResults, VariantRow, computed
 from centrode.study.variants.tables import Table, Variant, read_variants
@@ -71,12 +73,14 @@ class Task:
     folder: Path
     figures: bool
     more: WritesMore | None = None
+    spelling: TableSpelling = PLAIN
 
     @property
     def digest(self) -> str:
         """Digest of all that the files depend on."""
         told = [__version__, self.topology, dict(self.variant.values), STEPS, self.figures]
         told += [] if self.more is None else [self.more.key]
+        told += [] if self.spelling == PLAIN else [asdict(self.spelling)]
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
@@ -88,6 +92,7 @@ def write_variants(
     figures: bool = False,
     progress: Progress | None = None,
     more: WritesMore | None = None,
+    spelling: TableSpelling | None = None,
 ) -> tuple[VariantRow, ...]:
     """Compute every variant of a table into a folder of its own, and sum them up in `summary.csv`.
 
@@ -102,6 +107,7 @@ def write_variants(
         Draw the figures of each.
     progress : called with (variants done, variants in all)
     more : writes further files of each variant into its folder
+    spelling : workbooks, decimal commas; plain CSV alone if left out
 
     Returns
     -------
@@ -115,21 +121,33 @@ def write_variants(
     """
     _check_jobs(jobs)
     folder = Path(folder)
+    spelling = spelling or PLAIN
+    spelling.check()
     text = mechanism_text(topology)
     tasks = [
-        Task(text, variant, folder / f"variant-{variant.name}", figures, more)
+        Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling)
         for variant in read_variants(topology, table)
     ]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with locked(folder / LOCK, str(folder)):
             rows = _all(tasks, jobs, progress)
-            _replace(folder / SUMMARY, summary_text(rows))
+            _write_summary(rows, folder, spelling)
     except OSError as refusal:
         reason = refusal.strerror or str(refusal)
         what = _("cannot be written: {reason}").format(reason=reason)
         raise InputError(str(folder), what, _("name another place")) from refusal
     return tuple(rows)
+
+
+def _write_summary(rows: Sequence[VariantRow], folder: Path, spelling: TableSpelling) -> None:
+    """The summary as it is to be spelled, each of its files whole or not at all."""
+    with tempfile.TemporaryDirectory(prefix=".summary-", dir=folder) as draft:
+        (Path(draft) / SUMMARY).write_text(summary_text(rows), encoding="utf-8", newline="\n")
+        spelling.spell(Path(draft))
+        (folder / SUMMARY).with_suffix(".xlsx").unlink(missing_ok=True)  # of an earlier run
+        for file in sorted(Path(draft).iterdir()):
+            os.replace(file, folder / file.name)
 
 
 def _check_jobs(jobs: object) -> None:
@@ -203,6 +221,7 @@ def run(task: Task) -> VariantRow:
         _write(results, draft, figures=task.figures)
         if task.more is not None and results.mechanism is not None:
             task.more(results, draft)
+        task.spelling.spell(draft)
     except OSError:
         raise
     except Exception as fault:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import datetime
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -28,6 +29,8 @@ MOST_ROWS, MOST_COLUMNS, MOST_LETTERS = 1_048_575, 16_384, 31
 """Rows below the header, columns and letters of a sheet's name that the format holds."""
 ALONG = ("time", "drive", "turned", "carrier_angle", "cam_angle")
 """Quantities that tell where a row is: each sheet begins with them."""
+NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?", re.ASCII)
+ENDLESS = ("inf", "-inf", "nan")
 BESIDE = ("status", "residual")
 """Columns that end each sheet."""
 CREATED = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC)
@@ -113,8 +116,8 @@ def _quantity(header: str) -> str:
 
 
 def _numbers(column: Sequence[str]) -> Column:
-    """Fields as numbers where all that are not empty are numbers."""
-    try:
-        return [float(field) if field else float("nan") for field in column]
-    except ValueError:
-        return column
+    """Fields as numbers where those that are not empty are: names such as "1_0" and "nan" are none."""
+    told = [field for field in column if field]
+    if any(map(NUMBER.fullmatch, told)) and all(NUMBER.fullmatch(one) or one in ENDLESS for one in told):
+        return [float(field) if field else math.nan for field in column]
+    return column

@@ -58,14 +58,6 @@ def load_cam(file_or_example: str | Path) -> AnyCam:
     return parse_cam(example_text(name), f"{name}.toml")
 
 
-def describes_cam(file_or_example: str | Path) -> bool:
-    """Whether a TOML file, or the built-in example of that name, describes a cam; raises InputError as `load` does."""
-    path = _file(file_or_example)
-    if path is None:
-        return str(file_or_example) in example_names("cam")
-    return is_cam(toml_tables(read_file(path), path.name))
-
-
 def load_either(file_or_example: str | Path) -> Mechanism | AnyCam:
     """The mechanism or the cam in a TOML file, or the built-in one of that name; InputError if there is neither."""
     path = _file(file_or_example)

@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgba
 from matplotlib.patches import Circle, FancyArrowPatch, Patch, Polygon
 
-from centrode.present.drafting.strokes import Cover, Drawing, Ring, Stroke, Words
+from centrode.present.drafting.strokes import CAPITAL, Cover, Drawing, Ring, Stroke, Words
 
 WHITE = to_rgba("white")
 ROUND = 48
@@ -66,8 +66,9 @@ class Board:
         white = tuple(patch.get_facecolor()) == WHITE
         open_hinge = white and self.layer not in ROLLING
         layer = OPEN if open_hinge else CLOSED if patch.get_linestyle() not in ("-", "solid") else self.layer
-        if _is_drawn(patch.get_edgecolor()) or not _is_faint(patch.get_facecolor()):
-            self.drawing.rings.append(Ring(layer, (float(x), float(y)), float(radius), level))
+        filled = not (white or _is_faint(patch.get_facecolor()))
+        if filled or _is_drawn(patch.get_edgecolor()):
+            self.drawing.rings.append(Ring(layer, (float(x), float(y)), float(radius), level, filled))
         if white:
             turns = np.linspace(0.0, 2.0 * np.pi, ROUND, endpoint=False)
             corners = np.array([x, y]) + radius * np.stack([np.cos(turns), np.sin(turns)], axis=1)
@@ -99,10 +100,9 @@ class Board:
         self.drawing.strokes.append(Stroke(self.layer, places, float(how.get("zorder", 2.0))))
 
     def text(self, x: float, y: float, text: str, *, fontsize: float, **how: Any) -> None:
-        """Words; the size is in points on paper."""
-        self.drawing.words.append(
-            Words(self.layer, text, (self.scale * x, self.scale * y), fontsize * self.letters)
-        )
+        """Words; the size of the letters is in points on paper, drawings want the height of their capitals."""
+        height = CAPITAL * fontsize * self.letters
+        self.drawing.words.append(Words(self.layer, text, (self.scale * x, self.scale * y), height))
 
     letters: float = 1.0
     """Millimetres in a point of the letters' size."""

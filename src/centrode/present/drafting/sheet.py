@@ -11,7 +11,7 @@ from centrode.errors import NotComputedYet
 from centrode.locale import _
 from centrode.present.cams.driving_drawing import draw_axes_of_cams, draw_turned_cams
 from centrode.present.drafting.board import Board, on_paper
-from centrode.present.drafting.strokes import Drawing, Stroke, Words
+from centrode.present.drafting.strokes import CAPITAL, Drawing, Stroke, Words
 from centrode.present.drawing import (
     draw_drive,
     draw_frame,
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 METRE = 1000.0
 """Millimetres."""
+TITLE = 12.0
+"""Size of the title's letters, in points of the names' paper."""
 FARTHEST = 1.0
 """How far from the middle of the drawing centrodes are drawn, in its sizes."""
 DOUBLE = 1e-6
@@ -47,6 +49,7 @@ def mechanism_drawing(
     paths: Sequence[str] = (),
     centrodes: Sequence[xarray.Dataset] = (),
     names: bool = True,
+    course: xarray.Dataset | None = None,
 ) -> Drawing:
     """A mechanism at a sample of its motion, at full size in millimetres.
 
@@ -59,6 +62,7 @@ def mechanism_drawing(
     paths : points whose paths over the motion are drawn
     centrodes : results of `centrodes` that are drawn, the moving one where its link is at the instant
     names : write the points' names
+    course : the motion that the paths belong to, where it is not `motion`
 
     Raises
     ------
@@ -88,10 +92,12 @@ def mechanism_drawing(
             draw_names(board, scene, sample)
     drawing: Drawing = board.drawing
     drawing.strokes = [one for one in drawing.strokes if one.layer != "cams" or not _doubled(one, drawing)]
-    drawing.strokes += [Stroke("paths", board.scale * scene.tracks[name]) for name in paths]
+    whole = motion if course is None else course
+    for name in paths:
+        drawing.strokes.append(Stroke("paths", METRE * whole["position"].sel(point=name).to_numpy()))
     for pair in centrodes:
         drawing.strokes += _centrode(scene, pair, sample, board.scale)
-    _title(drawing, scene, motion, sample, 10.0 * board.letters)
+    _title(drawing, scene, motion, sample, CAPITAL * TITLE * board.letters)
     return drawing
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import unicodedata
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -13,6 +14,10 @@ Array: TypeAlias = NDArray[np.float64]
 CONTINUOUS, CHAIN = "continuous", "chain"
 PAPER = 250.0
 """Longer side of a drawing [mm] up to which lines have the widths of their layers; beyond, they grow with it."""
+LEAST = 25.0
+"""Longer side [mm] below which they shrink with it."""
+CAPITAL = 0.72
+"""Height of capital letters as a part of the size of the letters."""
 
 
 @dataclass(frozen=True)
@@ -51,23 +56,31 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Ring:
-    """A circle [mm]."""
+    """A circle [mm]; `filled`, a dot."""
 
     layer: str
     centre: tuple[float, float]
     radius: float
     level: float = 0.0
+    filled: bool = False
 
 
 @dataclass(frozen=True)
 class Words:
-    """A line of text, its middle at a place or, where `left`, its left end; height of the letters [mm]."""
+    """A line of text, its middle at a place or, where `left`, its left end; height of capital letters [mm]."""
 
     layer: str
     text: str
     place: tuple[float, float]
     height: float
     left: bool = False
+
+    def box(self) -> Array:
+        """Two corners of the room that it takes [mm]."""
+        width = self.height * sum(_width(letter) for letter in self.text)
+        half = np.array([0.5 * width, 0.7 * self.height])
+        middle = np.array(self.place) + (np.array([half[0], 0.5 * self.height]) if self.left else 0.0)
+        return np.stack([middle - half, middle + half])
 
 
 @dataclass(frozen=True)
@@ -93,12 +106,18 @@ class Drawing:
         for ring in self.rings:
             centre = np.array(ring.centre)
             places.append(np.stack([centre - ring.radius, centre + ring.radius]))
-        for words in self.words:
-            half = np.array([0.35 * len(words.text) * words.height, 0.7 * words.height])
-            middle = np.array(words.place) + (np.array([half[0], 0.0]) if words.left else 0.0)
-            places.append(np.stack([middle - half, middle + half]))
+        places += [words.box() for words in self.words]
         if not places:
             return np.zeros(2), np.zeros(2)
         every = np.concatenate(places)
         every = every[np.isfinite(every).all(axis=1)]
         return every.min(axis=0), every.max(axis=0)
+
+
+def _width(letter: str) -> float:
+    """Room for a letter, in heights of capitals: rather too much than too little, whatever the font."""
+    if unicodedata.east_asian_width(letter) in ("W", "F"):
+        return 1.4
+    if letter.isupper():
+        return 1.2
+    return 0.8 if letter.isascii() else 1.0

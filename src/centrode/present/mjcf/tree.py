@@ -1,14 +1,15 @@
 """A planar linkage as a tree of bodies, and what is left over: pins and prismatic pairs that close its loops.
 
 All bodies stand as they do initially and their axes are those of the world, so every coordinate of a joint counts
-from the initial position. A guide without a link of its own gets a slider, a cylinder a barrel and a rod.
+from the initial position. A guide without a link of its own gets a slider, a cylinder a barrel and a rod, a loop of
+prismatic pairs a carriage.
 """
 
 from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -68,7 +69,9 @@ class Tree:
 def tree_of(mechanism: Mechanism, places: Mapping[str, Place], directions: Mapping[str, Place]) -> Tree:
     """The tree; `places` of the points and `directions` of the guides are those of the initial position [m].
 
-    What slides on a body is reached from it at once: loops then close in hinges.
+    What slides on a body is reached from it at once: loops then close in hinges. A loop of prismatic pairs alone closes
+    in a carriage: a body that slides like the last of them, and is pinned where that one is, as none of them turns
+    against another.
     """
     pairs = _pairs(mechanism, places, directions)
     tree, waiting, known = Tree(), deque([FRAME]), {FRAME}
@@ -88,7 +91,14 @@ def tree_of(mechanism: Mechanism, places: Mapping[str, Place], directions: Mappi
     reach(FRAME, sliding)
     while waiting:
         reach(waiting.popleft(), pairs)
-    tree.closures = _left_over(pairs, used)
+    for pair in _left_over(pairs, used):
+        if pair.direction is None:
+            tree.closures.append(pair)
+            continue
+        carriage = carriage_name(pair.name)
+        slid = replace(pair, second=carriage)
+        tree.joints[carriage] = slid, pair.first
+        tree.closures.append(Pair(f"{pair.name} closes", carriage, pair.second, pair.place))
     return tree
 
 
@@ -156,6 +166,11 @@ def _members(mechanism: Mechanism) -> dict[str, list[str]]:
 def slider_name(guide: str) -> str:
     """The body that slides along a guide without a link of its own."""
     return f"slider {guide}"
+
+
+def carriage_name(pair: str) -> str:
+    """The body that slides where a loop closes in a prismatic pair."""
+    return f"carriage {pair}"
 
 
 def cylinder_names(drive: str) -> tuple[str, str]:

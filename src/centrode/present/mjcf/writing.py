@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 NOMINAL = 1e-3
 """Mass of a body that the description gives none, as a part of the greatest (of 1 kg where there is none)."""
+LIGHTEST = 1e-15
+"""What MuJoCo divides by at the least."""
 THIN = 0.01
 """Radius of drawn links, as a part of the mechanism's size."""
 STEPS = 4000
@@ -31,6 +33,10 @@ HARD = "0.9999 0.9999 0.001"
 """How nearly rigid constraints are (MuJoCo's solimp)."""
 REACHED = 100
 """Steps of time in which a drive's speed is reached: faster, and it would fight the constraints."""
+FOLLOWED = 10
+"""Half of the steps of time by which a drive lags behind the value of its law."""
+ROTOR = 0.1
+"""Inertia of such a drive itself, as a part of what its gains are for: without, it would fight the constraints."""
 
 
 def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset) -> str:
@@ -53,7 +59,7 @@ def mjcf_text(mechanism: Mechanism, motion: xarray.Dataset) -> str:
     Raises
     ------
     NotComputedYet
-        Spherical linkages, and wheels that roll.
+        Spherical linkages, wheels that roll, and bodies too light for MuJoCo.
     """
     if mechanism.space == "sphere":
         raise NotComputedYet(
@@ -83,9 +89,21 @@ class _Model:
         self.masses: dict[str, Mass] = {mass.link: mass for mass in masses_of(mechanism)}
         spread = [max(values) - min(values) for values in zip(*self.places.values(), strict=True)]
         self.size = max(spread)
-        speeds = [abs(drive.speed) for drive in mechanism.drives if drive.speed]
-        self.pace = max(speeds, default=1.0)
+        self.pace = max(_pace(drive, self.size) for drive in mechanism.drives) or 1.0
         self.step = min(LONGEST_STEP, 2 * math.pi / self.pace / STEPS)
+
+        self.greatest = max((float(mass.mass) for mass in self.masses.values()), default=1.0) or 1.0
+        self.least = NOMINAL * self.greatest
+        if min(self.least, self._nominal_inertia) < LIGHTEST:
+            what = _("MuJoCo has no bodies with a mass or moment of inertia below {least} kg or kg*m^2")
+            raise NotComputedYet(
+                "links", what.format(least=LIGHTEST), _("export it enlarged, or in other units")
+            )
+
+    @property
+    def _nominal_inertia(self) -> float:
+        """Moment of inertia of a body that the description gives none."""
+        return float(self.least * (0.1 * self.size) ** 2)
 
     def _direction(self, guide: Guide) -> Place:
         return _turned(guide.unit, self.angles[guide.on])
@@ -129,12 +147,10 @@ class _Model:
             self._body(body, child, own)
 
     def _inertial(self, body: ET.Element, name: str, own: Place) -> None:
-        greatest = max((float(mass.mass) for mass in self.masses.values()), default=1.0) or 1.0
-        least = NOMINAL * greatest
         known = self.masses.get(name)
-        mass = max(float(known.mass), least) if known else least
+        mass = max(float(known.mass), self.least) if known else self.least
         inertia = known.inertia if known is not None and not isinstance(known.inertia, tuple) else 0.0
-        about = max(float(inertia), least * (0.1 * self.size) ** 2)
+        about = max(float(inertia), self._nominal_inertia)
         centre = (0.0, 0.0)
         if known is not None and isinstance(known.centre, Centre):
             way = _turned((float(known.centre.along), float(known.centre.across)), self.angles[name])
@@ -178,17 +194,11 @@ class _Model:
 
     def _closure(self, equality: ET.Element, pair: Pair) -> None:
         first, second = ("world" if body == FRAME else body for body in (pair.first, pair.second))
-        if pair.direction is None:
-            # the anchor is told in the axes of the first body
-            body = second if first == "world" else first
-            other = first if first == "world" else second
-            own = self.tree.joints[body][0].place
-            ET.SubElement(equality, "connect", name=pair.name, body1=body, body2=other,
-                          anchor=_numbers((*_less(pair.place, own), 0.0)))  # fmt: skip
-            return
-        where = f"[[guides]] {pair.name.removeprefix('guide ')}"
-        what = _("models of MuJoCo have no loop that closes in a prismatic pair")
-        raise NotComputedYet(where, what, _("turn the chain round so that the loop closes in a hinge"))
+        # the anchor is told in the axes of the first body
+        body, other = (second, first) if first == "world" else (first, second)
+        own = self.tree.joints[body][0].place
+        ET.SubElement(equality, "connect", name=pair.name, body1=body, body2=other,
+                      anchor=_numbers((*_less(pair.place, own), 0.0)))  # fmt: skip
 
     def _turns(self, factors: Mapping[str, float]) -> dict[str, float]:
         """A sum of links' turns as joints and their factors."""
@@ -214,23 +224,27 @@ class _Model:
         if not actuators:
             return
         parent = ET.SubElement(root, "actuator")
-        heavy = sum(float(mass.mass) for mass in self.masses.values()) or NOMINAL * len(self.tree.joints)
-        controls = []
         for (name, what), drive in zip(actuators, self.mechanism.drives, strict=True):
-            scale = heavy * (self.size**2 if drive.kind == "angle" else 1.0)
-            if drive.speed is not None:
-                ET.SubElement(
-                    parent, "velocity", {"name": name, "kv": _number(scale / (REACHED * self.step))} | what
-                )
-            else:
-                stiff = scale / (REACHED * self.step) ** 2
-                ET.SubElement(
-                    parent, "position", {"name": name, "kp": _number(stiff), "dampratio": "1"} | what
-                )
-            controls.append(drive.speed or 0.0)
+            self._actuator(root, parent, drive, {"name": name} | what)
+        controls = [drive.speed or 0.0 for drive in self.mechanism.drives]
         frames = ET.SubElement(root, "keyframe")
         rates = [self._rate(name) for name in self._order(FRAME)]
         ET.SubElement(frames, "key", name="initial", ctrl=_numbers(controls), qvel=_numbers(rates))
+
+    def _actuator(self, root: ET.Element, parent: ET.Element, drive: Drive, said: Mapping[str, str]) -> None:
+        """A drive that keeps its speed, or follows the value of its law."""
+        heavy = sum(float(mass.mass) for mass in self.masses.values()) or NOMINAL * len(self.tree.joints)
+        scale = heavy * (self.size**2 if drive.kind == "angle" else 1.0)
+        if drive.speed is not None:
+            ET.SubElement(parent, "velocity", {"kv": _number(scale / (REACHED * self.step)), **said})
+            return
+        pause = FOLLOWED * self.step
+        gains = {"kp": _number(scale / pause**2), "kv": _number(2.0 * scale / pause)}
+        ET.SubElement(parent, "position", {**gains, **said})
+        for kind, place in (("joint", ".//body/joint"), ("tendon", "./tendon/fixed")):
+            for one in root.iterfind(place):
+                if one.get("name") == said.get(kind):
+                    one.set("armature", _number(ROTOR * scale))
 
     def _order(self, body: str) -> list[str]:
         """Bodies below one in the order of the document, which is that of MuJoCo's coordinates."""
@@ -250,6 +264,15 @@ class _Model:
         if drive.guide is None:
             return {f"drive {drive.id}": 1.0}
         return {f"guide {drive.guide}": 1.0}
+
+
+def _pace(drive: Drive, size: float) -> float:
+    """How fast a drive runs [rad/s]: an angle, a way in sizes of the mechanism, the cam of a law; 1 of others."""
+    if drive.speed is not None:
+        return abs(drive.speed) if drive.kind == "angle" else abs(drive.speed) / size
+    if drive.table is not None:
+        return 2.0 * math.pi / (drive.table[-1][0] - drive.table[0][0])
+    return abs(drive.turning or 1.0)
 
 
 def _speeds(mechanism: Mechanism, first: xarray.Dataset) -> tuple[dict[str, float], dict[str, float]]:

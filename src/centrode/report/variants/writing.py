@@ -23,6 +23,7 @@ from centrode.report.writing import FORMATS, check_formats, document, write_repo
 from centrode.study.variants.tables import Table, read_variants
 
 if TYPE_CHECKING:
+    from centrode.present.spelled_tables import TableSpelling
     from centrode.study.variants.computing import VariantResults, VariantRow
 
 ANSWERS = "answers.json"
@@ -65,12 +66,13 @@ def write_variant_reports(
     formats: Sequence[str] = tuple(FORMATS),
     language: str | None = None,
     progress: Progress | None = None,
+    spelling: TableSpelling | None = None,
 ) -> tuple[VariantRow, ...]:
     """What `write_variants` writes, with a report for each variant and one sheet of answers.
 
     Parameters
     ----------
-    topology, table, folder, jobs, figures, progress : as of `write_variants`
+    topology, table, folder, jobs, figures, progress, spelling : as of `write_variants`
         Those finished before with the same numbers, formats and language are not made again.
     formats : "html", "pdf"
     language : "en", "ru" or "uk", optional
@@ -95,7 +97,7 @@ def write_variant_reports(
             )  # what is not installed is told here, and not by every variant
         variants = read_variants(topology, table)
     rows = write_variants(
-        topology, table, folder, jobs, figures, progress, VariantReport(tuple(formats), spoken)
+        topology, table, folder, jobs, figures, progress, VariantReport(tuple(formats), spoken), spelling
     )
     with speaking(spoken):
         digits = topology.report.digits or DIGITS
