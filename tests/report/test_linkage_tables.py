@@ -173,7 +173,7 @@ def test_checks_of_all_chapters_hold() -> None:
         keys = ("structure", "equations", "derivation", "tables")
         for chapter in report(mechanism, ReportOptions(chapters=keys), language="en").chapters:
             checks = [b for s in chapter.sections for b in s.blocks if isinstance(b, Check)]
-            no_loop = name == "two-link-arm" and chapter.name == "equations"  # nothing closes
+            no_loop = name == "two-link-arm" and chapter.name in ("equations", "derivation")  # nothing closes
             assert checks or no_loop, (name, chapter.name)
             assert all(check.holds for check in checks), (name, [c.text for c in checks if not c.holds])
 

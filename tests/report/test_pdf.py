@@ -99,6 +99,20 @@ def test_long_contents_share_a_page_with_the_first_chapter(tmp_path: Path) -> No
 
 
 @reads_pdf
+@pytest.mark.parametrize("titled", [True, False])
+@pytest.mark.parametrize("count", [2, 30, 45, 47, 80])
+def test_contents_name_the_right_pages(tmp_path: Path, count: int, titled: bool) -> None:
+    rows = tuple((f"row{k}", "1") for k in range(20))
+    section = Section("Headed" if titled else "", (Table(("a", "b"), rows),))
+    chapters = tuple(Chapter(f"c{k}", f"Chapter {k}k", (section,)) for k in range(count // (1 + titled)))
+    (tmp_path / "a.pdf").write_bytes(pdf_document(Report("T", "", "en", chapters)))
+    pages = text_of(tmp_path / "a.pdf", "-layout").split("\f")
+    for k in range(len(chapters)):
+        (told,) = re.findall(rf"Chapter {k}k [. ]*\W*(\d+)\n", "".join(pages))
+        assert re.search(rf"Chapter {k}k\n", pages[int(told) - 1]), (k, told)
+
+
+@reads_pdf
 @pytest.mark.parametrize("lines", range(30, 50, 2))
 def test_a_table_begins_with_more_than_a_row(tmp_path: Path, lines: int) -> None:
     rows = tuple((f"row{k}", "1") for k in range(40))

@@ -31,6 +31,8 @@ TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
 PAPER_WIDTH = 8.268
 ANNOUNCEMENT = 160
 """Letters of a paragraph that may be there only for the formula, table or picture behind it."""
+FIRST_PAGE, TITLE_LINE = 46, 38
+"""Lines of contents that the first page holds below a title, and letters of a line of the title."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
 _SIZE = re.compile(
@@ -56,7 +58,8 @@ class Source:
         yield '#import "style.typ": *'
         yield (
             f"#show: document.with(title: {quoted(report.title)}, subtitle: {quoted(report.subtitle)},"
-            f" language: {quoted(report.language)}, contents: {quoted(contents)})"
+            f" language: {quoted(report.language)}, contents: {quoted(contents)},"
+            f" long: {'true' if _lines_of_contents(report) > FIRST_PAGE else 'false'})"
         )
         for chapter in report.chapters:
             yield from self._chapter(chapter)
@@ -121,6 +124,12 @@ class Source:
     @_shown.register
     def _check(self, block: Check) -> str:
         return f"#check({'true' if block.holds else 'false'}, {content(block.text)})"
+
+
+def _lines_of_contents(report: Report) -> int:
+    """About how many lines the contents have; a line of the title takes the room of two."""
+    sections = sum(bool(section.title) for chapter in report.chapters for section in chapter.sections)
+    return len(report.chapters) + sections + 2 * (len(report.title) // TITLE_LINE)
 
 
 def _announces(blocks: Sequence[Block]) -> bool:
