@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-import numpy as np
+import lazy_loader
 
 import centrode as ct
 from centrode.cli import output
@@ -15,11 +15,12 @@ from centrode.cli.arguments import mechanism_argument, samples_option, start_opt
 from centrode.cli.reached import is_placed, tell_no_centre
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
-from centrode.model.problems import nearest, shown
 
 if TYPE_CHECKING:
     import xarray
 
+problems = lazy_loader.load("centrode.model.problems", suppress_warning=True)
+"""Loaded when something is wrong: --help shall not wait for it."""
 KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
 
 
@@ -91,9 +92,9 @@ def draw(
 def _motion(mechanism: ct.Mechanism, place: float, course: xarray.Dataset) -> tuple[xarray.Dataset, int]:
     """The motion with the instant asked for among its samples, and its number."""
     by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    values = course["drive_value"].to_numpy()[:, 0] if by_value else course["time"].to_numpy()
-    places = np.unique(np.append(values, place))
-    return ct.motion(mechanism, at=places), int(np.searchsorted(places, place))
+    values = course["drive_value"][:, 0] if by_value else course["time"]
+    places = sorted({*values.values.tolist(), place})
+    return ct.motion(mechanism, at=places), places.index(place)
 
 
 def _centrodes(mechanism: str, course: xarray.Dataset, link: str) -> xarray.Dataset:
@@ -110,6 +111,6 @@ def _points(mechanism: ct.Mechanism, paths: tuple[str, ...]) -> tuple[str, ...]:
         return mechanism.moving_points
     for name in paths:
         if name not in mechanism.moving_points:
-            what = _("there is no moving point {name}").format(name=shown(name))
-            raise InputError("--path", what, nearest(name, mechanism.moving_points))
+            what = _("there is no moving point {name}").format(name=problems.shown(name))
+            raise InputError("--path", what, problems.nearest(name, mechanism.moving_points))
     return paths
