@@ -142,11 +142,7 @@ def test_pictures_are_pictures() -> None:
     ]
     assert len(shown) > len(ct.example_names("linkage"))
     begins = {".png": b"\x89PNG\r\n\x1a\n", ".gif": b"GIF89a"}
-<<<<<<< HEAD
     assert [picture for picture in shown if not picture.read_bytes().startswith(begins[picture.suffix])] == []
-=======
-    assert all(picture.read_bytes().startswith(begins[picture.suffix]) for picture in shown)
->>>>>>> 0b5b7621dae9ea333f281b1900042769511591d8
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -6,10 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-<<<<<<< HEAD
-=======
-import lazy_loader
->>>>>>> 0b5b7621dae9ea333f281b1900042769511591d8
 
 import centrode as ct
 from centrode.cli import output
@@ -22,8 +18,6 @@ from centrode.locale import _, mark
 if TYPE_CHECKING:
     import xarray
 
-problems = lazy_loader.load("centrode.model.problems", suppress_warning=True)
-"""Loaded when something is wrong: --help shall not wait for it."""
 KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
 
 
@@ -98,34 +92,9 @@ def draw(
         )
 
 
-<<<<<<< HEAD
-=======
-def _motion(mechanism: ct.Mechanism, place: float, course: xarray.Dataset) -> tuple[xarray.Dataset, int]:
-    """The motion with the instant asked for among its samples, and its number."""
-    by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    values = course["drive_value"][:, 0] if by_value else course["time"]
-    places = sorted({*values.values.tolist(), place})
-    return ct.motion(mechanism, at=places), places.index(place)
-
-
->>>>>>> 0b5b7621dae9ea333f281b1900042769511591d8
 def _centrodes(mechanism: str, course: xarray.Dataset, link: str) -> xarray.Dataset:
     """The centrodes of a link against the frame; MotionError where there are none."""
     found = ct.centrodes(course, link)
     if not (found["centrode_piece"] >= 0).any():
         tell_no_centre(mechanism, link, "frame")
     return found
-<<<<<<< HEAD
-=======
-
-
-def _points(mechanism: ct.Mechanism, paths: tuple[str, ...]) -> tuple[str, ...]:
-    """The points whose paths are asked for."""
-    if "all" in paths:
-        return mechanism.moving_points
-    for name in paths:
-        if name not in mechanism.moving_points:
-            what = _("there is no moving point {name}").format(name=problems.shown(name))
-            raise InputError("--path", what, problems.nearest(name, mechanism.moving_points))
-    return paths
->>>>>>> 0b5b7621dae9ea333f281b1900042769511591d8
