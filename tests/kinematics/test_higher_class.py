@@ -89,3 +89,24 @@ def test_the_order_of_the_description_does_not_matter(name: str, link: str, base
     allowed = 2.0 * OPERATIONS * EPS * answer(case.other, values)[0] * float(np.abs(one.position).max())
     gap = np.abs(one.position - other.position.sel(point=one.point)).max(dim=("point", "axis"))
     assert np.all(gap.to_numpy() <= allowed)
+
+
+def test_wedges_that_guides_alone_hold_are_driven_at_their_face() -> None:
+    """Along a face that rises by one in two: R is at (0.6, s/sqrt 5), W at (0.6 - 2 s/sqrt 5, 0)."""
+    mechanism = ct.parse_mechanism("""
+        links.wedge = { points = { W = [0, 0] }, angle = 0 }
+        links.ram = { points = { R = [0, 0] }, angle = 0 }
+        drives = [{ guide = "face", start = 0.1, speed = 0.05 }]
+        guides = [
+            { point = "W", on = "frame", through = [0, 0], direction = [1, 0], link = "wedge" },
+            { point = "R", on = "frame", through = [0.6, 0], direction = [0, 1], link = "ram" },
+            { name = "face", point = "R", on = "wedge", through = [0, 0], direction = [2, 1], link = "ram" },
+        ]
+        """)
+    at = np.linspace(0.1, 0.6, 6)
+    motion = ct.motion(mechanism, at=at)
+    ram = np.stack([np.full(6, 0.6), at / np.sqrt(5.0)], axis=1)
+    wedge = np.stack([0.6 - 2.0 * at / np.sqrt(5.0), np.zeros(6)], axis=1)
+    rounding = 16 * np.finfo(float).eps  # of a handful of operations on numbers below one
+    assert np.abs(motion.position.sel(point="R").to_numpy() - ram).max() <= rounding
+    assert np.abs(motion.position.sel(point="W").to_numpy() - wedge).max() <= rounding

@@ -106,18 +106,31 @@ def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
     guess, left = _chained(mechanism, numbers, group.links, at.copied())
     if not left and all(point in guess.points for point in group.points):
         return [guess]
-    adrift = next((link for link in left if mechanism.initial_angle(link) is not None), None)
-    if adrift is None:
+    if _adrift(mechanism, left) is None:
         raise _missing(mechanism, group, left or list(group.links))
     found = []
-    for place in scattered(numbers, at):
-        trial = guess.copied()
-        trial.points[next(iter(numbers.local[adrift]))] = place
-        trial, rest = _chained(mechanism, numbers, left, trial)
+    origin = (0.0, 0.0) if mechanism.space == "plane" else (1.0, 0.0, 0.0)
+    for place in scattered(numbers, at, origin):
+        trial, rest = guess.copied(), left
+        while (link := _adrift(mechanism, rest)) is not None:  # several, where guides alone join them
+            trial.points[next(iter(numbers.local[link]))] = place
+            trial, after = _chained(mechanism, numbers, rest, trial)
+            if after == rest:
+                break
+            rest = after
+        carried = {point for link in group.links for point in numbers.local[link]}
+        for point in group.points:
+            if point not in carried:  # of a slider that only guides hold
+                trial.points.setdefault(point, place)
         if rest or any(point not in trial.points for point in group.points):
             raise _missing(mechanism, group, rest or left)
         found.append(trial)
     return found
+
+
+def _adrift(mechanism: Mechanism, links: Sequence[str]) -> str | None:
+    """The first of links whose initial angle is known; None where there is none."""
+    return next((link for link in links if mechanism.initial_angle(link) is not None), None)
 
 
 def _chained(

@@ -34,9 +34,9 @@ SAME = 1e-6
 """Positions closer than this, in the greatest length and in rad, are the same."""
 
 
-def scattered(numbers: Dimensions, at: Positions) -> Iterator[Any]:
-    """Places on rings about the known points."""
-    for known in list(at.points.values())[:POINTS]:
+def scattered(numbers: Dimensions, at: Positions, origin: Sequence[float]) -> Iterator[Any]:
+    """Places on rings about the known points; about the origin where only guides hold the group."""
+    for known in list(at.points.values())[:POINTS] or [origin]:
         for ring in RINGS:
             for k in range(SPOKES):
                 reach, turn = ring * numbers.scale, tau * k / SPOKES
