@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -81,3 +83,17 @@ def test_a_library_that_is_missing_is_told(tmp_path: Path, monkeypatch: pytest.M
         InputError, match=r'reports need typst, .* pip install "centrode\[documents,figures\]"'
     ):
         ct.write_report(REPORT, tmp_path, ("pdf",))
+
+
+@pytest.mark.parametrize("library", ["matplotlib", "fontTools"])  # matplotlib needs fontTools itself
+def test_what_figures_need_is_told(library: str) -> None:
+    program = (
+        f"import sys; sys.modules[{library!r}] = None\n"
+        "from centrode.cli.main import main\n"
+        "sys.argv = ['centrode', 'report', 'crank-rocker', '--chapters', 'data', '--out', sys.argv[1]]\n"
+        "sys.exit(main())\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program, "never"], capture_output=True, text=True)
+    assert done.returncode == 2
+    assert f"reports need {library}, which is not installed" in done.stderr
+    assert "centrode[documents,figures]" in done.stderr

@@ -33,11 +33,11 @@ _attached, __dir__, _names = lazy_loader.attach(
 
 
 def __getattr__(name: str) -> Any:
-    """Load a name when it is first asked for; a missing matplotlib is told with its repair."""
+    """Load a name when it is first asked for; a missing library is told with its repair."""
     try:
         return _attached(name)
     except ModuleNotFoundError as missing:
         library = (missing.name or "").partition(".")[0]
-        if library != "matplotlib":
+        if library == "centrode":
             raise
         raise lacking(library) from missing

@@ -31,7 +31,7 @@ TEXT_WIDTH, TEXT_HEIGHT = 6.3, 8.6
 PAPER_WIDTH = 8.268
 ANNOUNCEMENT = 160
 """Letters of a paragraph that may be there only for the formula, table or picture behind it."""
-FIRST_PAGE, TITLE_LINE = 46, 38
+FIRST_PAGE, TITLE_LINE = 38, 30
 """Lines of contents that the first page holds below a title, and letters of a line of the title."""
 WIDEST = 8
 """Cells of a column, the longest of them, that its width is measured by."""
