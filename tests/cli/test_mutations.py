@@ -19,7 +19,8 @@ from hypothesis import strategies as st
 import centrode as ct
 from centrode.cli.main import main
 
-SECONDS = 20.0
+SECONDS = 60.0
+"""A guard against hanging, of processor time: a triad over a hundred turns takes a fifth of it."""
 KEYS = [
     *("title", "space", "gravity", "display", "length", "angle", "frame", "points", "links", "guides"),
     *("point", "on", "through", "direction", "link", "drives", "start", "speed", "law", "table", "guide"),
