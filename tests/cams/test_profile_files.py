@@ -14,7 +14,7 @@ import pytest
 import centrode as ct
 from cam_shapes import exchanged
 from centrode.errors import InputError
-from centrode.present.cams import outline_dxf
+from centrode.present import dxf_files
 
 ezdxf = pytest.importorskip("ezdxf")
 
@@ -132,7 +132,7 @@ def test_files_have_the_same_bytes_each_time(cam: ct.Cam, tmp_path: Path) -> Non
 def test_without_ezdxf_the_extra_is_named(
     cam: ct.Cam, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(outline_dxf, "find_spec", lambda _name: None)
+    monkeypatch.setattr(dxf_files, "find_spec", lambda _name: None)
     with pytest.raises(InputError, match=r'pip install "centrode\[drawings\]"'):
         ct.write_outlines_dxf(ct.cam_outlines(ct.cam_body(cam), 90), tmp_path / "cam.dxf")
     assert not list(tmp_path.iterdir())

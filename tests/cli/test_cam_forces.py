@@ -20,7 +20,7 @@ def test_the_valve_cam_from_the_description_to_the_files(centrode: Centrode, fol
     done = centrode("cam", "valve-cam", "--out", "valve", "--samples", "73", "--no-figures")
     assert done.code == 0
     assert done.rows["the follower jumps"] == "from 2870.77 rpm on at 58.0801 deg"
-    assert done.rows["contact"].startswith("kept: at least 180 N")
+    assert done.rows["contact of cam and follower"].startswith("kept: at least 180 N")
     names = {path.name for path in (folder / "valve").iterdir()}
     assert {"cam-forces.csv", "cam-forces.nc"} <= names
     with (folder / "valve" / "cam-forces.csv").open(encoding="utf-8", newline="") as file:

@@ -74,10 +74,12 @@ def _least(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
         return
     admissible = _("The bounds of the description decide it.")
     none = _("No bounds are given: the profile is only kept from being undercut.")
-    if not bounded(cam) and least.by == "pressure angle":
-        yield Paragraph(
-            _("No bounds are given, and no base radius undercuts the profile: the size of the cam is free.")
+    if least.by == "nothing":
+        free = _(
+            "No bounds are given, and no base radius undercuts the profile: the size of the cam is free."
         )
+        kept = _("no bound decides the base radius: a cam as small as one likes keeps them all")
+        yield Paragraph(f"{kept[0].upper()}{kept[1:]}." if bounded(cam) else free)
         return
     yield Paragraph(admissible if bounded(cam) else none)
     decided = {
