@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from centrode.analysis.instant_centres.centrodes import centrodes
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.mechanism import FRAME
+from centrode.model.names import FRAME, body_word
 from centrode.present.animations.layers import WHOLE, Array
 from centrode.present.animations.motions import FAR, MotionLayer
 from centrode.present.scene import Scene
@@ -101,7 +101,7 @@ class CentrodesLayer(MotionLayer):
         return [
             (
                 Line2D([], [], color=colour, linewidth=1.6),
-                text.format(name=_("frame") if body == FRAME else body),
+                text.format(name=body_word(body)),
             )
             for colour, text, body in zip((FIXED, MOVING), texts, self.bodies, strict=True)
         ]

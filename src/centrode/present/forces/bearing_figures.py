@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from centrode.locale import _
+from centrode.model.names import body_word
 from centrode.present.abscissa import main_abscissa
 from centrode.present.curves import say_nothing_known, write_title
 from centrode.present.forces.force_picture import force_page
@@ -99,8 +100,8 @@ def _name(bearings: xarray.Dataset, k: int) -> str:
     point, journal, bush = (
         str(bearings[f"bearing_{part}"].to_numpy()[k]) for part in ("point", "journal", "bush")
     )
-    bush = _("frame") if bush == "frame" else bush
-    return plain(_("{point}: {journal} in {bush}").format(point=point, journal=journal, bush=bush))
+    told = _("{point}: {journal} in {bush}")
+    return plain(told.format(point=point, journal=journal, bush=body_word(bush)))
 
 
 def _hodographs(mechanism: Mechanism, bearings: xarray.Dataset, variable: str) -> Draw:

@@ -5,7 +5,6 @@ They share nothing with `FollowerCam.contact`, which differentiates envelopes, a
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -119,8 +118,3 @@ class Textbook:
             turn = guide.start + rows[0]
             return guide.distance - guide.arm * np.cos(turn), guide.arm * np.sin(turn)
         return np.zeros(rows.shape[1]) + guide.offset, guide.start + rows[0]
-
-    @property
-    def start_degrees(self) -> float:
-        """The angle psi_0 of an oscillating follower [deg]."""
-        return math.degrees(self.body.guide.start)

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.errors import MotionError, NotComputedYet
 from centrode.locale import _, ngettext
 from centrode.present.forces.machine_figures import machine_figures
 from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table
-from centrode.report.chapters.forces.absent import left_out
+from centrode.report.chapters.forces.absent import without_machine
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.results import has_forces, machine_of
 from centrode.report.chapters.forces.tables import Column, over_samples
@@ -39,13 +38,7 @@ def flywheel_chapter(study: ReportStudy) -> Chapter | None:
     """Energies of the machine over a cycle, and the flywheel that keeps its speed as even as asked."""
     if not has_forces(study) or study.mechanism.machine is None:
         return None
-    try:
-        machine_of(study)
-    except (MotionError, NotComputedYet) as reason:
-        if study.wishes.chapters is not None:
-            raise
-        return left_out("flywheel", _("Flywheel"), reason)
-    return _made(study)
+    return without_machine(study, "flywheel", _("Flywheel")) or _made(study)
 
 
 def _made(study: ReportStudy) -> Chapter:

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.errors import MotionError, NotComputedYet
 from centrode.locale import _
 from centrode.present.forces.machine_figures import machine_figures
 from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table, shown
-from centrode.report.chapters.forces.absent import left_out
+from centrode.report.chapters.forces.absent import without_machine
 from centrode.report.chapters.forces.places import few, titles
 from centrode.report.chapters.forces.results import has_forces, machine_of, steady_at_instants
 from centrode.report.chapters.forces.tables import Column, over_samples
@@ -46,13 +45,7 @@ def real_motion_chapter(study: ReportStudy) -> Chapter | None:
     """Real speed of the drive, and real velocities and accelerations at the instants."""
     if not has_forces(study) or study.mechanism.machine is None:
         return None
-    try:
-        machine_of(study)
-    except (MotionError, NotComputedYet) as reason:
-        if study.wishes.chapters is not None:
-            raise
-        return left_out("real-motion", _("Real motion"), reason)
-    return _made(study)
+    return without_machine(study, "real-motion", _("Real motion")) or _made(study)
 
 
 def _made(study: ReportStudy) -> Chapter:
