@@ -26,6 +26,7 @@ from centrode.sweeps.limits import KERNEL_BUFFER
 
 if machine_code.PRESENT:
     from centrode.algebra.machine_code.kernels import kernel_of
+    from centrode.algebra.machine_code.streaming import Stream
 
 FEW = LANES // 20
 """Mechanisms that NumPy computes: its time for a position does not depend on their number."""
@@ -69,8 +70,9 @@ def streamed(plan: Plan, outputs: Mapping[str, Node], relaxed: bool = False) -> 
     parts = [lanes[:, first : first + chunk] for first in range(0, LANES, chunk)]
 
     def run() -> None:
+        stream = Stream(kernel, DRIVE)
         for part in parts:
-            kernel.run(DRIVE, part, out=buffer[:, : part.shape[1]])
+            stream(part, buffer[:, : part.shape[1]])
 
     def fill() -> None:
         for part in parts:

@@ -12,13 +12,15 @@ import numpy.typing as npt
 
 from centrode.algebra.graph_arrays import run_on_arrays
 from centrode.algebra.machine_code import PRESENT
-from centrode.algebra.scans import Scan, Scanned
+from centrode.algebra.scans import Array, Scan, Scanned
 
 Run: TypeAlias = Callable[..., Scanned]
+Take: TypeAlias = Callable[[npt.ArrayLike | None, Array], Array]
 AUTO, ARRAYS, MACHINE_CODE = "auto", "arrays", "machine code"
 
 # llvmlite is heavy and may be missing: it is imported when the first kernel is asked for
 _kernels = functools.partial(importlib.import_module, "centrode.algebra.machine_code.kernels")
+_streaming = functools.partial(importlib.import_module, "centrode.algebra.machine_code.streaming")
 
 
 def chosen(executor: str) -> str:
@@ -51,3 +53,23 @@ def runner(
         return functools.partial(run_on_arrays, scan, number=number)
     kernel = _kernels().kernel_of(scan, number, lanes_inside=lanes_inside, relaxed=relaxed)
     return functools.partial(kernel.run, threads=threads)
+
+
+def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, threads: int = 1) -> Take:
+    """A function (inputs, out) that takes a scan's steps part by part, its lanes the same; `out` has the steps' room.
+
+    `parameters` are (parameters, lanes); inputs (inputs, steps) or none; out (outputs, steps, lanes), returned again.
+
+    Raises
+    ------
+    ImportError
+        Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
+    """
+    if chosen(executor) == ARRAYS:
+
+        def take(inputs: npt.ArrayLike | None, out: Array) -> Array:
+            return run_on_arrays(scan, parameters, inputs, out=out, steps=out.shape[1]).outputs
+
+        return take
+    stream: Take = _streaming().Stream(_kernels().kernel_of(scan, lanes_inside=True), parameters, threads)
+    return stream

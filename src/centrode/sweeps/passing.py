@@ -10,7 +10,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.executors import runner
+from centrode.algebra.executors import streamer
 from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
@@ -55,11 +55,10 @@ class EachForItself:
 
     def written(self, rows: Values, rooms: Rooms) -> dict[str, Array]:
         scan = self._scan
-        run = runner(scan, self.asked.kernels, lanes_inside=True, threads=self.asked.threads)
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
+        take = streamer(scan, along, self.asked.kernels, self.asked.threads)
         for part, room in rooms:
-            inputs = np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None
-            run(along, inputs, out=room, steps=room.shape[1])
+            take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
         return self.reduced(judging_states(self.asked), rows)
 
     @cached_property

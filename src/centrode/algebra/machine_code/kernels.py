@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import threading
 from collections import OrderedDict
@@ -102,9 +103,9 @@ class Kernel:
         size, outputs = self.number.itemsize, call.outputs
         arguments: list[int] = [call.lanes, call.steps]
         for array in (call.parameters, call.inputs, call.state, state):
-            arguments += [_address(array), array.strides[0] // size]
+            arguments += [address(array), array.strides[0] // size]
         output, row, _one = outputs.strides
-        self.function.call(*arguments, _address(outputs), output // size, row // size)
+        self.function.call(*arguments, address(outputs), output // size, row // size)
 
 
 def kernel_of(
@@ -172,9 +173,15 @@ def _function(text: str, machine: Target) -> Loaded:
     return loaded(code, machine)
 
 
-def _address(array: Array) -> int:
-    # short kernels are called often, and `array.ctypes` makes an object each time
-    return int(array.__array_interface__["data"][0]) if array.size else 0
+def address(array: Array) -> int:
+    """Where an array with a contiguous last axis begins; 0 of an empty one."""
+    if not array.size:
+        return 0
+    # short kernels are called often: this takes half the time of what arrays tell of themselves
+    row = array[(0,) * (array.ndim - 1)]
+    if row.flags.writeable:
+        return ctypes.addressof(ctypes.c_char.from_buffer(row))
+    return int(array.__array_interface__["data"][0])
 
 
 @lru_cache(maxsize=4)

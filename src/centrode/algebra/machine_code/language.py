@@ -185,14 +185,8 @@ class Code:
             value = self.multiply_add(value, z, self.constant(coefficient))
         return value
 
-    def polynomial_in_halves(self, coefficients: Sequence[float], z: Value, first: int) -> Value:
-        """The same with even and odd powers apart from some term on: of two shorter chains none waits for the other.
-
-        The first terms, which tell most of the rounding, stand by Horner's rule.
-        """
+    def polynomial_in_halves(self, coefficients: Sequence[float], z: Value) -> Value:
+        """The same with even and odd powers apart: of two shorter chains none waits for the other."""
         squared = self.multiply(z, z)
-        even, odd = (self.polynomial(coefficients[first + k :: 2], squared) for k in (0, 1))
-        value = self.multiply_add(odd, z, even)
-        for coefficient in reversed(coefficients[:first]):
-            value = self.multiply_add(value, z, self.constant(coefficient))
-        return value
+        even, odd = (self.polynomial(coefficients[k::2], squared) for k in (0, 1))
+        return self.multiply_add(odd, z, even)

@@ -16,6 +16,7 @@ from centrode.algebra.machine_code.polynomials import (
     QUARTER_TURN,
     QUARTER_TURN_SHORT,
     SINE,
+    SLOPE,
 )
 
 REDUCED = 1e5
@@ -24,8 +25,6 @@ ROUNDER = 1.5 * 2.0**52
 """Adding it rounds to a whole number, which then stands in the lowest bits."""
 SIGN_OF_DOUBLE = 63
 SMALLEST = 5e-324
-BY_HORNER = 8
-"""Terms of the arctangent by Horner's rule: with fewer its greatest error grows."""
 
 
 def sine_and_cosine(code: Code, x: Value) -> tuple[Value, Value]:
@@ -115,24 +114,35 @@ def angle(code: Code, y: Value, x: Value) -> Value:
     ax, ay = code.intrinsic("fabs", x), code.intrinsic("fabs", y)
     steep = code.compare("ogt", ay, ax)
     least, most = code.select(steep, ax, ay), code.select(steep, ay, ax)
-    t = _arctangent(code, _slope(code, least, most))
+    # a steeper vector is turned back by pi/4, and one that is infinite both ways
+    bound = code.multiply(code.subtract(most, least), code.constant(SLOPE / (1.0 - SLOPE)))
+    turned = code.compare("ugt", least, bound)
+    t = _arctangent(code, _slope(code, least, most, turned))
     left = _is_negative(code, x)
-    # the angle in the upper half plane is base +- t, base being 0, pi/2 or pi; its second part is a share of the first
-    quarter, rest = QUARTER_TURN[:2]
-    by_x = code.select(left, code.constant(2.0 * quarter), code.constant(0.0))
-    base = code.select(steep, code.constant(quarter), by_x)
+    # in the upper half plane the angle is +-t from a multiple of pi/4
+    of_axis = code.select(steep, code.constant(2.0), _either(code, left, 4.0, 0.0))
+    eighths = code.select(turned, _either(code, left, 3.0, 1.0), of_axis)
     backwards = code.logical("xor", steep, left)
     towards = code.select(backwards, code.negate(t), t)
-    offset = code.multiply_add(base, code.constant(rest / quarter), towards)
-    return code.intrinsic("copysign", code.add(base, offset), y)
+    # what pi/4 lacks is at most a third of the last place
+    whole = code.multiply_add(eighths, code.constant(math.pi / 4.0), towards)
+    return code.intrinsic("copysign", whole, y)
 
 
-def _slope(code: Code, least: Value, most: Value) -> Value:
-    """The quotient least / most in [0, 1]; 0 of two zeros, 1 of two infinities; NaN stays."""
-    tiny = code.constant(SMALLEST)
-    divisor = code.select(code.compare("ogt", tiny, most), tiny, most)
-    equal = code.compare("oeq", least, divisor)
-    return code.select(equal, code.constant(1.0), code.divide(least, divisor))
+def _slope(code: Code, least: Value, most: Value, turned: Value) -> Value:
+    """The slope least / most, or of the vector turned back by pi/4, in [-SLOPE, SLOPE]; 0 of two zeros; NaN stays."""
+    zero, tiny = code.constant(0.0), code.constant(SMALLEST)
+    back = code.subtract(least, most)
+    # the difference of infinite ones counts as zero
+    back = code.select(code.compare("olt", back, zero), back, zero)
+    across = code.select(turned, back, least)
+    along = code.select(turned, code.add(most, least), most)
+    along = code.select(code.compare("ogt", tiny, along), tiny, along)
+    return code.divide(across, along)
+
+
+def _either(code: Code, condition: Value, a: float, b: float) -> Value:
+    return code.select(condition, code.constant(a), code.constant(b))
 
 
 def _is_negative(code: Code, x: Value) -> Value:
@@ -141,7 +151,6 @@ def _is_negative(code: Code, x: Value) -> Value:
 
 
 def _arctangent(code: Code, x: Value) -> Value:
-    """Arctangent on [0, 1]."""
+    """Arctangent on [-SLOPE, SLOPE]."""
     z = code.multiply(x, x)
-    rest = code.polynomial_in_halves(ARCTANGENT, z, BY_HORNER)
-    return code.multiply_add(code.multiply(x, z), rest, x)
+    return code.multiply_add(code.multiply(x, z), code.polynomial_in_halves(ARCTANGENT, z), x)
