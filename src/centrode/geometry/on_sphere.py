@@ -69,10 +69,12 @@ class Sphere:
         self, m: Namespace, pose: Attitude, points: Sequence[Coordinates], towards: Sequence[Vector]
     ) -> tuple[Number, Number]:
         first, second = points[:2]
-        pivot, arm = self.place(m, pose, first), carried(pose, tangent_inside(m, first, second))
-        cosine, sine = slopes.components(arm, tangent(pivot, towards[0]), pivot)
-        size = m.sqrt(cosine * cosine + sine * sine)
-        return cosine / size, sine / size
+        pivot, along = self.place(m, pose, first), tangent_inside(m, first, second)
+        zero = tangent(pivot, towards[0])
+        cosine, sine = slopes.components(carried(pose, along), zero, pivot)
+        # the arm's length is a dimension: a link that does not fit has no unit rotor, as in the plane
+        factor = 1.0 / (slopes.length(m, along) * slopes.length(m, zero))
+        return cosine * factor, sine * factor
 
     def pose_by_two_points(
         self, m: Namespace, first: Coordinates, second: Coordinates, at_first: Vector, at_second: Vector
