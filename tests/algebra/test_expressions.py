@@ -101,6 +101,8 @@ def test_threads_get_the_same_nodes() -> None:
         (x + -y, x - y),
         (-x + y, y - x),
         (x - -y, x + y),
+        (-x - x, -2.0 * x),
+        (-x + -x, -2.0 * x),
         (-x * -y, x * y),
         (-x / y, -(x / y)),
         (x / -y, -(x / y)),

@@ -65,11 +65,12 @@ def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, thread
     ImportError
         Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
     """
+    lanes = np.array(parameters, np.float64)  # of its own: what is handed over once may change afterwards
     if chosen(executor) == ARRAYS:
 
         def take(inputs: npt.ArrayLike | None, out: Array) -> Array:
-            return run_on_arrays(scan, parameters, inputs, out=out, steps=out.shape[1]).outputs
+            return run_on_arrays(scan, lanes, inputs, out=out, steps=out.shape[1]).outputs
 
         return take
-    stream: Take = _streaming().Stream(_kernels().kernel_of(scan, lanes_inside=True), parameters, threads)
+    stream: Take = _streaming().Stream(_kernels().kernel_of(scan, lanes_inside=True), lanes, threads)
     return stream

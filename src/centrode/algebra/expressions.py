@@ -200,6 +200,8 @@ def _subtract(a: Node, b: Node) -> Node | None:
         return a
     if _is(a, -0.0):
         return operated("negate", b)
+    if _negated(a) is b:
+        return operated("multiply", -2.0, b)
     y = _negated(b)
     return None if y is None else operated("add", a, y)
 

@@ -149,6 +149,24 @@ def test_angles(machine: Any) -> None:
     assert error <= OF_ANGLE, (heights[where], sides[where])
 
 
+def test_angles_where_vectors_are_turned(machine: Any) -> None:
+    """Next to the steepest slope that is not turned back, of every length there is, subnormal ones too."""
+    random = np.random.default_rng(6)
+    steepest = pytest.importorskip("centrode.algebra.machine_code.polynomials", reason=NEEDS).SLOPE
+    slopes = steepest * (1.0 + 2.0**-52 * np.arange(-40, 41))
+    lengths = 2.0 ** random.uniform(-1040, 1022.9, slopes.size)
+    few, many = (part.ravel() for part in np.meshgrid(np.arange(1, 41), np.arange(1, 41)))
+    low = np.concatenate([slopes, slopes * lengths, few * 5e-324, random.uniform(0.4, 0.6, 3000)])
+    high = np.concatenate([np.ones(slopes.size), lengths, many * 5e-324, np.ones(3000)])
+    swapped = random.uniform(size=low.size) < 0.5
+    heights = np.where(swapped, low, high) * random.choice([-1.0, 1.0], low.size)
+    sides = np.where(swapped, high, low) * random.choice([-1.0, 1.0], low.size)
+    kernel = kernels.kernel_of(Scan(("y", "x"), (), {"angle": m.atan2(y, x)}), target=machine)
+    found = kernel.run([heights, sides], None).outputs[0, 0]
+    error, where = worst(found, lambda i: mp.atan2(mp.mpf(heights[i]), mp.mpf(sides[i])))
+    assert error <= OF_ANGLE, (heights[where], sides[where])
+
+
 def test_angles_of_special_numbers(machine: Any) -> None:
     """Zeros, infinities, subnormal numbers and NaN by the rules of C, Annex F."""
     heights, sides = (part.ravel() for part in np.meshgrid(SPECIAL, SPECIAL))

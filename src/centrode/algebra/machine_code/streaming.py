@@ -17,7 +17,7 @@ class Stream:
     Parameters
     ----------
     kernel : one without a state
-    parameters : (parameters, lanes)
+    parameters : (parameters, lanes), which stay as they are
     threads : share the steps of a part
     """
 

@@ -110,7 +110,10 @@ def _flipped(code: Code, value: Value, quarter: Value) -> Value:
 
 
 def angle(code: Code, y: Value, x: Value) -> Value:
-    """The angle of (x, y) in [-pi, pi]; below 2 ULP from the true value, zeros and infinities by C's rules."""
+    """The angle of (x, y) in [-pi, pi]; below 2 ULP from the true value, zeros and infinities by C's rules.
+
+    The sum of x and y must not be beyond all numbers: up to 8e307 they may be anything.
+    """
     ax, ay = code.intrinsic("fabs", x), code.intrinsic("fabs", y)
     steep = code.compare("ogt", ay, ax)
     least, most = code.select(steep, ax, ay), code.select(steep, ay, ax)
@@ -130,7 +133,7 @@ def angle(code: Code, y: Value, x: Value) -> Value:
 
 
 def _slope(code: Code, least: Value, most: Value, turned: Value) -> Value:
-    """The slope least / most, or of the vector turned back by pi/4, in [-SLOPE, SLOPE]; 0 of two zeros; NaN stays."""
+    """The slope of the vector, turned back by pi/4 or not, at most 4/7 either way; 0 of two zeros; NaN stays."""
     zero, tiny = code.constant(0.0), code.constant(SMALLEST)
     back = code.subtract(least, most)
     # the difference of infinite ones counts as zero
@@ -151,6 +154,6 @@ def _is_negative(code: Code, x: Value) -> Value:
 
 
 def _arctangent(code: Code, x: Value) -> Value:
-    """Arctangent on [-SLOPE, SLOPE]."""
+    """Arctangent on [-4/7, 4/7]."""
     z = code.multiply(x, x)
     return code.multiply_add(code.multiply(x, z), code.polynomial_in_halves(ARCTANGENT, z), x)
