@@ -85,7 +85,7 @@ class _Writer:
         rest = [node for node in self.scan.graph.order if node not in early]
         stages = stages_of(rest) if inside else [Stage(tuple(rest), ())]
         left = self._room(stages)
-        bases = [self.rows.row("%outputs", i, "%output") for i in range(len(self.scan.outputs))]
+        bases = self._begin_rows()
         block.line("br label %outer")
         block.begin("outer")
         head = len(block.lines)
@@ -103,6 +103,14 @@ class _Writer:
         block.line("ret void")
         # what a loop carries is known only at its end
         block.lines[head:head] = [self.rows.carried(outer, "0", "entry", "outer_end")]
+
+    def _begin_rows(self) -> list[Value]:
+        """Where rows begin, known before the loops; returns that of the outputs."""
+        scan, row = self.scan, self.rows.row
+        self._parameters = [row("%parameters", i, "%parameter_row") for i in range(len(scan.parameters))]
+        self._inputs = [row("%inputs", i, "%input_row") for i in range(len(scan.inputs))]
+        self._states = [row("%state", i, "%state_row") for i in range(len(scan.state))]
+        return [row("%outputs", i, "%output") for i in range(len(scan.outputs))]
 
     def _loop(self, axis: str, nodes: list[Node], bases: list[Value], early: set[Node]) -> None:
         """The inner loop, with all that is left to compute."""
@@ -202,16 +210,14 @@ class _Writer:
         """Load what belongs to a place of the loop."""
         scan, values = self.scan, self.operating.values
         if not axis.startswith(LANE):
-            for i, name in enumerate(scan.inputs):
-                values[variable(name)] = self.rows.everywhere(
-                    self.rows.place(self.rows.row("%inputs", i, "%input_row"), "%step")
-                )
+            for row, name in zip(self._inputs, scan.inputs, strict=True):
+                values[variable(name)] = self.rows.everywhere(self.rows.place(row, "%step"))
             if not self.shape.lanes_inside:
                 values.update({variable(name): f"%s{i}" for i, name in enumerate(scan.state)})
             return
-        for i, name in enumerate(scan.parameters):
-            values[variable(name)] = self._here(self.rows.row("%parameters", i, "%parameter_row"))
-        self._first = [self._here(self.rows.row("%state", i, "%state_row")) for i in range(len(scan.state))]
+        for row, name in zip(self._parameters, scan.parameters, strict=True):
+            values[variable(name)] = self._here(row)
+        self._first = [self._here(row) for row in self._states]
 
     def _here(self, row: Value) -> Value:
         return self.rows.read(self.rows.place(row, self.rows.at))

@@ -8,7 +8,7 @@ import numpy as np
 
 from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph, split
-from centrode.algebra.scans import Array, Call, Scan
+from centrode.algebra.scans import Array, Call, Scan, room_of
 
 FUNCTIONS = frozenset({"sin", "cos", "atan2", "exp", "log", "power"})
 """Operations that are not rounded alike everywhere."""
@@ -39,7 +39,7 @@ class Table:
         return last[1]
 
     def _computed(self, rows: Array) -> Array:
-        whole = np.empty((len(rows) + len(self.graph.outputs), rows.shape[1]), rows.dtype)
+        whole = room_of(len(rows) + len(self.graph.outputs), 1, rows.shape[1], rows.dtype)[:, 0]
         whole[: len(rows)] = rows
         found = evaluate(self.graph, dict(zip(self.names, rows, strict=True)), rows.dtype)
         for i, values in enumerate(found.values(), len(rows)):
