@@ -127,7 +127,7 @@ def product(a: Coefficients, b: Coefficients) -> list[Number]:
     result = []
     for k in range(len(a)):
         total: Number = 0.0
-        for i in range(k + 1):
+        for i in range(k, -1, -1):
             if not (_is_zero(a[i]) or _is_zero(b[k - i])):
                 # the new product stays unnamed, so that NumPy adds in its place
                 total = a[i] * b[k - i] if _is_zero(total) else total + a[i] * b[k - i]
