@@ -184,6 +184,7 @@ def test_ctrl_c_leaves_nothing(tmp_path: Path) -> None:
     time.sleep(0.5)
     os.killpg(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=60)
-    assert (process.returncode, out) == (130, b"")
-    assert err.strip() == b"interrupted"
+    # caught inside code that Python runs from text it ends by the signal itself: shells say 130 of both
+    assert process.returncode in (130, -signal.SIGINT)
+    assert (out, err.strip()) == (b"", b"interrupted")
     assert list(tmp_path.iterdir()) == []
