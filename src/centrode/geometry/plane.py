@@ -148,7 +148,7 @@ def meet_circles(
     total, difference = radius_1 + radius_2, radius_1 - radius_2
     radicand = (total * total - squared) * (squared - difference * difference)
     half = 0.5 / squared
-    ahead = (total * difference + squared) * half
+    ahead = 0.5 + total * difference * half
     left = root(radicand) * half
     return (
         centre_1[0] + ahead * line[0] - left * line[1],
