@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.geometry import plane
-from centrode.geometry.plane import Pose, Vector
+from centrode.geometry.meeting import meet_circle_and_line, meet_circles
+from centrode.geometry.plane import Circle, Line, Pose, Vector
 
 EPS = 2.0**-52
 NUMBER = st.floats(-4, 4)
@@ -71,7 +72,7 @@ def test_pose_by_two_points(first: Vector, second: Vector, origin: Vector, angle
 def test_circles_meet(a: Vector, b: Vector, r: float, s: float, sign: float) -> None:
     distance = apart(a, b)
     assume(abs(r - s) + 0.05 < distance < r + s - 0.05)
-    p = plane.meet_circles(a, r, b, s, signed(sign))
+    p = meet_circles(Circle(a, r), Circle(b, s), signed(sign))
     # the height over the line is the root of a radicand known to some eps: eps over the sine of the triangle
     sine = abs(plane.cross(plane.subtract(b, a), plane.subtract(p, a))) / (distance * r)
     allowed = 64 * EPS * 8 / (sine * min(distance, 1.0))
@@ -87,7 +88,7 @@ def test_radicand_of_circles_is_sixteen_squared_areas() -> None:
         found.append(x)
         return 0.0
 
-    plane.meet_circles((0.0, 0.0), 3.0, (5.0, 0.0), 4.0, root)
+    meet_circles(Circle((0.0, 0.0), 3.0), Circle((5.0, 0.0), 4.0), root)
     assert found == [16 * 6.0**2]
 
 
@@ -97,7 +98,7 @@ def test_circle_and_line_meet(centre: Vector, r: float, through: Vector, angle: 
     d = rotor(angle)
     distance = plane.cross(d, plane.subtract(centre, through))
     assume(abs(distance) < r - 0.02)
-    p = plane.meet_circle_and_line(centre, r, through, d, signed(sign))
+    p = meet_circle_and_line(Circle(centre, r), Line(through, d), signed(sign))
     half = math.sqrt(r * r - distance * distance)
     allowed = 64 * EPS * 12 * r / half
     assert apart(p, centre) == pytest.approx(r, abs=allowed)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import hypot, inf
 
 from centrode.geometry import plane
+from centrode.geometry.meeting import meet_circle_and_line, meet_circles
 from centrode.geometry.plane import (
     AT_REST,
     Circle,
@@ -16,8 +17,6 @@ from centrode.geometry.plane import (
     cross,
     dot,
     length_of,
-    meet_circle_and_line,
-    meet_circles,
     meet_lines,
     pose_with_point,
     reversed_rotor,
@@ -101,8 +100,8 @@ class Plane:
             assert isinstance(other, Line)  # circles stand first
             return meet_lines(one.through, one.direction, other.through, other.direction, divisor)
         if isinstance(other, Circle):
-            return meet_circles(one.centre, one.radius, other.centre, other.radius, root)
-        return meet_circle_and_line(one.centre, one.radius, other.through, other.direction, root)
+            return meet_circles(one, other, root)
+        return meet_circle_and_line(one, other, root)
 
     def lack(
         self, m: Namespace, one: Circle | Line, other: Circle | Line

@@ -135,38 +135,40 @@ def moved_pose(m: Namespace, pose: Pose, by: Sequence[Number]) -> Pose:
     return Pose(add(pose.origin, (by[0], by[1])), turned(pose.rotor, rotor_of(m, by[2])))
 
 
-def meet_circles(
-    centre_1: Vector, radius_1: Number, centre_2: Vector, radius_2: Number, root: Root
-) -> Vector:
-    """Point where two circles meet, to the left of the line centre_1 -> centre_2 for a positive root.
+def radicand_of_circles(one: Circle, other: Circle) -> Number:
+    """Number whose root tells where two circles meet.
 
-    The radicand is 16 times the squared area of the triangle, kept factored (Heron), so that it changes sign
-    exactly where the triangle opens: ((r1 + r2)^2 - l^2)(l^2 - (r1 - r2)^2).
+    It is 16 times the squared area of the triangle, kept factored (Heron), so that it changes sign exactly where
+    the triangle opens: ((r1 + r2)^2 - l^2)(l^2 - (r1 - r2)^2).
     """
-    line = subtract(centre_2, centre_1)
+    line = subtract(other.centre, one.centre)
     squared = dot(line, line)
-    total, difference = radius_1 + radius_2, radius_1 - radius_2
-    radicand = (total * total - squared) * (squared - difference * difference)
-    half = 0.5 / squared
-    ahead = 0.5 + total * difference * half
-    left = root(radicand) * half
+    total, difference = one.radius + other.radius, one.radius - other.radius
+    return (total * total - squared) * (squared - difference * difference)
+
+
+def circles_meet(one: Circle, other: Circle, root: Number) -> Vector:
+    """Point where two circles meet, to the left of the way from centre to centre for a positive root."""
+    line = subtract(other.centre, one.centre)
+    half = 0.5 / dot(line, line)
+    ahead = 0.5 + (one.radius + other.radius) * (one.radius - other.radius) * half
+    left = root * half
     return (
-        centre_1[0] + ahead * line[0] - left * line[1],
-        centre_1[1] + ahead * line[1] + left * line[0],
+        one.centre[0] + ahead * line[0] - left * line[1],
+        one.centre[1] + ahead * line[1] + left * line[0],
     )
 
 
-def meet_circle_and_line(
-    centre: Vector, radius: Number, through: Vector, direction: Vector, root: Root
-) -> Vector:
-    """Point where a circle meets a line, ahead of the foot of its centre for a positive root.
+def radicand_of_circle_and_line(one: Circle, other: Line) -> Number:
+    """Number whose root is the way from the foot of the centre: (r - n)(r + n), n the distance of the centre."""
+    distance = cross(other.direction, subtract(one.centre, other.through))
+    return (one.radius - distance) * (one.radius + distance)
 
-    The radicand is (r - n)(r + n), n the distance of the centre from the line.
-    """
-    offset = subtract(centre, through)
-    distance = cross(direction, offset)
-    half_chord = root((radius - distance) * (radius + distance))
-    return along(through, direction, dot(direction, offset) + half_chord)
+
+def circle_meets_line(one: Circle, other: Line, root: Number) -> Vector:
+    """Point where a circle meets a line, ahead of the foot of its centre for a positive root."""
+    foot = dot(other.direction, subtract(one.centre, other.through))
+    return along(other.through, other.direction, foot + root)
 
 
 def meet_lines(

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph, split
 from centrode.algebra.scans import Array, Call, Scan, room_of

@@ -1,0 +1,143 @@
+"""Derivatives of meeting points against series in 40 digits of a closed form of their own."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from centrode.algebra.jet_functions import JetFunctions
+from centrode.algebra.jets import Jet
+from centrode.geometry.meeting import meet_circle_and_line, meet_circles
+from centrode.geometry.plane import Circle, Line
+
+ORDER = 5
+DIGITS = 40
+EPS = 2.0**-52
+JETS = JetFunctions(math)
+
+
+def closed(one: tuple[Any, ...], other: tuple[Any, ...], side: int) -> tuple[Any, Any]:
+    """Where circles (x, y, radius) meet, by the angle at the first centre."""
+    x, y, r = one
+    apart = mp.hypot(other[0] - x, other[1] - y)
+    angle = mp.acos((apart**2 + r**2 - other[2] ** 2) / (2 * apart * r))
+    towards = mp.atan2(other[1] - y, other[0] - x) + side * angle
+    return x + r * mp.cos(towards), y + r * mp.sin(towards)
+
+
+def moving(random: np.random.Generator, count: int) -> list[list[float]]:
+    """Coefficients of numbers that move: (numbers, ORDER + 1)."""
+    return (
+        random.uniform(-1, 1, (count, ORDER + 1)) / [math.factorial(k) for k in range(ORDER + 1)]
+    ).tolist()
+
+
+def exact(coefficients: list[list[float]], side: int) -> list[list[Any]]:
+    """Taylor's coefficients of the place."""
+    with mp.workdps(DIGITS):
+
+        def at(t: Any, axis: int) -> Any:
+            values = [mp.polyval([mp.mpf(c) for c in reversed(one)], t) for one in coefficients]
+            return closed(tuple(values[:3]), tuple(values[3:]), side)[axis]
+
+        return [mp.taylor(lambda t, axis=axis: at(t, axis), 0, ORDER) for axis in (0, 1)]
+
+
+@pytest.mark.parametrize("fixed", ["nothing", "radii", "a circle"])
+@pytest.mark.parametrize("seed", range(12))
+def test_derivatives_of_every_order(seed: int, fixed: str) -> None:
+    random = np.random.default_rng(seed)
+    numbers = moving(random, 6)
+    numbers[2][0], numbers[5][0] = random.uniform(1.0, 2.0, 2)
+    # centres as far apart as leaves the triangle open
+    numbers[3][0] = numbers[0][0] + random.uniform(0.6, 0.9) * (numbers[2][0] + numbers[5][0])
+    numbers[4][0] = numbers[1][0]
+    still = {"nothing": (), "radii": (2, 5), "a circle": (3, 4, 5)}[fixed]
+    for i in still:
+        numbers[i][1:] = [0.0] * ORDER
+    side = 1 if seed % 2 else -1
+    given = [one[0] if i in still else Jet(one) for i, one in enumerate(numbers)]
+    found = meet_circles(
+        Circle((given[0], given[1]), given[2]),
+        Circle((given[3], given[4]), given[5]),
+        lambda x: side * JETS.sqrt(x),
+    )
+    expected = exact(numbers, side)
+    # each order divides by the sine of the triangle once more
+    sine = float(abs(mp.sin(_turn(numbers, side))))
+    for series, true in zip(found, expected, strict=True):
+        for k, (one, other) in enumerate(zip(series.coefficients, true, strict=True)):
+            greatest = max(1.0, *(abs(float(x)) for x in (*expected[0], *expected[1])))
+            assert abs(one - float(other)) <= 64 * EPS * greatest / sine ** (2 * k + 1), k
+
+
+def on_line(numbers: tuple[Any, ...], side: int) -> tuple[Any, Any]:
+    """Where a circle (x, y, radius) meets a line (x, y, angle), by lengths along it from its point."""
+    x, y, r, px, py, angle = numbers
+    towards = mp.atan2(y - py, x - px) - angle
+    apart = mp.hypot(x - px, y - py)
+    length = apart * mp.cos(towards) + side * mp.sqrt(r**2 - (apart * mp.sin(towards)) ** 2)
+    return px + length * mp.cos(angle), py + length * mp.sin(angle)
+
+
+@pytest.mark.parametrize("still", ["nothing", "the line", "the radius and the angle"])
+@pytest.mark.parametrize("seed", range(12))
+def test_derivatives_on_lines(seed: int, still: str) -> None:
+    random = np.random.default_rng(100 + seed)
+    numbers = moving(random, 6)
+    numbers[2][0], numbers[5][0] = random.uniform(2.0, 3.0), random.uniform(-3.0, 3.0)
+    stand = {"nothing": (), "the line": (3, 4, 5), "the radius and the angle": (2, 5)}[still]
+    for i in stand:
+        numbers[i][1:] = [0.0] * ORDER
+    side = 1 if seed % 2 else -1
+    given = [one[0] if i in stand else Jet(one) for i, one in enumerate(numbers)]
+    direction = (
+        (math.cos(given[5]), math.sin(given[5])) if 5 in stand else (JETS.cos(given[5]), JETS.sin(given[5]))
+    )
+    found = meet_circle_and_line(
+        Circle((given[0], given[1]), given[2]),
+        Line((given[3], given[4]), direction),
+        lambda x: side * JETS.sqrt(x),
+    )
+    with mp.workdps(DIGITS):
+
+        def at(t: Any, axis: int) -> Any:
+            values = tuple(mp.polyval([mp.mpf(c) for c in reversed(one)], t) for one in numbers)
+            return on_line(values, side)[axis]
+
+        expected = [mp.taylor(lambda t, axis=axis: at(t, axis), 0, ORDER) for axis in (0, 1)]
+    x, y, radius, px, py, angle = (one[0] for one in numbers)
+    distance = math.sin(angle) * (x - px) - math.cos(angle) * (y - py)
+    sine = math.sqrt(1.0 - (distance / radius) ** 2)
+    greatest = max(1.0, *(abs(float(x)) for x in (*expected[0], *expected[1])))
+    for series, true in zip(found, expected, strict=True):
+        for k, (one, other) in enumerate(zip(series.coefficients, true, strict=True)):
+            assert abs(one - float(other)) <= 64 * EPS * greatest / sine ** (2 * k + 1), k
+
+
+def _turn(numbers: list[list[float]], side: int) -> Any:
+    """Angle between the arms at the meeting point."""
+    values = [one[0] for one in numbers]
+    x, y = closed(tuple(values[:3]), tuple(values[3:]), side)
+    return mp.atan2(y - values[1], x - values[0]) - mp.atan2(y - values[4], x - values[3])
+
+
+def test_circles_that_stand() -> None:
+    """Plain numbers give a plain place, with the bits of the moving one's value."""
+    one, other = ((0.0, 0.0), 3.0), ((5.0, 0.0), 4.0)
+    plain = meet_circles(Circle(*one), Circle(*other), math.sqrt)
+    assert plain == pytest.approx((1.8, 2.4), rel=EPS * 4)
+    moves = meet_circles(Circle((Jet((0.0, 1.0)), 0.0), 3.0), Circle(*other), JETS.sqrt)
+    assert tuple(x.value for x in moves) == plain
+
+
+def test_touching_circles_have_no_finite_velocity() -> None:
+    centre = Jet((np.float64(0.0), 1.0)), 0.0
+    with np.errstate(all="ignore"):
+        moves = meet_circles(Circle(centre, 2.0), Circle((5.0, 0.0), 3.0), JetFunctions(np).sqrt)
+    assert [float(x.value) for x in moves] == [2.0, 0.0]
+    assert not all(np.isfinite(x.coefficients[1]) for x in moves)
