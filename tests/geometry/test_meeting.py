@@ -11,7 +11,7 @@ import pytest
 
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.geometry.meeting import meet_circle_and_line, meet_circles
+from centrode.geometry.meeting import meet_circle_and_line, meet_circles, meet_circles_on_sphere
 from centrode.geometry.plane import Circle, Line
 
 ORDER = 5
@@ -117,6 +117,63 @@ def test_derivatives_on_lines(seed: int, still: str) -> None:
     for series, true in zip(found, expected, strict=True):
         for k, (one, other) in enumerate(zip(series.coefficients, true, strict=True)):
             assert abs(one - float(other)) <= 64 * EPS * greatest / sine ** (2 * k + 1), k
+
+
+def on_sphere(numbers: list[Any], side: int) -> list[Any]:
+    """Where circles (longitude, latitude, arc) meet, by the angle at the first centre."""
+    (one, r), (other, s) = (
+        (mp.matrix([mp.cos(b) * mp.cos(a), mp.cos(b) * mp.sin(a), mp.sin(b)]), arc)
+        for a, b, arc in (numbers[:3], numbers[3:])
+    )
+    cosine = (one.T * other)[0]
+    sine = mp.sqrt(1 - cosine**2)
+    ahead = (other - cosine * one) / sine
+    left = mp.matrix(
+        [one[(i + 1) % 3] * ahead[(i + 2) % 3] - one[(i + 2) % 3] * ahead[(i + 1) % 3] for i in range(3)]
+    )
+    turn = side * mp.acos((mp.cos(s) - mp.cos(r) * cosine) / (mp.sin(r) * sine))
+    return list(mp.cos(r) * one + mp.sin(r) * (mp.cos(turn) * ahead + mp.sin(turn) * left))
+
+
+@pytest.mark.parametrize("size", [1.0, 1e-3])
+@pytest.mark.parametrize("still", ["nothing", "the arcs", "a circle"])
+@pytest.mark.parametrize("seed", range(6))
+def test_derivatives_on_the_sphere(seed: int, still: str, size: float) -> None:
+    """Linkages of any size: errors are measured against the size."""
+    random = np.random.default_rng(200 + seed)
+    numbers = [[size * x for x in one] for one in moving(random, 6)]
+    numbers[2][0], numbers[5][0] = size * random.uniform(0.4, 0.7, 2)
+    numbers[3][0] = numbers[0][0] + random.uniform(0.6, 0.9) * (numbers[2][0] + numbers[5][0])
+    numbers[4][0] = numbers[1][0] = size * random.uniform(-0.2, 0.2)
+    stand = {"nothing": (), "the arcs": (2, 5), "a circle": (3, 4, 5)}[still]
+    for i in stand:
+        numbers[i][1:] = [0.0] * ORDER
+    side = 1 if seed % 2 else -1
+    given = [one[0] if i in stand else Jet(one) for i, one in enumerate(numbers)]
+    circles: list[Any] = []
+    for longitude, latitude, arc in (given[:3], given[3:]):
+        centre = (
+            JETS.cos(latitude) * JETS.cos(longitude),
+            JETS.cos(latitude) * JETS.sin(longitude),
+            JETS.sin(latitude),
+        )
+        circles += [centre, (JETS.sin(0.5 * arc), JETS.cos(0.5 * arc))]
+    found = meet_circles_on_sphere(*circles, lambda x: side * JETS.sqrt(x))
+    with mp.workdps(DIGITS):
+
+        def at(t: Any, axis: int) -> Any:
+            return on_sphere([mp.polyval([mp.mpf(c) for c in reversed(one)], t) for one in numbers], side)[
+                axis
+            ]
+
+        expected = [mp.taylor(lambda t, axis=axis: at(t, axis), 0, ORDER) for axis in range(3)]
+    # the triangle is never flatter than that of sides 0.4 to 0.7 and 0.6 to 0.9 of their sum
+    sine = 0.3
+    greatest = max(size, *(abs(float(x)) for axis in expected for x in axis[1:]))
+    for series, true in zip(found, expected, strict=True):
+        for k, (one, other) in enumerate(zip(series.coefficients[1:], true[1:], strict=True), 1):
+            # places are known to an eps of one, chords to that over the size
+            assert abs(one - float(other)) <= 64 * EPS / size * greatest / sine ** (2 * k + 1), k
 
 
 def _turn(numbers: list[list[float]], side: int) -> Any:

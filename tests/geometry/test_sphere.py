@@ -12,6 +12,7 @@ from mpmath import mp
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.geometry import sphere
+from centrode.geometry.meeting import meet_circles_on_sphere
 from centrode.geometry.on_sphere import SPHERE
 from centrode.geometry.sphere import Attitude, Coordinates, HalfArc, Vector
 
@@ -84,7 +85,7 @@ def test_circles_meet(a: Coordinates, b: Coordinates, r: float, s: float, sign: 
     one, other = unit(a), unit(b)
     distance = arc(one, other)
     assume(abs(r - s) + 0.05 < distance < min(r + s, math.tau - r - s) - 0.05)
-    p = sphere.meet_circles(one, half(r), other, half(s), signed(sign))
+    p = meet_circles_on_sphere(one, half(r), other, half(s), signed(sign))
     volume = triple(one, other, p)
     # the height over the arc is the root of a radicand known to some eps
     allowed = 64 * EPS / (abs(volume) * math.sin(distance))
@@ -104,7 +105,7 @@ def test_radicand_of_circles_is_the_squared_volume_to_the_last_digits(size: floa
         return math.sqrt(x)
 
     a, b, r, s = (0.0, 0.0), (0.9 * size, 0.0), 0.7 * size, 0.5 * size
-    p = sphere.meet_circles(unit(a), half(r), unit(b), half(s), root)
+    p = meet_circles_on_sphere(unit(a), half(r), unit(b), half(s), root)
     with mp.workdps(50):
         g, c, d = (mp.cos(mp.mpf(x)) for x in (b[0], r, s))
         exact = 1 - g**2 - c**2 - d**2 + 2 * g * c * d
@@ -125,7 +126,7 @@ def test_circles_that_touch_have_a_radicand_of_zero() -> None:
             found.append(x)
             return 0.0
 
-        sphere.meet_circles(unit((0.3, 0.2)), half(r), unit_at(distance), half(s), root)
+        meet_circles_on_sphere(unit((0.3, 0.2)), half(r), unit_at(distance), half(s), root)
         assert abs(found[0]) <= 32 * EPS
 
 
@@ -226,7 +227,7 @@ def test_the_formulas_keep_fifty_digits() -> None:
     with mp.workdps(50):
         a, b, r, s = ((mp.mpf(k) / 7, mp.mpf(k) / 9) for k in (1, 5, 6, 8))
         one, other = (sphere.unit_vector(mp, at) for at in (a, b))
-        p = sphere.meet_circles(one, sphere.half_arc(mp, a, r), other, sphere.half_arc(mp, b, s), mp.sqrt)
+        p = meet_circles_on_sphere(one, sphere.half_arc(mp, a, r), other, sphere.half_arc(mp, b, s), mp.sqrt)
         exact = [
             sphere.arc(mp, sphere.unit_vector(mp, x), sphere.unit_vector(mp, y)) for x, y in ((a, r), (b, s))
         ]

@@ -7,6 +7,7 @@ from math import atan2, tau
 from typing import NamedTuple
 
 from centrode.geometry import slopes, sphere
+from centrode.geometry.meeting import meet_circles_on_sphere
 from centrode.geometry.space import Namespace, Number, Reference, Root, Row, Rows, Space
 from centrode.geometry.sphere import (
     AT_REST,
@@ -118,7 +119,7 @@ class Sphere:
     ) -> Attitude:
         pole, (radius,) = curve
         around_pivot = sphere.half_arc(m, pivot, pole)
-        at_pole = sphere.meet_circles(at, around_pivot, target, slopes.half(m, radius), root)
+        at_pole = meet_circles_on_sphere(at, around_pivot, target, slopes.half(m, radius), root)
         return sphere.attitude_by_two_points(m, pivot, pole, at, at_pole)
 
     def circle(self, m: Namespace, centre: Vector, first: Coordinates, second: Coordinates) -> Circle:
@@ -137,7 +138,7 @@ class Sphere:
         for locus in (one, other):
             if sphere.is_literal(locus.half[0], 0.0):
                 return locus.centre  # a stop is a place already
-        return sphere.meet_circles(one.centre, one.half, other.centre, other.half, root)
+        return meet_circles_on_sphere(one.centre, one.half, other.centre, other.half, root)
 
     def lack(self, m: Namespace, one: Circle, other: Circle) -> tuple[float, float, float, float]:
         apart = float(self.distance(m, one.centre, other.centre))

@@ -3,12 +3,11 @@
 A place is a unit vector of three numbers; coordinates are (longitude, latitude) [rad]. An attitude holds the
 three axes of a link as they stand in the frame. Arcs enter by sine and cosine of their halves, and places by
 their differences, so that small linkages keep their relative accuracy. Where a formula has two answers it
-takes `root`, as the formulas of the plane do.
+takes the signed root, as the formulas of the plane do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias
 
 Number: TypeAlias = Any
@@ -17,7 +16,6 @@ Vector: TypeAlias = tuple[Number, Number, Number]
 Coordinates: TypeAlias = tuple[Number, Number]
 HalfArc: TypeAlias = tuple[Number, Number]
 """Sine and cosine of half an arc."""
-Root: TypeAlias = Callable[[Number], Number]
 
 
 class Attitude(NamedTuple):
@@ -173,26 +171,40 @@ def turned(m: Namespace, at: Vector, towards: Vector, rotor: tuple[Number, Numbe
     return combined((rotor[0], towards), (rotor[1], cross(at, towards)))
 
 
-def meet_circles(centre_1: Vector, half_1: HalfArc, centre_2: Vector, half_2: HalfArc, root: Root) -> Vector:
-    """Place where two circles meet, to the left of the arc centre_1 -> centre_2 for a positive root.
+def radicand_of_circles(centre_1: Vector, half_1: HalfArc, centre_2: Vector, half_2: HalfArc) -> Number:
+    """Number whose root tells where two circles meet, given by their centres and half their arcs.
 
-    Circles are given by their centres and half their arcs. With h the squared sine of half the arc between
-    the centres, the radicand 4 (h - sin((r1 - r2)/2)^2)(sin((r1 + r2)/2)^2 - h) is the square of the triple
-    product of the three places, kept factored, so that it changes sign exactly where the triangle opens.
+    With h the squared sine of half the arc between the centres, it is 4 (h - sin((r1 - r2)/2)^2)(sin((r1 + r2)/2)^2
+    - h), the square of the triple product of the three places, kept factored, so that it changes sign exactly where
+    the triangle opens.
     """
+    h, total, difference = _triangle(centre_1, half_1, centre_2, half_2)
+    return 4.0 * (h - difference * difference) * (total * total - h)
+
+
+def circles_meet(
+    centre_1: Vector, half_1: HalfArc, centre_2: Vector, half_2: HalfArc, root: Number
+) -> Vector:
+    """Place where two circles meet, to the left of the arc centre_1 -> centre_2 for a positive root."""
     line = subtract(centre_2, centre_1)
-    h = 0.25 * dot(line, line)
-    one, other = half_1[0] * half_2[1], half_1[1] * half_2[0]
-    total, difference = one + other, one - other
-    radicand = 4.0 * (h - difference * difference) * (total * total - h)
+    h, total, difference = _triangle(centre_1, half_1, centre_2, half_2)
     squared = 4.0 * h * (1.0 - h)
     lowered = 2.0 * half_1[0] * half_1[0]
     factor = 1.0 / squared
     ahead = 2.0 * (total * difference + h - lowered * h) * factor
-    left = root(radicand) * factor
+    left = root * factor
     return combined(
         (1.0 + (2.0 * h * ahead - lowered), centre_1), (ahead, line), (left, cross(centre_1, line))
     )
+
+
+def _triangle(
+    centre_1: Vector, half_1: HalfArc, centre_2: Vector, half_2: HalfArc
+) -> tuple[Number, Number, Number]:
+    """Squared sine of half the arc between the centres, sines of half the sum and the difference of the radii."""
+    line = subtract(centre_2, centre_1)
+    one, other = half_1[0] * half_2[1], half_1[1] * half_2[0]
+    return 0.25 * dot(line, line), one + other, one - other
 
 
 def place_on_circle(m: Namespace, pole: Coordinates, radius: Number, angle: Number) -> Vector:
