@@ -3,8 +3,8 @@
 What the k-th derivative of a locus says of the k-th coefficient of a point is linear in it, and the gradients are
 the same for all orders: those of the velocities. So no closed form needs to be differentiated, and derivatives of
 any order cost a third of what that would take. Textbook: Uicker, Pennock, Shigley, Theory of Machines and
-Mechanisms (4th ed., 2011), sections 3.4 and 4.3 (loop equations); any order: Griewank and Walther, Evaluating
-Derivatives (2nd ed., 2008), section 13.1.
+Mechanisms, the method of kinematic coefficients (loop equations differentiated); any order: Griewank and Walther,
+Evaluating Derivatives (2nd ed., 2008), chapters 13 and 15.
 """
 
 from __future__ import annotations
