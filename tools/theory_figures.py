@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 import centrode as ct
 from centrode.algebra.arrays import ARRAYS
-from centrode.geometry import slopes, sphere
+from centrode.geometry import slopes
+from centrode.geometry.on_sphere import SPHERE, Circle
 from centrode.present.style import INK, MUTED, PALETTE, house_style
 
 Array: TypeAlias = NDArray[np.float64]
@@ -131,7 +132,7 @@ def _circles(axes: Axes) -> None:
     first, second = (one / np.linalg.norm(one) for one in CENTRES)
     halves = [slopes.half(ARRAYS, arc) for arc in ARCS]
     met = [
-        np.array(sphere.meet_circles(tuple(first), halves[0], tuple(second), halves[1], root))
+        np.array(SPHERE.meet(Circle(tuple(first), halves[0]), Circle(tuple(second), halves[1]), root, root))
         for root in (np.sqrt, lambda radicand: -np.sqrt(radicand))
     ]
     turn = np.linspace(0.0, math.tau, 361)
