@@ -83,6 +83,7 @@ from .cams.walking_drawing import walking_figure as walking_figure
 
 # Animations
 from .animations.animate import animate as animate
+from .animations.given import animate_cam_body as animate_cam_body
 from .animations.given import animate_centrodes as animate_centrodes
 from .animations.given import animate_follower as animate_follower
 from .animations.given import animate_motion as animate_motion
