@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.analysis.turning.swings import DWELL_BAND, Swing
+from centrode.analysis.turning.dwells import DWELL_BAND
+from centrode.analysis.turning.swings import Swing
 from growing import DYADS, grown, mechanism_of
 from mechanisms import EPS, four_bar
 
