@@ -165,6 +165,7 @@ from .cams.followers.forces.keeping import stiffness_needed as stiffness_needed
 from .study.cams.forces import forces_rows as forces_rows
 from .present import write_cam_forces_csv as write_cam_forces_csv
 from .present import cam_forces_figure as cam_forces_figure
+from .present import animate_cam_body as animate_cam_body
 from .present import animate_follower as animate_follower
 from .present import laws_figure as laws_figure
 

@@ -11,10 +11,10 @@ from cam_shapes import EPS, Limacon, paper_path, three_point_curvature
 from centrode.cams.closed.arcs import Arc, ClosedPath, working_arc
 from centrode.cams.closed.designing import designed
 from centrode.cams.frames import frames
-from centrode.cams.path import CirclePath
 from centrode.cams.profiles.bodies import CamBody
 from centrode.cams.profiles.equidistants import equidistant, fitting, greatest_roller, undercut
 from centrode.errors import InputError
+from circle_path import CirclePath
 
 ROLLER = 0.015
 

@@ -15,8 +15,9 @@ from centrode.cams.closed.bounds import Bounds
 from centrode.cams.closed.curves import Ends, ReturnCurve, derivatives
 from centrode.cams.closed.designing import designed
 from centrode.cams.frames import frames
-from centrode.cams.path import CirclePath, SymmetricPath
+from centrode.cams.path import SymmetricPath
 from centrode.errors import InputError, MotionError
+from circle_path import CirclePath
 
 TABLE_ETA_45 = 0.214339
 """Of the paper's table, to half a unit of its last digit."""

@@ -21,8 +21,9 @@ from centrode.cams.curvature_laws import (
 from centrode.cams.drawn import drawn_curvature
 from centrode.cams.expanded import TOLERANCE, ExpandedPath, expanded_path
 from centrode.cams.integrated import integrated_path
-from centrode.cams.path import CirclePath, SymmetricPath
+from centrode.cams.path import SymmetricPath
 from centrode.cams.text_curvature import TextCurvature
+from circle_path import CirclePath
 
 from .conftest import exponential_path
 

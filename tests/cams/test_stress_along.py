@@ -14,10 +14,10 @@ from centrode.cams.contacts.labelled import cam_contact
 from centrode.cams.contacts.line import Contact, pressed
 from centrode.cams.curvature_laws import ExponentialCurvature, LinearCurvature
 from centrode.cams.expanded import expanded_path
-from centrode.cams.path import CirclePath
 from centrode.errors import InputError
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import parse_cam
+from circle_path import CirclePath
 
 EPS = 2.0**-52
 PARTS = {

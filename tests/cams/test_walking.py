@@ -15,11 +15,12 @@ from cam_shapes import EPS, exchanged, paper_path, three_point_curvature
 from centrode.cams.closed.arcs import working_arc
 from centrode.cams.curvature_laws import ExponentialCurvature
 from centrode.cams.expanded import expanded_path
-from centrode.cams.path import CirclePath, SymmetricPath
+from centrode.cams.path import SymmetricPath
 from centrode.cams.wheel.rolling import profile_by_parts, rolling
 from centrode.cams.wheel.shoe import Shoe, shoe
 from centrode.cams.wheel.walking import Mover
 from centrode.errors import InputError, MotionError
+from circle_path import CirclePath
 
 HEIGHT = 0.17
 

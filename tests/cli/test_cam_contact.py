@@ -151,10 +151,33 @@ def test_the_wheel_walks(centrode: Centrode, folder: Path, monkeypatch: pytest.M
         assert picture.n_frames == 5
 
 
+ROLLED = """
+kind = "cam"
+curvature = { law = "exponential", k0 = "0.01 1/mm", k1 = 0.75 }
+start = { radius = "50 mm", pressure_angle = 0 }
+range = { to = "60 deg" }
+"""
+
+
+@pytest.mark.parametrize("more", ["return = {}", ""])
+def test_a_cam_turns_below_its_roller(
+    centrode: Centrode, folder: Path, monkeypatch: pytest.MonkeyPatch, more: str
+) -> None:
+    monkeypatch.setattr("centrode.present.animations.given.FRAMES_OF_A_TURN", 6)
+    (folder / "cam.toml").write_text(f'roller = {{ radius = "8 mm" }}\n{more}\n{ROLLED}')
+    done = centrode("cam", "cam.toml", "--out", "w", "--animate", "--no-figures", "--samples", "5", "--dark")
+    assert (done.code, done.err) == (0, "")
+    with Image.open(folder / "w" / "cam.gif") as picture:
+        assert picture.n_frames == 6
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("cam-from-curvature", "--animate", "--out", "w"), "nothing walks: the cam has no [mover]"),
+        (
+            ("cam-from-curvature", "--animate", "--out", "w"),
+            "--animate: a profile needs a roller; give [roller] radius",
+        ),
         (("walking-wheel-four-legs", "--animate"), "there is no folder to write into; name one with --out"),
     ],
 )

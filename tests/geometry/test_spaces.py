@@ -27,7 +27,7 @@ class Scene:
     def __init__(self, space: Space, seed: int) -> None:
         self.space = space
         self.random = np.random.default_rng(seed)
-        self.point, self.other = self.a_place(), self.a_place()
+        self.point = self.a_place()
         self.pose, self.base = self.a_pose(), self.a_pose()
         self.local = self.a_local()
         self.reference = tuple(self.a_local() for _ in range(4)) if space is SPHERE else None
@@ -100,10 +100,6 @@ def test_rows_are_derivatives(space: Space, seed: int) -> None:
             space, lambda _p, q: space.turn(JETS, q[0], q[1], rotor, reference), [], [scene.pose, scene.base]
         ),
         space.turn_row(ARRAYS, scene.pose, scene.base, reference),
-    )
-    check(
-        slopes(space, lambda p, _q: space.distance(JETS, p[0], p[1]), [scene.point, scene.other], []),
-        space.distance_row(ARRAYS, scene.point, scene.other),
     )
 
 

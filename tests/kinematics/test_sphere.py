@@ -1,9 +1,8 @@
-"""Spherical linkages: printed values, closed forms of the four-bar, small linkages against planar ones."""
+"""Spherical linkages: printed values, closed forms of the four-bar, limits, change points, batches, refusals."""
 
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,26 +15,11 @@ from mpmath import mp
 
 import centrode as ct
 from mechanisms import EPS, Parts, events, statuses
+from spherical_four_bars import four_bar, place
 
 Array = npt.NDArray[np.float64]
 PI = math.pi
 ARC = st.floats(0.3, 1.4)
-
-
-def four_bar(a: float, b: float, c: float, d: float, side: str = "left", **more: Any) -> ct.Mechanism:
-    """Spherical four-bar A-B-C-D with A on the x axis and D on the equator, driven at AB."""
-    parts: Parts = {
-        "space": "sphere",
-        "frame": {"points": {"A": [0.0, 0.0], "D": [d, 0.0]}},
-        "links": {
-            "AB": {"length": a, "reference": ["A", "D"]},
-            "BC": {"length": b, "reference": ["B", "A"]},
-            "DC": {"length": c, "reference": ["D", "A"]},
-        },
-        "drives": [{"link": "AB", "start": 1.0, "speed": 1.0}],
-        "assembly": {"sides": {"C": side}},
-    }
-    return ct.Mechanism(**{**parts, **more})
 
 
 def guided(a: float, b: float, d: float, radius: float, **more: Any) -> ct.Mechanism:
@@ -49,10 +33,6 @@ def guided(a: float, b: float, d: float, radius: float, **more: Any) -> ct.Mecha
         "assembly": {"sides": {"C": "left"}},
     }
     return ct.Mechanism(**{**parts, **more})
-
-
-def place(data: xr.Dataset, name: str, variable: str = "position") -> Array:
-    return np.asarray(data[variable].sel(point=name).to_numpy())
 
 
 def joint(data: xr.Dataset, name: str, variable: str = "joint_angle") -> Array:
@@ -69,8 +49,6 @@ def rocker_angles(q: Any, a: Any, b: Any, c: Any, d: Any) -> tuple[Any, Any]:
     middle = mp.atan2(s, p)
     return middle - half, middle + half
 
-
-# The printed checks: A on x, D on y, AD = CD = 90 deg, C = (sin psi, 0, cos psi) with psi from the z axis.
 
 PRINTED = [
     (PI / 12, PI / 4, (0.8213, 0.5236, 0.8213, 1.0472)),
@@ -173,136 +151,6 @@ def test_links_turn_as_their_angular_velocities_say() -> None:
     w = data["angular_velocity"].sel(link="DC").to_numpy()
     turn = joint(data, "DC", "joint_velocity")[:, None] * place(data, "D")
     assert np.max(np.abs(w - turn)) <= 512 * EPS
-
-
-# Small linkages against planar ones of the same proportions.
-
-SIZES = (1e-1, 1e-2, 1e-3)
-
-
-def planar(points: Parts, links: Parts, drives: list[Parts], side: str, guides: list[Parts]) -> xr.Dataset:
-    mechanism = ct.Mechanism(
-        frame={"points": points}, links=links, guides=guides, drives=drives, assembly={"sides": {"C": side}}
-    )
-    return ct.motion(mechanism, at=Q)
-
-
-Q = np.linspace(0.3, 5.9, 9)
-CRANK = [{"link": "AB", "start": 1.0, "speed": 1.0}]
-
-
-def differences(flat: list[Array], curved: list[list[Array]]) -> None:
-    """They fall with the square of the size: a hundredfold for each power of ten, until rounding shows."""
-    for one, others in zip(flat, zip(*curved, strict=True), strict=True):
-        gaps = [np.max(np.abs(other - one)) for other in others]
-        assert gaps[0] > 1e-4  # curvature shows at 0.1 rad
-        for near, (wide, narrow) in zip(SIZES[1:], pairwise(gaps), strict=True):
-            # places are rounded to eps of the sphere, angles to eps over the size, their derivatives likewise
-            assert narrow <= wide / 100 * 1.35 + 256 * EPS / near
-            assert narrow >= wide / 100 / 1.35 - 256 * EPS / near
-
-
-def turned(data: xr.Dataset, names: tuple[str, ...]) -> list[Array]:
-    """Angles and their derivatives by the drive."""
-    if "joint_angle" not in data:
-        kinds = ("angle", "angular_velocity_coefficient", "angular_acceleration_coefficient")
-        return [data[kind].sel(link=name).to_numpy() for name in names for kind in kinds]
-    kinds = ("joint_angle", "joint_velocity_coefficient", "joint_acceleration_coefficient")
-    return [data[kind].sel(joint=name).to_numpy() for name in names for kind in kinds]
-
-
-def test_a_small_four_bar_is_planar() -> None:
-    a, b, c, d = 1.0, 2.6, 2.2, 3.0
-    links = {"AB": {"length": a}, "BC": {"length": b}, "DC": {"length": c}}
-    flat = planar({"A": [0, 0], "D": [d, 0]}, links, CRANK, "left", [])
-    # the plane measures from +x, which the arc DA leaves backwards; angles continuous over turns both
-    exact = turned(flat, ("DC",))
-    exact[0] = exact[0] - PI
-    curved = []
-    for size in SIZES:
-        data = ct.motion(four_bar(a * size, b * size, c * size, d * size), at=Q)
-        assert statuses(data) == ["ok"] * len(Q)
-        assert data.attrs["worst_residual"] <= 64 * EPS / size
-        found = turned(data, ("DC",))
-        found[0] = found[0] - math.tau * np.round((found[0] - exact[0]) / math.tau)
-        curved.append(found)
-    differences(exact, curved)
-
-
-def test_a_small_crank_with_a_great_circle_is_a_slider_crank() -> None:
-    a, b, e = 1.0, 2.7, 0.4
-    links = {"AB": {"length": a}, "BC": {"length": b}}
-    guide = {"point": "C", "through": [0, e], "direction": [1, 0]}
-    sides = {"C": "ahead"}
-    flat = ct.motion(
-        ct.Mechanism(
-            frame={"points": {"A": [0, 0]}},
-            links=links,
-            guides=[guide],
-            drives=CRANK,
-            assembly={"sides": sides},
-        ),
-        at=Q,
-    )
-    kinds = ("slide", "slide_velocity_coefficient", "slide_acceleration_coefficient")
-    exact = [flat[kind].sel(guide="C").to_numpy() for kind in kinds]
-    curved = []
-    for size in SIZES:
-        mechanism = spherical_slider(a, b, e, size)
-        data = ct.motion(mechanism, at=Q - PI / 2)
-        assert statuses(data) == ["ok"] * len(Q)
-        curved.append([data[kind].sel(guide="C").to_numpy() / size for kind in kinds])
-    differences(exact, curved)
-
-
-def spherical_slider(a: float, b: float, e: float, size: float) -> ct.Mechanism:
-    """A crank below the equator of the sphere, its coupler's end on the equator; angles from the north."""
-    return ct.Mechanism(
-        space="sphere",
-        frame={"points": {"A": [0.0, -e * size], "N": [0.0, 1.0]}},
-        links={"AB": {"length": a * size, "reference": ["A", "N"]}, "BC": {"length": b * size}},
-        guides=[{"point": "C", "pole": [PI, PI / 2]}],
-        drives=[{"link": "AB", "start": 1.0 - PI / 2, "speed": 1.0}],
-        assembly={"sides": {"C": "right"}},
-    )
-
-
-def test_a_small_pin_in_a_slot_is_planar() -> None:
-    a, d = 1.0, 2.3
-    flat = ct.motion(
-        ct.Mechanism(
-            frame={"points": {"A": [0, 0], "D": [d, 0]}},
-            links={"AB": {"length": a}, "lever": {"points": {"D": [0, 0], "E": [1, 0]}}},
-            guides=[{"point": "B", "on": "lever", "through": "D", "direction": [1, 0]}],
-            drives=CRANK,
-            assembly={"sides": {"B": "ahead"}},
-        ),
-        at=Q,
-    )
-    exact = turned(flat, ("lever",))
-    exact[0] = exact[0] - PI
-    curved = []
-    for size in SIZES:
-        lever = {"points": {"D": [0.0, 0.0], "E": [size, 0.0]}, "reference": ["D", "A"]}
-        data = ct.motion(
-            ct.Mechanism(
-                space="sphere",
-                frame={"points": {"A": [0.0, 0.0], "D": [d * size, 0.0]}},
-                links={"AB": {"length": a * size, "reference": ["A", "D"]}, "lever": lever},
-                guides=[{"point": "B", "on": "lever", "pole": [0.0, PI / 2]}],
-                drives=CRANK,
-                assembly={"sides": {"B": "left"}},
-            ),
-            at=Q,
-        )
-        assert statuses(data) == ["ok"] * len(Q)
-        found = turned(data, ("lever",))
-        found[0] = found[0] - math.tau * np.round((found[0] - exact[0]) / math.tau)
-        curved.append(found)
-    differences(exact, curved)
-
-
-# Events.
 
 
 def test_limits_are_where_the_triangle_is_flat() -> None:
@@ -437,141 +285,3 @@ def test_a_reference_lies_on_the_body_that_the_drive_is_relative_to() -> None:
     links["AB"]["reference"] = ["A", "C"]
     with pytest.raises(ct.InputError, match="reference"):
         ct.motion(four_bar(0.5, 1.0, 0.9, 1.1, links=links))
-
-
-def test_lines_of_the_plane_meet_once_circles_of_the_sphere_twice() -> None:
-    """Two guides at one point: which of the two places is meant has to be said."""
-    parts: Parts = {
-        "space": "sphere",
-        "frame": {"points": {"A": [0.0, 0.0], "D": [1.0, 0.0]}},
-        "links": {"K": {"points": {"A": [0.0, 0.0], "B": [0.5, 0.0]}, "reference": ["A", "D"]}},
-        "guides": [
-            {"name": "one", "point": "P", "pole": "D", "radius": 0.8},
-            {"name": "two", "point": "P", "on": "K", "pole": [0.0, 1.5], "radius": 1.3},
-        ],
-        "drives": [{"link": "K", "start": 0.2, "speed": 1.0}],
-    }
-    with pytest.raises(ct.InputError, match="left"):
-        ct.motion(ct.Mechanism(**parts), samples=2)
-    found = [
-        place(ct.motion(ct.Mechanism(**parts, assembly={"sides": {"P": side}}), at=[0.2]), "P")[0]
-        for side in ("left", "right")
-    ]
-    d = np.array([math.cos(1.0), math.sin(1.0), 0.0])
-    assert all(p @ d == pytest.approx(math.cos(0.8), abs=16 * EPS) for p in found)
-    assert np.linalg.norm(found[0] - found[1]) > 0.1
-
-
-# A group of higher class: a six-bar driven at its second rocker.
-
-SIX_BAR: Parts = {
-    "AB": {"length": 0.4, "reference": ["A", "D"]},
-    "BCE": {"points": {"B": [0.0, 0.0], "C": [1.0, 0.0], "E": [0.5, 0.4]}, "reference": ["B", "A"]},
-    "DC": {"length": 0.8, "reference": ["D", "A"]},
-    "EF": {"length": 0.9, "reference": ["E", "B"]},
-    "GF": {"length": 0.7, "reference": ["G", "A"]},
-}
-SIX_BAR_FRAME = {"points": {"A": [0.0, 0.0], "D": [1.1, 0.0], "G": [0.6, -0.5]}}
-
-
-def test_a_six_bar_driven_elsewhere_is_the_same_mechanism() -> None:
-    """Driven at the crank it has dyads only; driven at GF, four links have to be solved together."""
-    crank = ct.Mechanism(
-        space="sphere",
-        frame=SIX_BAR_FRAME,
-        links=SIX_BAR,
-        drives=CRANK,
-        assembly={"sides": {"C": "left", "F": "right"}},
-    )
-    exact = ct.motion(crank, at=np.linspace(0.8, 1.4, 7))
-    angles = exact["joint_angle"][3]
-    links = {name: {**link, "angle": float(angles.sel(joint=name))} for name, link in SIX_BAR.items()}
-    start = links["GF"].pop("angle")
-    rocker = ct.Mechanism(
-        space="sphere",
-        frame=SIX_BAR_FRAME,
-        links=links,
-        drives=[{"link": "GF", "start": start, "speed": 1.0}],
-    )
-    assert "higher class" in ct.check(rocker).plan[-1]
-    found = ct.motion(rocker, at=joint(exact, "GF"))
-    assert statuses(found) == statuses(exact) == ["ok"] * 7
-    assert np.max(np.abs(found["position"] - exact["position"])) <= 256 * EPS
-    # the chain rule: derivatives by the crank over that of GF by the crank
-    rate = joint(exact, "GF", "joint_velocity_coefficient")
-    bend = joint(exact, "GF", "joint_acceleration_coefficient")
-    first = exact["velocity_coefficient"].to_numpy() / rate[:, None, None]
-    second = (exact["acceleration_coefficient"].to_numpy() - first * bend[:, None, None]) / (rate**2)[
-        :, None, None
-    ]
-    steep = np.max(1 / np.abs(rate))
-    assert np.max(np.abs(found["velocity_coefficient"] - first)) <= 1024 * EPS * steep**2
-    assert np.max(np.abs(found["acceleration_coefficient"] - second)) <= 4096 * EPS * steep**4
-    # GF turns back where its angle is greatest: a limit of the mechanism that it drives
-    limit = events(ct.motion(rocker, samples=91), "limit")
-    assert len(limit) == 1
-    at_limit = crank_at_greatest(crank)
-    assert limit[0] == pytest.approx(at_limit, abs=1024 * EPS)
-
-
-def crank_at_greatest(crank: ct.Mechanism) -> float:
-    """Greatest angle of GF: its slope by the crank is zero, found by bisection."""
-
-    def slope(q: float) -> float:
-        return float(joint(ct.motion(crank, at=[q]), "GF", "joint_velocity_coefficient")[0])
-
-    coarse = ct.motion(crank, samples=361)
-    q = coarse["drive_value"].to_numpy()[int(np.argmax(joint(coarse, "GF"))), 0]
-    low, high = q - 0.02, q + 0.02
-    assert slope(low) > 0 > slope(high)
-    for _ in range(50):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if slope(middle) > 0 else (low, middle)
-    return float(joint(ct.motion(crank, at=[low]), "GF")[0])
-
-
-def test_gears_at_a_group_of_higher_class() -> None:
-    """A wheel may follow a link of such a group; a gear that holds the group together is refused."""
-    exact = ct.motion(
-        ct.Mechanism(
-            space="sphere",
-            frame=SIX_BAR_FRAME,
-            links=SIX_BAR,
-            drives=CRANK,
-            assembly={"sides": {"C": "left", "F": "right"}},
-        ),
-        at=np.linspace(0.8, 1.4, 7),
-    )
-    links = {
-        name: {**link, "angle": float(exact["joint_angle"][3].sel(joint=name))}
-        for name, link in SIX_BAR.items()
-    }
-    start = links["GF"].pop("angle")
-    frame = {"points": {**SIX_BAR_FRAME["points"], "W": [0.2, 0.7]}}
-    wheel = {"WV": {"length": 0.3, "reference": ["W", "D"], "angle": 0.25}}
-    geared = ct.Mechanism(
-        space="sphere",
-        frame=frame,
-        links=links | wheel,
-        gears=[{"links": ["DC", "WV"], "ratio": -3.0}],
-        drives=[{"link": "GF", "start": start, "speed": 1.0}],
-    )
-    found = ct.motion(geared, at=joint(exact, "GF"))
-    assert statuses(found) == ["ok"] * 7
-    turn = joint(exact, "DC") - joint(exact, "DC")[3]
-    assert np.max(np.abs(joint(found, "WV") - 0.25 + 3.0 * turn)) <= 1024 * EPS
-    # without its drive, the loop is held by the gear alone
-    held = ct.Mechanism(
-        space="sphere",
-        frame=SIX_BAR_FRAME,
-        links={name: link for name, link in SIX_BAR.items() if name not in ("EF", "GF")}
-        | {
-            "EG": {"length": 0.6, "points": ["E", "H"]},
-            "GH": {"length": 0.5, "points": ["G", "H"], "reference": ["G", "A"]},
-            "GK": {"length": 0.5, "reference": ["G", "A"]},
-        },
-        gears=[{"links": ["DC", "GH"], "ratio": 2.0}],
-        drives=[{"link": "GK", "start": 0.0, "speed": 1.0}],
-    )
-    with pytest.raises(ct.InputError):
-        ct.motion(held, samples=3)

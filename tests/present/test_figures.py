@@ -1,19 +1,13 @@
-"""Figures hold the dataset's values in display units; gaps are gaps; what is drawn is named."""
+"""Figures hold the values of the dataset in display units; gaps are gaps; what is drawn is named."""
 
 from __future__ import annotations
 
-import subprocess
-import sys
-import tempfile
-
-import matplotlib
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from centrode import locale, present
-from centrode.errors import InputError
+from centrode import present
 from centrode.present import curves
 from centrode.present.style import PALETTE, in_panels, pens
 
@@ -269,68 +263,3 @@ def test_nothing_known(make, tmp_path):
     for name in ("paths", "angles", "velocities"):
         assert "no sample has a value here" in [text.get_text() for text in figures[name].axes[0].texts]
     present.save_figures({name: figures[name] for name in ("mechanism", "paths", "angles")}, tmp_path)
-
-
-def test_files_repeat_their_bytes(make, tmp_path):
-    written = []
-    for folder in ("one", "two"):
-        (tmp_path / folder).mkdir()
-        mechanism, dataset = make("press", samples=31)
-        figures = present.motion_figures(mechanism, dataset)
-        chosen = {name: figures[name] for name in ("mechanism", "velocities")}
-        written.append(present.save_figures(chosen, tmp_path / folder))
-        present.save_figures(chosen, tmp_path / folder)
-    assert [path.name for path in written[0]] == [
-        "mechanism.png",
-        "mechanism.svg",
-        "velocities.png",
-        "velocities.svg",
-    ]
-    for first, second in zip(*written, strict=True):
-        assert first.read_bytes() == second.read_bytes()
-        assert b"Matplotlib" not in first.read_bytes()[:2000] or first.suffix == ".svg"
-
-
-def test_the_users_settings_are_left_alone_and_do_not_matter(make):
-    mechanism, dataset = make("worked", samples=11)
-    with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 30.0}):
-        before = matplotlib.rcParams.copy()
-        figures = present.motion_figures(mechanism, dataset)
-        assert matplotlib.rcParams.copy() == before
-    assert lines(figures["angles"], "OA")[0].get_linewidth() == 1.5
-
-
-def test_figures_speak_the_chosen_language(make, monkeypatch):
-    monkeypatch.setattr(locale._catalogue, "gettext", lambda message: f"«{message}»", raising=False)
-    mechanism, dataset = make("worked", samples=11)
-    figures = present.motion_figures(mechanism, dataset)
-    assert figures["angles"].get_suptitle().startswith("«Angles of the links»")
-
-
-def test_tables_import_no_matplotlib():
-    code = (
-        "import sys; from centrode import present; present.motion_table;"
-        "assert not {'matplotlib', 'pint'} & set(sys.modules)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
-def test_missing_matplotlib_is_told_with_its_repair(monkeypatch):
-    for name in [name for name in sys.modules if name.startswith(("matplotlib", "centrode.present."))]:
-        monkeypatch.delitem(sys.modules, name)
-    for name in ("motion_figures", "save_figures"):
-        monkeypatch.delitem(present.__dict__, name, raising=False)
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(InputError, match=r'pip install "centrode\[figures\]"'):
-        _ = present.motion_figures
-
-
-def test_pyplot_is_never_loaded():
-    """Loading it would choose a backend, which may want a display."""
-    code = (
-        "import sys; from matplotlib.figure import Figure; from centrode import present;"
-        "present.motion_figures, present.save_figures({'empty': Figure()}, sys.argv[1]);"
-        "assert 'matplotlib.pyplot' not in sys.modules"
-    )
-    with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.executable, "-c", code, folder], check=True)

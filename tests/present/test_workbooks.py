@@ -55,6 +55,29 @@ def test_samples_without_a_number_are_empty_cells(tmp_path: Path) -> None:
     assert last["status"] == "open"
 
 
+def test_what_a_row_is_about_stands_on_each_sheet(tmp_path: Path) -> None:
+    """Names and varied values that no quantity begins with, before the first of a quantity; four stay in view."""
+    headers = [
+        "time [s]",
+        "first",
+        "links.AB.length [m]",
+        "x",
+        "y",
+        "position_A_x [m]",
+        "case",
+        "angle_A [rad]",
+    ]
+    write_workbook(tmp_path / "a.xlsx", headers, [[float(k)] for k in range(len(headers))])
+    leading = tuple(headers[:5])
+    found = sheets(tmp_path / "a.xlsx")
+    assert {name: head for name, (head, _row) in found.items()} == {
+        "position": (*leading, headers[5]),
+        "table": (*leading, headers[6]),
+        "angle": (*leading, headers[7]),
+    }
+    assert openpyxl.load_workbook(tmp_path / "a.xlsx")["angle"].freeze_panes == "E2"
+
+
 def test_the_same_table_gives_the_same_bytes(tmp_path: Path) -> None:
     for name in ("a", "b"):
         write_workbook(tmp_path / name, ["time [s]", "angle_A [rad]"], [[0.0, 1.0], [0.1, 0.2]])

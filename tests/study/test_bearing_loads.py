@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.study.forces.reacting import each_reaction
+from centrode.study.forces.named_reactions import each_reaction
 from mechanisms import parts_of
 
 EPSILON = 2.0**-52

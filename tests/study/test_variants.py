@@ -139,7 +139,7 @@ def test_finished_variants_are_not_computed_again(tmp_path: Path, monkeypatch: p
     def refuse(*_anything: object) -> None:
         raise AssertionError("computed again")
 
-    monkeypatch.setattr("centrode.present.variant_folders.computed", refuse)
+    monkeypatch.setattr("centrode.present.variant_tasks.computed", refuse)
     assert ct.write_variants(WORKED, TWO, tmp_path) == rows
     assert (stamps(tmp_path), contents(tmp_path)) == (before, all_before)
 
@@ -194,7 +194,7 @@ def test_a_fault_is_told_and_tried_again(tmp_path: Path, monkeypatch: pytest.Mon
         def fail(*_anything: object) -> None:
             raise ArithmeticError("a slip of ours")
 
-        broken.setattr("centrode.present.variant_folders.computed", fail)
+        broken.setattr("centrode.present.variant_tasks.computed", fail)
         rows = ct.write_variants(WORKED, TWO, tmp_path)
     assert [row.status for row in rows] == ["fault", "fault"]
     assert rows[0].cause == "ArithmeticError: a slip of ours"

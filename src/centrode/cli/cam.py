@@ -102,9 +102,9 @@ def _check_options(
 
 
 def _check_animation(cam: ct.Cam | ct.PlateCam, out: Path | None, animate: bool) -> None:
-    """An animation needs a wheel that walks or a cam with its follower, and a folder."""
-    if animate and isinstance(cam, ct.Cam) and cam.mover is None:
-        raise InputError("--animate", _("nothing walks: the cam has no [mover]"), _("leave it out"))
+    """An animation needs a cam with its roller or its follower, and a folder."""
+    if animate and isinstance(cam, ct.Cam) and cam.roller is None:
+        raise InputError("--animate", _("a profile needs a roller"), _("give [roller] radius"))
     if animate and out is None:
         raise InputError("--animate", _("there is no folder to write into"), _("name one with --out"))
 
@@ -145,17 +145,20 @@ def _write(
 
 
 def _animate(results: CamResults, folder: Path, progress: Progress, *, dark: bool) -> None:
-    """Write the walking wheel's step, or a turn of the cam under its follower, into a folder."""
+    """Write the walking wheel's step, or a turn of the cam under its roller or its follower, into a folder."""
     objects, cam = results.objects, results.cam
     name = "walking-wheel.gif" if "wheel" in objects else "cam.gif"
 
     def said(done: int, of: int) -> None:
         progress.say(_("drawing {name}").format(name=name), done, of)
 
+    title, display = _(cam.title), cam.display
     if "wheel" in objects:
-        ct.animate_walking(objects["wheel"], folder / name, _(cam.title), cam.display, dark=dark, said=said)
+        ct.animate_walking(objects["wheel"], folder / name, title, display, dark=dark, said=said)
     elif "plate" in objects:
-        ct.animate_follower(objects["plate"], folder / name, _(cam.title), cam.display, dark=dark, said=said)
+        ct.animate_follower(objects["plate"], folder / name, title, display, dark=dark, said=said)
+    elif "body" in objects and isinstance(cam, ct.Cam) and cam.mover is None:
+        ct.animate_cam_body(objects["body"], folder / name, title, display, dark=dark, said=said)
     elif isinstance(cam, ct.PlateCam) and not results.failures:
         what = _("the cam has no size: neither base_radius nor bounds are given")
         raise InputError("--animate", what, _("give one of them, or leave it out"))

@@ -11,6 +11,7 @@ from centrode.cli import output
 from centrode.cli.about import about as about_file
 from centrode.cli.arguments import mechanism_argument
 from centrode.cli.pairs import pairs
+from centrode.cli.tables import need_table, table_files, tables_options
 from centrode.locale import _, mark, speaking
 
 
@@ -34,6 +35,7 @@ from centrode.locale import _, mark, speaking
     metavar=mark("FILE"),
     help=mark("Also write FILE.json or FILE.csv, by the ending of its name."),
 )
+@tables_options
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
 def limits(
     mechanism: str,
@@ -46,14 +48,16 @@ def limits(
     """Print the limits of a drive, and write them where asked."""
     description = ct.load(mechanism)
     held = pairs(hold, "--hold")
+    need_table(out)
     with about_file(mechanism):
         found = ct.limits(description, drive, held, about)
     if out is not None:
         with speaking("en"):  # what files hold is English
             text = ct.limits_text(ct.limits(description, drive, held, about), out.suffix[1:].lower())
-        output.write_file(out, text, force=force)
+        with output.output_table(out, force=force) as draft:
+            draft.write_text(text, encoding="utf-8", newline="\n")
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.limits_rows(description, found)))
     if out is not None:
-        click.echo("\n" + _("wrote {file}").format(file=out))
+        click.echo("\n" + output.wrote(table_files(out)))

@@ -8,10 +8,10 @@ import tempfile
 import textwrap
 import unicodedata
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from centrode.cli.tables import spell_tables
+from centrode.cli.tables import asked_spelling, spell_tables, table_files
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
 
@@ -69,13 +69,19 @@ def finished(draft: Path) -> list[str]:
     return sorted(path.name for path in draft.iterdir())
 
 
+def wrote(paths: Sequence[Path]) -> str:
+    """A sentence that names the single files that were written."""
+    return _("wrote {file}").format(file=", ".join(map(str, paths)))
+
+
 @contextmanager
 def output_folder(path: Path) -> Iterator[Path]:
     """Folder to write into; its files appear in `path` when the block ends, and not at all when it raises.
 
-    Raises InputError at once where `path` cannot be written, before anything is computed. Files of the same
-    name that stand in `path` are replaced, others are left alone.
+    Raises InputError at once where `path` cannot be written or what writes workbooks is missing, before anything is
+    computed. Files of the same name that stand in `path` are replaced, others are left alone.
     """
+    asked_spelling().check()
     with _refusals(path):
         base = _existing_part(path)
         draft = Path(tempfile.mkdtemp(prefix=".centrode-", dir=base))
@@ -91,6 +97,20 @@ def write_file(path: Path, text: str, *, force: bool = False) -> None:
     """Write one UTF-8 file whole or not at all; InputError where it cannot be, or stands already without `force`."""
     with output_file(path, force=force) as draft:
         draft.write_text(text, encoding="utf-8", newline="\n")
+
+
+@contextmanager
+def output_table(path: Path, *, force: bool = False) -> Iterator[Path]:
+    """CSV file to write into; it appears spelled as the command was asked to, with a workbook beside it or without.
+
+    Raises as `output_file` does, for each of the files.
+    """
+    spelling = asked_spelling()
+    spelling.check()
+    with ExitStack() as files:
+        drafts = [files.enter_context(output_file(one, force=force)) for one in table_files(path)]
+        yield drafts[0]
+        spelling.spell_table(drafts[0], drafts[-1])
 
 
 @contextmanager

@@ -12,6 +12,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.progress import Progress
+from centrode.cli.tables import need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
 
@@ -31,11 +32,13 @@ TABLE, STORE = ".csv", ".zarr"
     metavar=mark("OUT"),
     help=mark("A folder .zarr (a run that was cut short goes on), or a table .csv of a reduced sweep."),
 )
+@tables_options
 @click.option("--force", is_flag=True, help=mark("Replace the table where it exists."))
 def sweep(study: str, out: Path | None, force: bool) -> None:
     """Compute and write; exit code 3 if no mechanism moves anywhere (the results are written)."""
     asked = ct.read_sweep(study)
     target = out if out is not None else Path(Path(study).stem + STORE)
+    need_table(target)
     if target.suffix == TABLE:
         data = _as_table(asked, study, target, force)
     elif target.suffix == STORE:
@@ -45,7 +48,7 @@ def sweep(study: str, out: Path | None, force: bool) -> None:
             str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
         )
     click.echo(output.table(ct.sweep_rows(data)))
-    click.echo("\n" + _("wrote {file}").format(file=target))
+    click.echo("\n" + output.wrote([target] if target.suffix == STORE else table_files(target)))
     if data.attrs["mechanisms_none"] == data.attrs["mechanisms"]:
         raise MotionError(
             study, _("no mechanism is ok at any sample"), _("ask for another range, or change what varies")
@@ -57,14 +60,15 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
         raise InputError(
             str(target), _("a table holds reduced results only"), _("give reduce, or write .zarr")
         )
-    if target.exists() and not force:
-        raise InputError(str(target), _("exists already"), _("say --force to replace it"))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # an interruption is told in the command's own words
-        data = _computed(asked, study, None)
-    if data.attrs["mechanisms"] < data["samples_ok"].size:
-        raise KeyboardInterrupt  # a part of a table looks like a whole one
-    output.write_file(target, ct.sweep_csv(data), force=force)
+    with output.output_table(target, force=force) as draft:
+        with warnings.catch_warnings():
+            warnings.simplefilter(
+                "ignore", RuntimeWarning
+            )  # an interruption is told in the command's own words
+            data = _computed(asked, study, None)
+        if data.attrs["mechanisms"] < data["samples_ok"].size:
+            raise KeyboardInterrupt  # a part of a table looks like a whole one
+        draft.write_text(ct.sweep_csv(data), encoding="utf-8", newline="\n")
     return data
 
 

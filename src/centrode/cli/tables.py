@@ -9,7 +9,8 @@ from typing import Any, TypeVar
 import click
 
 import centrode as ct
-from centrode.locale import mark
+from centrode.errors import InputError
+from centrode.locale import _, mark
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -17,7 +18,7 @@ COMMA, XLSX = "centrode.decimal-comma", "centrode.xlsx"
 
 
 def tables_options(command: Command) -> Command:
-    """The options of every command that writes a folder of tables; `spell_tables` reads them."""
+    """The options of every command that writes tables; `output` reads them."""
     for name, key, told in (
         ("--xlsx", XLSX, mark("Also write each table as a workbook, a sheet for each quantity.")),
         ("--decimal-comma", COMMA, mark("CSV with decimal commas, fields apart by semicolons.")),
@@ -42,6 +43,23 @@ def asked_spelling() -> ct.TableSpelling:
     context = click.get_current_context(silent=True)
     asked = {} if context is None else context.meta
     return ct.TableSpelling(bool(asked.get(XLSX)), bool(asked.get(COMMA)))
+
+
+def need_table(path: Path | None) -> None:
+    """Refuse the options where the one file that is asked for, if any, is no table."""
+    if path is not None and path.suffix.lower() == ".csv":
+        return
+    asked = asked_spelling()
+    for option, given in (("--xlsx", asked.xlsx), ("--decimal-comma", asked.comma)):
+        if given:
+            raise InputError(
+                option, _("no table is written"), _("name a file .csv with --out, or leave it out")
+            )
+
+
+def table_files(path: Path) -> list[Path]:
+    """The file of a table, and the workbook beside it where the running command was asked for one."""
+    return [path, path.with_suffix(".xlsx")] if asked_spelling().xlsx else [path]
 
 
 def spell_tables(folder: Path) -> None:

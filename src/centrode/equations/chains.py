@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
-from centrode.equations.alphabet import quarters_of
 from centrode.equations.board import Board
-from centrode.equations.draft import Condition, Draft
-from centrode.equations.letters import Angle
-from centrode.equations.lines import Line, Rod, lines_of, rods_of
-from centrode.equations.places import Place, polar
+from centrode.equations.closing import Closing
+from centrode.equations.draft import Draft
+from centrode.equations.lines import Line, Rod
+from centrode.equations.places import polar
 from centrode.equations.sums import Sum
 from centrode.equations.ties import give_angles, ties_of
 from centrode.structure.groups import Group, links_of, points_of
@@ -28,10 +27,8 @@ class Chains:
     def __init__(self, board: Board) -> None:
         self.board = board
         self.ties = ties_of(board)
-        self.lines = lines_of(board.ready)
-        self.rods = rods_of(board.ready)
-        self.names: set[str] = set()
-        self.pairs = 0
+        self.closing = Closing(board)
+        self.lines, self.rods = self.closing.lines, self.closing.rods
 
     def lay(self, group: Group, number: int, draft: Draft) -> None:
         """Add a group of the plan to a draft: its angles, its chains, the constraints where they close."""
@@ -43,7 +40,7 @@ class Chains:
         pending = [link for link in draft.links if link not in self.board.placed]
         wanted = set(draft.points) | {p for link in pending for p in self.board.local(link)}
         since = len(self.board.moving)
-        self._close(draft)
+        self.closing.close(draft)
         while self._driven(draft, wanted) or self._step(draft, pending, wanted, since):
             pass
 
@@ -113,8 +110,8 @@ class Chains:
             else:
                 board.put(point, at, full)
         for point, at, full in ends:
-            self._meet(point, at, full, board.angles[link], link, draft)
-        self._close(draft)
+            self.closing.meet(point, at, full, board.angles[link], link, draft)
+        self.closing.close(draft)
 
     def _place_body(self, line: Line, draft: Draft) -> None:
         """Place a link that carries a guide from the guided point."""
@@ -125,7 +122,7 @@ class Chains:
         way = board.track(line, Sum.letter(board.slide(line, draft)))
         at, full = (places[line.point].plus(way, -1) for places in (board.points, board.full))
         if base in board.points:
-            self._meet(base, at, full, board.angles[line.on], line.on, draft)
+            self.closing.meet(base, at, full, board.angles[line.on], line.on, draft)
         else:
             board.put(base, at, full)
         self._place_link(line.on, base, draft)
@@ -138,11 +135,11 @@ class Chains:
         base = board.base(line)
         at = way if base is None else board.points[base].plus(way)
         board.put(line.point, at, way if base is None else board.full[base].plus(way))
-        self._close(draft)
+        self.closing.close(draft)
 
     def _place_by_rod(self, rod: Rod, draft: Draft, wanted: set[str]) -> bool:
         """Place one end of a cylinder from the other."""
-        start, end = self._rod_ends(rod)
+        start, end = self.closing.rod_ends(rod)
         if (start is None) == (end is None):
             return False
         target = rod.second if end is None else rod.first
@@ -153,100 +150,5 @@ class Chains:
         known = start or end
         assert known is not None
         self.board.put(target, known[0].plus(way, sign), known[1].plus(way, sign))
-        self._close(draft)
+        self.closing.close(draft)
         return True
-
-    # where chains close
-
-    def _close(self, draft: Draft) -> None:
-        """Write down what guides and cylinders say whose ends are all placed."""
-        board = self.board
-        for line in list(self.lines):
-            if line.point in board.points and line.on in board.placed:
-                self.lines.remove(line)
-                if line.on == FRAME and line.drive is None:
-                    self._on_frame(line, draft)
-                else:
-                    self._on_body(line, draft)
-        for rod in list(self.rods):
-            start, end = self._rod_ends(rod)
-            if start is not None and end is not None:
-                self.rods.remove(rod)
-                self._along_rod(rod, start, end, draft)
-
-    def _meet(self, point: str, at: Place, full: Place, closing: Angle, of: str, draft: Draft) -> None:
-        """A chain ends at a place that is known: two constraints."""
-        board = self.board
-        known = board.points[point]
-        if point not in board.moving:
-            fixed = board.numbers.frame[point]
-            known = Place(*(Sum.letter(board.alphabet.constant(float(x), "m")) for x in fixed))
-        self.pairs += 1
-        for axis, left, long, right in zip("xy", at, full, known, strict=True):
-            name = self._name(f"{axis}_{point}", of)
-            draft.conditions.append(Condition(name, left, long, right, self.pairs, closing))
-
-    def _on_frame(self, line: Line, draft: Draft) -> None:
-        """A point of a chain on a line of the frame: one coordinate of it is constant."""
-        board = self.board
-        at, full = board.points[line.point], board.full[line.point]
-        quarters = quarters_of(line.direction)
-        x, y = line.through
-        if quarters is not None:
-            axis = "y" if quarters % 2 == 0 else "x"
-            constant = Sum.letter(board.alphabet.constant(y if axis == "y" else x, "m"))
-            name = self._name(f"{axis}_{line.point}", line.name)
-            left, long = (at.y, full.y) if axis == "y" else (at.x, full.x)
-            board.points[line.point] = Place(at.x, constant) if axis == "y" else Place(constant, at.y)
-        else:
-            heading = board.heading(line)
-            ux, uy = line.direction
-            constant = Sum.letter(board.alphabet.constant(ux * y - uy * x, "m"))
-            name = self._name(f"n_{line.point}", line.name)
-            left, long = at.across(heading), full.across(heading)
-            board.points[line.point] = polar(at.along(heading), heading).plus(
-                polar(constant, heading.turned(1))
-            )
-        draft.conditions.append(Condition(name, left, long, constant))
-
-    def _on_body(self, line: Line, draft: Draft) -> None:
-        """A point of a chain on a line of a moving body: two constraints with the displacement along it."""
-        board = self.board
-        way = board.track(line, Sum.letter(board.slide(line, draft)))
-        base = board.base(line)
-        at = way if base is None else board.points[base].plus(way)
-        full = way if base is None else board.full[base].plus(way)
-        self._meet(line.point, at, full, board.heading(line), line.name, draft)
-
-    def _along_rod(
-        self, rod: Rod, start: tuple[Place, Place], end: tuple[Place, Place], draft: Draft
-    ) -> None:
-        board = self.board
-        size, angle = board.bearing(rod, draft)
-        way = polar(size, angle)
-        if isinstance(rod.first, str) and rod.first not in board.moving:
-            self._meet(rod.first, end[0].plus(way, -1), end[1].plus(way, -1), angle, rod.name, draft)
-        else:
-            self._meet(rod.second, start[0].plus(way), start[1].plus(way), angle, rod.name, draft)
-
-    def _rod_ends(self, rod: Rod) -> tuple[tuple[Place, Place] | None, tuple[Place, Place] | None]:
-        """Places of both ends of a cylinder, as put in and in full, where they are known."""
-        board = self.board
-        second = board.points.get(rod.second)
-        end = None if second is None else (second, board.full[rod.second])
-        if isinstance(rod.first, str):
-            first = board.points.get(rod.first)
-            return (None if first is None else (first, board.full[rod.first])), end
-        body, local = rod.first
-        if body not in board.placed:
-            return None, end
-        return (board.spot(body, local, rod.name), board.spot(body, local, rod.name, full=True)), end
-
-    def _name(self, name: str, of: str) -> str:
-        """A name of a constraint that no other one has."""
-        found, count = name, 1
-        while found in self.names:
-            found = f"{name}({of})" if count == 1 else f"{name}({of} {count})"
-            count += 1
-        self.names.add(found)
-        return found

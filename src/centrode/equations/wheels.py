@@ -10,9 +10,10 @@ from centrode.equations.board import Board
 from centrode.equations.draft import Condition, Draft, Unknown
 from centrode.equations.letters import Angle, Letter
 from centrode.equations.sums import ZERO, Sum, Term
+from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.gearing import Round, Straight
 from centrode.structure.positions import FRAME
-from centrode.structure.wheels import GearRatio, NoSlip
+from centrode.structure.wheels import NoSlip
 
 Meshing: TypeAlias = GearRatio | NoSlip
 

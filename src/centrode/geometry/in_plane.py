@@ -118,11 +118,6 @@ class Plane:
         x, y = subtract(a, b)
         return hypot(x, y) if isinstance(x, float) and isinstance(y, float) else m.sqrt(x * x + y * y)
 
-    def distance_row(self, m: Namespace, a: Vector, b: Vector) -> Rows:
-        x, y = subtract(a, b)
-        length = m.sqrt(x * x + y * y)
-        return (x / length, y / length), (-x / length, -y / length)
-
     def leverage(self, m: Namespace, first: Vector, second: Vector) -> Number:
         return self.distance(m, first, second)
 

@@ -149,10 +149,6 @@ class Sphere:
     def distance(self, m: Namespace, a: Vector, b: Vector) -> Number:
         return sphere.arc(m, a, b)
 
-    def distance_row(self, m: Namespace, a: Vector, b: Vector) -> Rows:
-        slope, other = slopes.away(m, a, b), slopes.away(m, b, a)
-        return slopes.of_point(m, a, slope), slopes.of_point(m, b, other)
-
     def leverage(self, m: Namespace, first: Coordinates, second: Coordinates) -> Number:
         return slopes.length(m, tangent_inside(m, first, second))
 

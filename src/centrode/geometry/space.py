@@ -137,9 +137,6 @@ class Space(Protocol):
     def distance(self, m: Namespace, a: Place, b: Place) -> Number:
         """Distance of two places."""
 
-    def distance_row(self, m: Namespace, a: Place, b: Place) -> Rows:
-        """Its derivatives by the coordinates of both points."""
-
     def leverage(self, m: Namespace, first: Coordinates, second: Coordinates) -> Number:
         """How well two points of a link tell how it is turned, compared with lengths."""
 

@@ -21,13 +21,14 @@ from centrode.kinematics.turned_links import turn_link
 from centrode.kinematics.wheels import equation_at
 from centrode.locale import _
 from centrode.structure.constraints import Constraint
+from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.groups import Group, Meet, Newton, TurnedLink, Turning
 from centrode.structure.matching import match
 from centrode.structure.positions import Entity, Positions
 from centrode.structure.rank import columns_of, independent_rows
 from centrode.structure.steps import name_of
 from centrode.structure.wheel_groups import AngleEquation, AngleGiven, Arm, Meshed, Rolloff, Train
-from centrode.structure.wheels import GearRatio, Meshing, NoSlip, Standing, angle_links, identity_of, phase_of
+from centrode.structure.wheels import Meshing, NoSlip, Standing, angle_links, identity_of, phase_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

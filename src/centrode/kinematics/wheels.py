@@ -20,6 +20,7 @@ from centrode.geometry.plane import (
 )
 from centrode.geometry.space import Pose
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.gearing import Straight
 from centrode.structure.positions import FRAME, Positions
 from centrode.structure.wheel_groups import (
@@ -32,7 +33,7 @@ from centrode.structure.wheel_groups import (
     Touch,
     Train,
 )
-from centrode.structure.wheels import GearRatio, NoSlip
+from centrode.structure.wheels import NoSlip
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any

@@ -9,17 +9,12 @@ from pydantic import AfterValidator, Field, PlainValidator
 
 from centrode.locale import _
 from centrode.model import limits
+from centrode.model.entries import choice, listed, table
 from centrode.model.frozen import FrozenMap
 from centrode.model.names import read_name
 from centrode.model.part import Part
 from centrode.model.problems import KEY, Problem, shown
-from centrode.model.values import (
-    EndOfMotion,
-    PlaceOfMotion,
-    choice,
-    listed,
-    table,
-)
+from centrode.model.values import EndOfMotion, PlaceOfMotion
 from centrode.quantities import ANGLES, LENGTHS
 
 Side = Literal["left", "right", "ahead", "behind"]

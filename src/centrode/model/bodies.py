@@ -10,6 +10,7 @@ from pydantic import PlainValidator
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
+from centrode.model.entries import choice, entries, listed, named_entries
 from centrode.model.frozen import FrozenMap
 from centrode.model.names import read_name
 from centrode.model.part import Part
@@ -24,10 +25,6 @@ from centrode.model.values import (
     PositiveMetres,
     Spot,
     Vector,
-    choice,
-    entries,
-    listed,
-    named_entries,
     not_negative,
     quantity,
     read_coordinates,

@@ -16,6 +16,7 @@ from centrode.model import limits
 from centrode.model.asked import Assembly, Display, Study
 from centrode.model.bodies import Frame, Link
 from centrode.model.driving import Drive
+from centrode.model.entries import choice, listed
 from centrode.model.frozen import FrozenMap
 from centrode.model.loads import Load
 from centrode.model.machines import Machine
@@ -32,9 +33,7 @@ from centrode.model.values import (
     Reading,
     Text,
     Vector,
-    choice,
     link_table,
-    listed,
     read_axes,
 )
 

@@ -12,12 +12,13 @@ from centrode.laws import Law, ShaftLaw, TableLaw, TextLaw, Uniform
 from centrode.locale import _
 from centrode.model.cams.beside import read_plate_cam
 from centrode.model.cams.plate import PlateCam
+from centrode.model.entries import listed
 from centrode.model.names import FRAME
 from centrode.model.part import Part, one_of
 from centrode.model.problems import Problem
 from centrode.model.segments import Segment, read_repeat, read_segments, segmented
 from centrode.model.tables import Columns, read_rows
-from centrode.model.values import READING, Angle, Name, listed, positive, quantity, read_text, si
+from centrode.model.values import READING, Angle, Name, positive, quantity, read_text, si
 
 _LAWS = ("speed", "law", "table", "segments", "cam")
 _OF_CAM = ("cam_speed", "cam_angle", "cam_point", "lowers")

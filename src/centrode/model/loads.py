@@ -11,6 +11,7 @@ from pydantic import PlainValidator, ValidationInfo, field_validator
 from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.entries import choice, listed
 from centrode.model.load_keys import load_key_problems
 from centrode.model.names import FRAME, read_name
 from centrode.model.part import Part
@@ -22,8 +23,6 @@ from centrode.model.values import (
     Heading,
     Name,
     PositiveLength,
-    choice,
-    listed,
     not_negative,
     quantity,
     read_heading,

@@ -10,9 +10,10 @@ from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
+from centrode.model.entries import listed
 from centrode.model.part import Part
 from centrode.model.problems import KEY, Problem, shown
-from centrode.model.values import Text, listed, not_negative, positive, quantity, read_text, si
+from centrode.model.values import Text, not_negative, positive, quantity, read_text, si
 
 DRIVING_VARIABLES = ("q", "v")
 """The drive's value [rad] and speed [rad/s] in formulas of its moment."""

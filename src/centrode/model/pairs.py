@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import PlainValidator
 
 from centrode.locale import _
+from centrode.model.entries import listed
 from centrode.model.names import FRAME
 from centrode.model.part import Part, missing_key, one_of
 from centrode.model.problems import KEY, Problem, shown
@@ -23,7 +24,6 @@ from centrode.model.values import (
     Spot,
     Through,
     Vector,
-    listed,
     si,
 )
 

@@ -8,9 +8,10 @@ from pydantic import PlainValidator
 
 from centrode.locale import _
 from centrode.model import limits
+from centrode.model.entries import listed
 from centrode.model.part import Part
 from centrode.model.problems import KEY, Problem, shown
-from centrode.model.values import Angle, Name, PlaceOfMotion, listed
+from centrode.model.values import Angle, Name, PlaceOfMotion
 
 LEAST_DIGITS, MOST_DIGITS, DIGITS = 2, 12, 5
 """Significant digits of a report's numbers: at least, at most, and where nothing is said."""

@@ -13,9 +13,10 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
 from centrode.model.driving import Drive
+from centrode.model.entries import choice
 from centrode.model.part import Part
 from centrode.model.problems import KEY, Problem, shown
-from centrode.model.values import READING, PlaceOfMotion, choice, positive, quantity, read_text, si
+from centrode.model.values import READING, PlaceOfMotion, positive, quantity, read_text, si
 
 DRIVING_LAW_VARIABLES = ("t", "q", "v")
 """Time [s], the drive's value, and its speed in the sense of the drive, in formulas of what drives it."""

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-import functools
+import importlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import lazy_loader
-
 from centrode.present.decimal_comma import spell_with_comma
+from centrode.present.missing import telling_what_is_missing
 
-# XlsxWriter is an extra: only where workbooks are asked for.
-_workbooks = functools.partial(lazy_loader.load, "centrode.present.workbooks", suppress_warning=True)
+
+@telling_what_is_missing
+def _workbook_of_csv() -> Callable[[Path, Path], None]:
+    """What writes workbooks: XlsxWriter is an extra, so it is loaded only where they are asked for."""
+    found: Callable[[Path, Path], None] = importlib.import_module(
+        "centrode.present.workbooks"
+    ).workbook_of_csv
+    return found
 
 
 @dataclass(frozen=True)
@@ -30,17 +36,21 @@ class TableSpelling:
     comma: bool = False
 
     def check(self) -> None:
-        """Raise ModuleNotFoundError where workbooks are asked for and what they need is not installed."""
+        """Raise InputError where workbooks are asked for and what they need is not installed."""
         if self.xlsx:
-            _ = _workbooks().workbook_of_csv
+            _workbook_of_csv()
 
     def spell(self, folder: Path) -> None:
         """Spell the CSV files of a folder, once: a table with decimal commas is not read again."""
         for table in sorted(folder.rglob("*.csv")):
-            if self.xlsx:
-                _workbooks().workbook_of_csv(table, table.with_suffix(".xlsx"))
-            if self.comma:
-                spell_with_comma(table)
+            self.spell_table(table, table.with_suffix(".xlsx"))
+
+    def spell_table(self, table: Path, workbook: Path) -> None:
+        """Spell one CSV file, once, with `workbook` beside it where one is asked for."""
+        if self.xlsx:
+            _workbook_of_csv()(table, workbook)
+        if self.comma:
+            spell_with_comma(table)
 
 
 PLAIN = TableSpelling()

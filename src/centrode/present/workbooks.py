@@ -29,12 +29,16 @@ MOST_ROWS, MOST_COLUMNS, MOST_LETTERS = 1_048_575, 16_384, 31
 """Rows below the header, columns and letters of a sheet's name that the format holds."""
 ALONG = ("time", "drive", "turned", "carrier_angle", "cam_angle")
 """Quantities that tell where a row is: each sheet begins with them."""
+FROZEN = 4
+"""The most columns that stay in view: more of them would leave no room for the others."""
 NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?", re.ASCII)
 ENDLESS = ("inf", "-inf", "nan")
-BESIDE = ("status", "residual")
+BESIDE = ("status", "residual", "samples_ok", "worst_residual")
 """Columns that end each sheet."""
 CREATED = datetime.datetime(2000, 1, 1, tzinfo=datetime.UTC)
 """The workbook's time stamp: not that of the run."""
+NONE = "table"
+"""The sheet of what is of no known quantity."""
 WIDTH = 14
 
 
@@ -76,13 +80,14 @@ def write_workbook(path: str | Path, headers: Sequence[str], columns: Sequence[C
     book = xlsxwriter.Workbook(str(path), {"nan_inf_to_errors": False})
     book.set_properties({"created": CREATED})
     bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top"})
+    leading = len(_leading(headers))
     for name, numbers in _sheets(headers).items():
         sheet = book.add_worksheet(name)
         for place, number in enumerate(numbers):
             sheet.write_string(0, place, headers[number], bold)
             _write_column(sheet, place, columns[number])
         sheet.set_column(0, len(numbers) - 1, WIDTH)
-        sheet.freeze_panes(1, sum(_quantity(headers[n]) in ALONG for n in numbers))
+        sheet.freeze_panes(1, min(leading, FROZEN))
     book.close()
 
 
@@ -97,22 +102,30 @@ def _write_column(sheet: Worksheet, place: int, column: Column) -> None:
 def _sheets(headers: Sequence[str]) -> dict[str, list[int]]:
     """Name of a sheet -> numbers of its columns; one sheet alone where no column is of a known quantity."""
     quantities = [_quantity(header) for header in headers]
-    along = [n for n, quantity in enumerate(quantities) if quantity in ALONG]
+    leading = _leading(headers)
     beside = [n for n, quantity in enumerate(quantities) if quantity in BESIDE]
     found: dict[str, list[int]] = {}
     for number, quantity in enumerate(quantities):
-        if quantity not in (*ALONG, *BESIDE):
+        if number not in (*leading, *beside):
             found.setdefault(quantity[:MOST_LETTERS], []).append(number)
-    if set(found) <= {"table"}:
-        return {"table": list(range(len(headers)))}
-    return {name: [*along, *numbers, *beside] for name, numbers in found.items()}
+    if set(found) <= {NONE}:
+        return {NONE: list(range(len(headers)))}
+    return {name: [*leading, *numbers, *beside] for name, numbers in found.items()}
+
+
+def _leading(headers: Sequence[str]) -> list[int]:
+    """Numbers of the columns that tell what a row is about: time, drives, and names before the first quantity."""
+    quantities = [_quantity(header) for header in headers]
+    known = [n for n, quantity in enumerate(quantities) if quantity not in (NONE, *ALONG)]
+    first = known[0] if known else 0
+    return [n for n, quantity in enumerate(quantities) if quantity in ALONG or n < first]
 
 
 def _quantity(header: str) -> str:
-    """The quantity that a header such as "position_C_x [m]" begins with; "table" for none."""
+    """The quantity that a header such as "position_C_x [m]" begins with; `NONE` for none."""
     name = header.partition(" [")[0]
     fitting = [key for key in (*QUANTITIES, *ALONG, *BESIDE) if name == key or name.startswith(f"{key}_")]
-    return max(fitting, key=len, default="table")
+    return max(fitting, key=len, default=NONE)
 
 
 def _numbers(column: Sequence[str]) -> Column:

@@ -17,8 +17,9 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.cylinders import DistanceDrive
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.positions import Entity, Positions, Row
-from centrode.structure.wheels import Contact, GearRatio, NoSlip
+from centrode.structure.wheels import Contact, NoSlip
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any

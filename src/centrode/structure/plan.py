@@ -13,12 +13,13 @@ from centrode.model.mechanism import Mechanism
 from centrode.structure.classify import classify
 from centrode.structure.constraints import Constraint, PointInLink, constraints_of, is_drive, unknowns_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
+from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.groups import Group, Newton, links_of
 from centrode.structure.matching import in_order, match, strong_components
 from centrode.structure.positions import Entity
 from centrode.structure.rank import Matrix, generic_jacobian, independent_rows
 from centrode.structure.wheel_groups import Train, angles_in
-from centrode.structure.wheels import Contact, GearRatio, NoSlip
+from centrode.structure.wheels import Contact, NoSlip
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism, Rolling
 from centrode.structure.bevels import shares_of
 from centrode.structure.constraints import AngleDrive, Constraint, NoTurning, PointInLink
+from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.positions import FRAME
 from centrode.structure.wheel_groups import (
     AngleEquation,
@@ -23,7 +24,7 @@ from centrode.structure.wheel_groups import (
     Train,
     angles_in,
 )
-from centrode.structure.wheels import Contact, GearRatio, NoSlip
+from centrode.structure.wheels import Contact, NoSlip
 
 SINGULAR = 1e-9
 """A pivot smaller than this, beside ratios of the order of one, means that the angles do not follow."""

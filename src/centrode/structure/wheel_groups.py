@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from centrode.structure.wheels import Contact, GearRatio, NoSlip
+from centrode.structure.gear_ratios import GearRatio
+from centrode.structure.wheels import Contact, NoSlip
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,9 @@ from typing import TypeAlias
 
 from centrode.analysis.rotatability import LimitFound, Rotatability, Turning
 from centrode.analysis.turning.circuits import Branch, Circuits
+from centrode.analysis.turning.dwells import Dwell
 from centrode.analysis.turning.four_bars import FourBar
-from centrode.analysis.turning.swings import Dwell, Extreme, Swing
+from centrode.analysis.turning.swings import Extreme, Swing
 from centrode.analysis.turning.transmission import Transmission
 from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _, mark, ngettext

@@ -9,29 +9,24 @@ degree-of-freedom planar linkages, Journal of Mechanical Design 115, 1993).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 from math import remainder, tau
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.analysis.turning.combinations import NODES, Combinations
 from centrode.analysis.turning.tours import Tour
-from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.continuation import Continuation
-from centrode.kinematics.events import Scan
-from centrode.kinematics.pace import OFF_GRID
+from centrode.kinematics.branches import Event
 from centrode.kinematics.sides import side_names, side_words
 from centrode.locale import _
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]
 
 MOST_DYADS = 10
 """More signs would be more than a thousand combinations."""
-NODES = 720
 
 
 @dataclass(frozen=True)
@@ -84,59 +79,12 @@ def circuits_of(tour: Tour) -> tuple[Circuits | None, str]:
 
 
 class _Search:
-    """All combinations of signs on the nodes of the drive, and which stretches of them hang together."""
+    """Which stretches of the combinations of signs hang together."""
 
     def __init__(self, tour: Tour, signed: list[int]) -> None:
         self.tour, self.signed = tour, signed
-        self.signs = np.array(list(product((1.0, -1.0), repeat=len(signed)))).reshape(
-            2 ** len(signed), len(signed)
-        )
-        first = tour.initial if tour.angular else tour.initial - tour.extent
-        length = tau if tour.angular else 2.0 * tour.extent
-        self.nodes = first + (np.arange(NODES) + OFF_GRID) * (length / NODES)
-        self.length = length
-        self.closed, self.cuts = self._followed()
-        self.limits: dict[tuple[int, int], list[float]] = {}
-        for event in self.cuts:
-            if event.kind == "limit":
-                self.limits.setdefault((event.lane, self._cells(event)[0]), []).append(event.at)
+        self.combinations = Combinations(tour, signed)
         self.parent: dict[tuple[int, int], tuple[int, int]] = {}
-        self.runs = [
-            _numbered(row, cut, tour.angular) for row, cut in zip(self.closed, self._cut(), strict=True)
-        ]
-
-    def _followed(self) -> tuple[Mask, list[Event]]:
-        """Where every combination closes at the nodes, and all events."""
-        tour = self.tour
-        lanes = len(self.signs)
-        signs = {group: self.signs[:, k].copy() for k, group in enumerate(self.signed)}
-        start = tour.continuation.branches
-        branches = Branches(start.initial, start.forward, start.unit, lanes, signs, False, start.angles)
-        continuation = Continuation(
-            tour.continuation.kinematics, branches, tour.continuation.start, tour.continuation.nominal
-        )
-        ends = [self.nodes[-1] + self.length / NODES] if tour.angular else []
-        at = Scan(continuation, np.concatenate([self.nodes, ends])).run()
-        closed = np.ones((lanes, NODES), dtype=bool)
-        for x in _numbers(at):
-            closed &= np.isfinite(np.broadcast_to(x, (lanes, NODES + len(ends)))[:, :NODES])
-        return closed, branches.events
-
-    def _cells(self, event: Event) -> tuple[int, int]:
-        """Nodes before and behind an event."""
-        before = int(np.searchsorted(self.nodes, event.at, side="right")) - 1
-        behind = before + 1
-        if self.tour.angular:
-            return before % NODES, behind % NODES
-        return max(before, 0), min(behind, NODES - 1)
-
-    def _cut(self) -> Mask:
-        """Cells, by the node before them, that hold a limit."""
-        cut = np.zeros((len(self.signs), NODES), dtype=bool)
-        for event in self.cuts:
-            if event.kind == "limit":
-                cut[event.lane, self._cells(event)[0]] = True
-        return cut
 
     def run(self) -> Circuits:
         """Join what hangs together."""
@@ -145,7 +93,7 @@ class _Search:
             if event.group not in self.signed:
                 continue
             partner = self._partner(event)
-            for node in self._cells(event):
+            for node in self.combinations.cells(event):
                 if self._hidden(event, node):
                     continue
                 one, other = self._run(event.lane, node), self._run(partner, node)
@@ -156,14 +104,14 @@ class _Search:
 
     def _hidden(self, event: Event, node: int) -> bool:
         """Whether another limit lies between a node and an event in its cell."""
-        cells = self._cells(event)
+        cells = self.combinations.cells(event)
         way = 1.0 if node == cells[0] else -1.0
-        others = self.limits.get((event.lane, cells[0]), ())
-        return any(way * remainder(event.at - at, self.length) > 0.0 for at in others)
+        others = self.combinations.limits.get((event.lane, cells[0]), ())
+        return any(way * remainder(event.at - at, self.combinations.length) > 0.0 for at in others)
 
     def _nearest(self) -> list[Event]:
         """Limits first, so that change points join only what limits do not."""
-        return sorted(self.cuts, key=lambda event: event.kind != "limit")
+        return sorted(self.combinations.events, key=lambda event: event.kind != "limit")
 
     def _partner(self, event: Event) -> int:
         """The combination that differs in the sign of one group."""
@@ -171,7 +119,7 @@ class _Search:
         return event.lane ^ (1 << place)
 
     def _run(self, lane: int, node: int) -> tuple[int, int] | None:
-        run = int(self.runs[lane][node])
+        run = int(self.combinations.runs[lane][node])
         return None if run < 0 else (lane, run)
 
     def _root(self, run: tuple[int, int]) -> tuple[int, int]:
@@ -187,9 +135,9 @@ class _Search:
     def _circuits(self, joined: bool) -> Circuits:
         found: dict[tuple[int, int], list[Branch]] = {}
         own_signs = [self.tour.prepared.assembled.signs[group] for group in self.signed]
-        lane = next(k for k, row in enumerate(self.signs) if list(row) == own_signs)
-        own = self._root((lane, int(self.runs[lane][self._start(lane)])))
-        for k, runs in enumerate(self.runs):
+        lane = next(k for k, row in enumerate(self.combinations.signs) if list(row) == own_signs)
+        own = self._root((lane, int(self.combinations.runs[lane][self._start(lane)])))
+        for k, runs in enumerate(self.combinations.runs):
             for run in range(int(runs.max(initial=-1)) + 1):
                 found.setdefault(self._root((k, run)), []).append(self._branch(k, run))
         order = list(found)
@@ -197,17 +145,21 @@ class _Search:
 
     def _start(self, lane: int) -> int:
         """The node of the mechanism's own branch that is nearest to the initial position."""
-        way = np.abs(self.nodes - self.tour.initial)
+        way = np.abs(self.combinations.nodes - self.tour.initial)
         if self.tour.angular:
             way = np.minimum(way, tau - way)
-        inside = self.closed[lane] & self._reached()
+        inside = self.combinations.closed[lane] & self._reached()
         return int(np.argmin(np.where(inside, way, np.inf)))
 
     def _reached(self) -> Mask:
         low, high = self.tour.low, self.tour.high
         turns = (0.0, -tau) if self.tour.angular else (0.0,)
         reached: Mask = np.any(
-            [(low <= self.nodes + turn) & (self.nodes + turn <= high) for turn in turns], axis=0
+            [
+                (low <= self.combinations.nodes + turn) & (self.combinations.nodes + turn <= high)
+                for turn in turns
+            ],
+            axis=0,
         )
         return reached
 
@@ -215,11 +167,13 @@ class _Search:
         groups = self.tour.prepared.structure.groups
         space = self.tour.continuation.kinematics.numbers.space
         sides = {
-            side_names(groups[g])[0]: side_words(space, groups[g])[0 if self.signs[lane, k] > 0 else 1]
+            side_names(groups[g])[0]: side_words(space, groups[g])[
+                0 if self.combinations.signs[lane, k] > 0 else 1
+            ]
             for k, g in enumerate(self.signed)
         }
-        inside = np.nonzero(self.runs[lane] == run)[0]
-        limits = [e for e in self.cuts if e.lane == lane and e.kind == "limit"]
+        inside = np.nonzero(self.combinations.runs[lane] == run)[0]
+        limits = [e for e in self.combinations.events if e.lane == lane and e.kind == "limit"]
         if not limits and len(inside) == NODES:
             return Branch(sides, None, None)
         first, last = self._edges(inside)
@@ -241,31 +195,11 @@ class _Search:
         """The limit in the cell before a node (which = -1) or behind it (0), the nearest to the node."""
         before = node - 1 if which == -1 else node
         cell = before % NODES if self.tour.angular else before
-        first, last = float(self.nodes[0]), float(self.nodes[-1])
-        ends = [e for e in limits if self._cells(e)[0] == cell]
+        first, last = float(self.combinations.nodes[0]), float(self.combinations.nodes[-1])
+        ends = [e for e in limits if self.combinations.cells(e)[0] == cell]
         if self.tour.angular:
             turns = [tau * np.floor((e.at - first) / tau) for e in ends]
             found = sorted(e.at - float(turn) for e, turn in zip(ends, turns, strict=True))
         else:
             found = sorted(e.at for e in ends if first <= e.at <= last)
         return found[which] if found else None
-
-
-def _numbers(at: Positions) -> list[Array]:
-    """Every coordinate of points."""
-    return [np.atleast_2d(np.asarray(x, dtype=np.float64)) for place in at.points.values() for x in place]
-
-
-def _numbered(closed: Mask, cut: Mask, round_: bool) -> npt.NDArray[np.intp]:
-    """Number of the run of closed nodes that each node belongs to, -1 where it does not close."""
-    numbers = np.full(len(closed), -1, dtype=np.intp)
-    run = -1
-    for k in range(len(closed)):
-        if not closed[k]:
-            continue
-        if k == 0 or not closed[k - 1] or cut[k - 1]:
-            run += 1
-        numbers[k] = run
-    if round_ and run > 0 and closed[0] and closed[-1] and not cut[-1]:
-        numbers[numbers == run] = 0
-    return numbers

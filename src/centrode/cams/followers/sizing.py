@@ -3,34 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import minimize_scalar
 
 from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.contact import ORDER, Array, Motion
-from centrode.cams.followers.crossing import FLAT_HALVINGS, crossings, nodes_of
+from centrode.cams.followers.contact import Motion
+from centrode.cams.followers.growing import BACK, NEAR, UNDECIDED, Tried, looked_at, root
 from centrode.cams.followers.layouts import Layout
-from centrode.cams.followers.margins import Admissible, Margin, breaks, exact_margin, margin
+from centrode.cams.followers.margins import Admissible, breaks, exact_margin
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 
-STEP = 1.05
-"""Neighbouring base radii among which the first that keeps the bounds is looked for."""
-SMALLEST, GREATEST = 1e-4, 1e4
-"""Ends of the search over the size of the lift."""
-NEAR = 1e-3
-"""By how much of itself a radius found on the mesh may differ from the exact one."""
-STEEPEST = 1e6
-"""Tangents of pressure angles from which on a bound is none."""
-BACK = 0.8
-"""Share of the least radius for one offset from which on that for the next is looked for."""
-UNDECIDED = 1e-6
-"""A margin of the least cam that is greater is none of rounding: no bound decides that radius."""
-REACHED = 1e-9
-"""From which share of the least radius that a follower reaches on a cam is tried."""
 OFFSET = 1e-9
 """A best offset is looked for to this share of the speed of the lift."""
 
@@ -76,7 +60,7 @@ def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least
     MotionError
         None does; what comes nearest is told.
     """
-    tried = _Tried(layout, motion, kept)
+    tried = Tried(layout, motion, kept)
     found = tried.first()
     _check_corners(tried.cam(found), layout, kept)
 
@@ -85,7 +69,7 @@ def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least
 
     low, high = found * (1.0 - NEAR), found * (1.0 + NEAR)
     if tried.reaches(low) and exact(low) < 0.0 <= exact(high):
-        found = _root(exact, low, high)
+        found = root(exact, low, high)
     at = exact_margin(tried.cam(found), layout, kept)
     return Least(found, at.at, at.by if at.least < UNDECIDED else "nothing", layout.offset)
 
@@ -109,13 +93,13 @@ def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
         least = least_base_radius(layout, motion, kept)
         ends = layout.cam(motion, least.base_radius).face
         return replace(least, offset=layout.offset + 0.5 * (ends.least + ends.greatest))
-    nodes = _nodes(layout, motion, kept)
+    nodes = looked_at(layout, motion, kept)
 
     before = 0.0
 
     def radius(offset: float) -> float:
         nonlocal before
-        before = _Tried(replace(layout, offset=offset), motion, kept, nodes).first(BACK * before)
+        before = Tried(replace(layout, offset=offset), motion, kept, nodes).first(BACK * before)
         return before + layout.touch.roller
 
     speeds = float(nodes.lift[1].min()), float(nodes.lift[1].max())
@@ -128,130 +112,3 @@ def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
         options={"xatol": OFFSET * (sides[1] - sides[0])},
     )
     return least_base_radius(replace(layout, offset=float(found.x)), motion, kept)
-
-
-@dataclass(frozen=True)
-class _Nodes:
-    """Angles (n) [rad] at which bounds are looked at, and the lift with its derivatives there."""
-
-    phi: Array
-    lift: Array
-
-
-def _nodes(layout: Layout, motion: Motion, kept: Admissible) -> _Nodes:
-    phi = np.append(nodes_of(motion.edges), _decisive(layout, motion, kept))
-    return _Nodes(phi, motion.lift(phi, ORDER))
-
-
-def _decisive(layout: Layout, motion: Motion, kept: Admissible) -> list[float]:
-    """Angles at which a bound of the pressure angle may decide, whatever the offset and the radius.
-
-    A straight line of the slope tan(bound) touches the curve of s over s' there.
-    """
-    if layout.kind == "oscillating" or layout.flat:
-        return []
-    bounds = {math.tan(one) for one in (kept.pressure_angle, kept.return_angle)}
-    found: list[float] = []
-    for steep in (sign * one for one in bounds if one < STEEPEST for sign in (1.0, -1.0)):
-
-        def touches(phi: Array, steep: float = steep) -> Array:
-            _lift, slope, second = motion.lift(phi, 2)
-            return np.asarray(second - steep * slope)
-
-        found += crossings(touches, motion.edges, FLAT_HALVINGS).tolist()
-    return found
-
-
-class _Tried:
-    """Cams of several base radii on the same nodes."""
-
-    def __init__(self, layout: Layout, motion: Motion, kept: Admissible, nodes: _Nodes | None = None) -> None:
-        self.layout, self.motion, self.kept = layout, motion, kept
-        nodes = nodes or _nodes(layout, motion, kept)
-        self.phi, self.lift = nodes.phi, nodes.lift
-        self.size = float(np.abs(self.lift[0]).max())
-        if layout.kind == "oscillating":
-            self.size *= layout.distance
-
-    def cam(self, base: float) -> FollowerCam:
-        return FollowerCam(self.motion, self.layout.guide(base), self.layout.touch, base, self.layout.sense)
-
-    def margin(self, base: float) -> Margin:
-        try:
-            guide = self.layout.guide(base)
-        except InputError:
-            return Margin(-math.inf, 0.0, "reach")
-        with np.errstate(divide="ignore", invalid="ignore"):
-            contact = self.layout.touch.contact(guide, self.phi, self.lift, self.layout.sense)
-        return margin(contact, self.lift[1], self.layout, self.kept)
-
-    def reaches(self, base: float) -> bool:
-        return self.margin(base).least > -math.inf
-
-    def first(self, near: float = 0.0) -> float:
-        """The first base radius, from below, that keeps the bounds on the mesh; from `near` on if that breaks them."""
-        best, before, lowest = Margin(-math.inf, 0.0, "reach"), 0.0, self._lowest()
-        for base in self._radii(near if near > lowest and self.margin(near).least < 0.0 else lowest):
-            found = self.margin(base)
-            if found.least >= 0.0:
-                return self._between(before, float(base))
-            best = max(best, found, key=lambda one: one.least)
-            before = base if found.least > -math.inf else 0.0
-        raise self._none(best)
-
-    def _between(self, broken: float, kept: float) -> float:
-        """The least radius that keeps the bounds, from one that breaks them, or 0, to one that keeps them."""
-        if not broken:
-            broken = max(self._reached(), kept / STEP) * (1.0 + REACHED)
-        least = self.margin(broken).least
-        if not broken < kept or least >= 0.0:
-            return min(broken, kept)
-        if least == -math.inf:
-            return kept
-        return _root(lambda one: self.margin(one).least, broken, kept)
-
-    def _reached(self) -> float:
-        """The least base radius that the follower reaches; 0 of a flat face."""
-        layout = self.layout
-        if layout.flat:
-            return 0.0
-        apart = layout.offset if layout.kind == "translating" else layout.distance - layout.arm
-        return max(abs(apart) - layout.touch.roller, 0.0)
-
-    def _radii(self, least: float) -> Array:
-        count = 2 + int(math.log(max(GREATEST * self.size / least, STEP)) / math.log(STEP))
-        return np.asarray(least * STEP ** np.arange(count), dtype=np.float64)
-
-    def _lowest(self) -> float:
-        """A radius below which none keeps the bounds."""
-        layout, small = self.layout, SMALLEST * self.size
-        if layout.kind == "oscillating":
-            return max(small, self._reached())
-        if layout.flat:
-            return small
-        heights = self._heights()
-        return max(small, math.hypot(heights, layout.offset) * (1.0 - 1e-12) - layout.touch.roller)
-
-    def _heights(self) -> float:
-        """The least height of the roller's centre at lift 0 that keeps the pressure angles at every sample."""
-        lift, slope = self.lift[:2]
-        across = np.abs(slope - self.layout.sense * self.layout.offset)
-        rise, fall = (
-            np.max(across[here] / math.tan(most) - lift[here], initial=0.0)
-            for here, most in ((slope >= 0, self.kept.pressure_angle), (slope <= 0, self.kept.return_angle))
-        )
-        return float(max(rise, fall))
-
-    def _none(self, best: Margin) -> MotionError:
-        what = _("no base radius keeps the bounds: {bound} is broken at {angle:.6g} deg at least")
-        bounds = {
-            "pressure angle": _("the pressure angle"),
-            "curvature": _("the radius of curvature"),
-            "reach": _("the follower's reach"),
-        }
-        told = what.format(bound=bounds[best.by], angle=math.degrees(best.at))
-        return MotionError("[bounds]", told, _("admit more, or change the follower"))
-
-
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    return float(brentq(function, low, high, xtol=1e-300, rtol=4 * np.finfo(float).eps))

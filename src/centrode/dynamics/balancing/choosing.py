@@ -11,11 +11,12 @@ from centrode.dynamics.balancing.asked import number
 from centrode.dynamics.balancing.counterweights import Counterweight, Spot
 from centrode.dynamics.balancing.full import enough_spots, full_balance
 from centrode.dynamics.balancing.inertial import Complex
-from centrode.dynamics.balancing.lightest import Aim, lightest
+from centrode.dynamics.balancing.lightest import lightest
 from centrode.dynamics.balancing.loops import Loop, fraction_of_slider_crank
 from centrode.dynamics.balancing.reachable import hinged_from
 from centrode.dynamics.balancing.shaking import greatest_of
 from centrode.dynamics.balancing.turning import Turning
+from centrode.dynamics.balancing.weighing import Aim
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

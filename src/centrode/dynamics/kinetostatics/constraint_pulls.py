@@ -8,8 +8,9 @@ from centrode.dynamics.pulls import Pull
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Constraint, DisplacementDrive, PointOnGuide
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.positions import Positions
-from centrode.structure.wheels import Contact, GearRatio, NoSlip
+from centrode.structure.wheels import Contact, NoSlip
 
 
 def pulls_of(

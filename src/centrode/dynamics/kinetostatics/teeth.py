@@ -12,8 +12,8 @@ from centrode.geometry.plane import dot, subtract
 from centrode.geometry.slopes import unit
 from centrode.model.mechanism import FRAME, Gear, Mechanism
 from centrode.structure.dimensions import Dimensions
+from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.positions import Positions
-from centrode.structure.wheels import GearRatio
 
 
 @dataclass(frozen=True)

@@ -6,34 +6,20 @@ by the secant method; the derivative of the map there, the multiplier, says how 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from math import floor, inf, tau
+from math import floor, tau
 
 import numpy as np
 
 from centrode.dynamics.simulation.course import OF_DRIVE, RATE, VALUE, Course
-from centrode.dynamics.simulation.field import Field
+from centrode.dynamics.simulation.return_map import ReturnMap, fixed_point, period_of, unsettled
 from centrode.dynamics.simulation.setting import Setting, setting_of
-from centrode.dynamics.simulation.stepping import Stepper
-from centrode.dynamics.simulation.watching import Until
-from centrode.errors import InputError, MotionError
-from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulations import Simulation
 
-TOLERANCE = 1e-11
-"""Relative one of the integration from period to period."""
-SETTLED = 1e-9
-"""Change of the speed over a period, relative, at which it has come back."""
 NEUTRAL = 1e-5
 """A multiplier as near to 1 says that any speed comes back, but for the rounding of its differences."""
-MOST_MAPS = 60
-MOST_STEPS = 60_000
-RUN_IN = 2
-"""Periods that are run through before the return map is looked at."""
 PARTS = 2000
-PROBES = tau * np.array([0.0133, 0.291, 0.618, 0.911])
 
 
 @dataclass(frozen=True)
@@ -95,136 +81,19 @@ def steady_regime(mechanism: Mechanism, settings: Simulation | None = None) -> R
 
 def regime_of(setting: Setting) -> Regime:
     """The same of a mechanism made ready."""
-    period = _period(setting)
-    maps = _Map(setting, period)
+    period = period_of(setting)
+    maps = ReturnMap(setting, period)
     speed = maps.run_in()
-    found = _fixed_point(maps, speed)
+    found = fixed_point(maps, speed)
     course = maps.course(found)
     slightly = found * (1.0 + 1e-5)
     multiplier = (maps(slightly) - maps(found)) / (slightly - found)
     if abs(found - speed) > 0.01 * speed and abs(multiplier - 1.0) < NEUTRAL:
-        raise _unsettled(speed, found)  # it went so far that rounding hides how it grows
+        raise unsettled(speed, found)  # it went so far that rounding hides how it grows
     return _regime(setting, course, found, multiplier, maps)
 
 
-class _Map:
-    """The return map of a setting."""
-
-    def __init__(self, setting: Setting, period: float) -> None:
-        self.setting, self.period = setting, period
-        self.count = 0
-
-    def __call__(self, speed: float) -> float:
-        """The speed after a period; NaN where it does not get there."""
-        course = self.course(speed)
-        return self._speed(course) if course.ended == "turns" else np.nan
-
-    def course(self, speed: float) -> Course:
-        """One period from a speed at the section."""
-        self.count += 1
-        return self._run(speed, 1)
-
-    def run_in(self) -> float:
-        """The speed after some periods from the start itself."""
-        speed = self.setting.settings.speed
-        self.count += RUN_IN
-        course = self._run(speed, RUN_IN)
-        if course.ended != "turns":
-            states = course.at(np.array([course.last]))[0]
-            raise MotionError(
-                "[simulation]",
-                _("there is no steady regime: it comes to rest with the drive at {value:.6g}").format(
-                    value=float(states[VALUE, 0])
-                ),
-                _("give it more moment, inertia or speed at the start"),
-            )
-        return self._speed(course)
-
-    def _run(self, speed: float, periods: int) -> Course:
-        setting = self.setting
-        stiff = setting.settings.scheme == "stiff"
-        until = Until(inf, periods * self.period)
-        stepper = Stepper(setting.field, until, TOLERANCE, stiff, most=MOST_STEPS)
-        return stepper.run(setting.start, setting.rows.sense * speed)
-
-    def _speed(self, course: Course) -> float:
-        return float(course.at(np.array([course.last]))[0][RATE, 0]) * self.setting.rows.sense
-
-
-def _period(setting: Setting) -> float:
-    """Angle after which everything repeats."""
-    field = setting.field
-    if field.of_time:
-        raise InputError(
-            "[simulation]",
-            _("drive or loads depend on time: a speed that repeats is not looked for"),
-            _("use formulas of q, v and x"),
-        )
-    period = field.tracks.period
-    if not period:
-        raise MotionError(
-            "[simulation]",
-            _("a steady regime needs a drive that turns all the way round and loads that repeat"),
-            _("simulate it for a time instead"),
-        )
-    if not _repeats(field, period, setting.rows.sense):
-        raise InputError(
-            "[simulation]",
-            _("drive or loads do not repeat with the motion"),
-            _("use formulas that are the same after whole turns"),
-        )
-    return period
-
-
-def _repeats(field: Field, period: float, sense: float) -> bool:
-    """Whether moments are the same a period later."""
-    for probe in PROBES:
-        here, there = (field.tracks.first + float(probe) + k * period for k in (0, 1))
-        one, other = (field.forces(field.leg(q, sense), 0.0, q, sense) for q in (here, there))
-        for name in ("stored", "friction", "other", "driving"):
-            a, b = getattr(one, name), getattr(other, name)
-            if abs(a - b) > 1e-7 * (abs(a) + abs(b) + one.inertia):
-                return False
-    return True
-
-
-def _fixed_point(maps: Callable[[float], float], speed: float) -> float:
-    """The speed that comes back, by the secant method; plain iteration where that leads astray."""
-    before, missed_before = speed, maps(speed) - speed
-    if abs(missed_before) <= SETTLED * speed:
-        return speed
-    here = before + missed_before
-    for _k in range(MOST_MAPS):
-        back = maps(here) if here > 0.0 else np.nan
-        missed = back - here
-        if not np.isfinite(missed):
-            break
-        if abs(missed) <= SETTLED * here * min(1.0, abs(1.0 - _slope(before, here, missed_before, missed))):
-            return here
-        slope = _slope(before, here, missed_before, missed)
-        ahead = here - missed / (slope - 1.0) if slope != 1.0 else back
-        if not 0.2 * here < ahead < 5.0 * here:
-            ahead = back
-        before, missed_before, here = here, missed, ahead
-    raise _unsettled(speed, here)
-
-
-def _unsettled(first: float, last: float) -> MotionError:
-    return MotionError(
-        "[simulation]",
-        _("the speed does not settle: it goes from {first:.6g} to {last:.6g} rad/s, and on").format(
-            first=first, last=last
-        ),
-        _("let drive or loads depend on the speed, or give another start"),
-    )
-
-
-def _slope(before: float, here: float, missed_before: float, missed: float) -> float:
-    """Derivative of the return map by two of its values."""
-    return 1.0 + (missed - missed_before) / (here - before) if here != before else 1.0
-
-
-def _regime(setting: Setting, course: Course, speed: float, multiplier: float, maps: _Map) -> Regime:
+def _regime(setting: Setting, course: Course, speed: float, multiplier: float, maps: ReturnMap) -> Regime:
     sense, period = setting.rows.sense, maps.period
     least, greatest = (_extreme(course, sense, sign) for sign in (-1.0, 1.0))
     ended = course.at(np.array([course.last]))[0][:, 0]

@@ -16,10 +16,10 @@ import numpy.typing as npt
 import scipy.integrate
 
 from centrode.dynamics.simulation.course import STATES, VALUE, Course, Ending, Occasion, Piece
-from centrode.dynamics.simulation.field import CREEP, Field, Leg
+from centrode.dynamics.simulation.field import Field, Leg
 from centrode.dynamics.simulation.meeting import arrived, first_event, loosening
-from centrode.dynamics.simulation.rows import INERTIA
-from centrode.dynamics.simulation.watching import MOST_STEPS, Until, Watch, without_value
+from centrode.dynamics.simulation.solvers import Solvers
+from centrode.dynamics.simulation.watching import MOST_STEPS, Until, Watch
 from centrode.errors import MotionError
 from centrode.locale import _
 
@@ -49,10 +49,10 @@ class Stepper:
     ) -> None:
         self.field = field
         self.until = until
-        self.tolerance = tolerance
         self.course = Course(scheme="stiff" if stiff else "adaptive")
         self.watch = Watch(field, until, self.course, stiff, tell, most)
-        self.fastest = self.sense = self.last = 0.0
+        self.solvers = Solvers(field, self.watch, until.time, tolerance)
+        self.sense = self.last = 0.0
         self.idle = 0
 
     def run(self, value: float, rate: float) -> Course:
@@ -150,8 +150,8 @@ class Stepper:
         if self.until.way is not None:
             gone = begun[VALUE] - self.start
             low, high = max(low, -self.until.way - gone), min(high, self.until.way - gone)
-        rates = self._rates(leg, begun)
-        solver = self._solver(rates, t, y, begun, leg)
+        rates = self.solvers.rates(leg, begun)
+        solver = self.solvers.solver(rates, t, y, begun, leg)
         while True:
             if not t < self.until.time:
                 return self.until.time, y + begun * _RELATIVE
@@ -166,7 +166,7 @@ class Stepper:
                 if solver.status == "finished":
                     return t, y + begun * _RELATIVE
                 if self.watch.stiff and not isinstance(solver, scipy.integrate.Radau):
-                    solver = self._solver(rates, t, y, begun, leg)
+                    solver = self.solvers.solver(rates, t, y, begun, leg)
                 continue
             when, component, target = event
             t, y = self._exactly(rates, before, y_before, when, begun, leg)
@@ -189,54 +189,13 @@ class Stepper:
         """From the beginning of a step to a time within it, without looking beyond."""
         if not when > t:
             return t, y
-        solver = self._solver(rates, t, y, begun, leg, when)
+        solver = self.solvers.solver(rates, t, y, begun, leg, when)
         while solver.status == "running":
             before = solver.t
             message = solver.step()
             self.watch.count(leg, begun, solver, message)
             self._add(before, solver.t, solver.dense_output(), begun, leg.sense)
         return solver.t, solver.y
-
-    def _rates(self, leg: Leg, begun: State) -> Callable[[float, State], State]:
-        """Derivatives of the states on a leg; value and works count from its beginning."""
-        field, course, first = self.field, self.course, float(begun[VALUE])
-
-        def rates(t: float, y: State) -> State:
-            rate = float(y[1])
-            forces = field.forces(leg, t, first + float(y[0]), rate or leg.sense * CREEP)
-            course.evaluations += 1
-            return np.array(
-                [
-                    rate,
-                    forces.acceleration(rate),
-                    forces.driving * rate,
-                    forces.friction * rate,
-                    forces.other * rate,
-                ]
-            )
-
-        return rates
-
-    def _solver(
-        self,
-        rates: Callable[[float, State], State],
-        t: float,
-        y: State,
-        begun: State,
-        leg: Leg,
-        end: float | None = None,
-    ) -> Any:
-        forces = rates(t, y)
-        if not np.isfinite(forces).all():
-            raise without_value(t, float(begun[VALUE] + y[0]))
-        unit = self.field.tracks.unit
-        self.fastest = max(self.fastest, abs(float(y[1])), float(np.sqrt(0.02 * abs(forces[1]) * unit)))
-        inertia = float(leg.rows(float(begun[VALUE] + y[0]))[INERTIA])
-        energy = max(1e-300, inertia * self.fastest**2)
-        scale = np.array([unit, 1e-2 * self.fastest or 1.0, energy, energy, energy])
-        kind = scipy.integrate.Radau if self.watch.stiff else scipy.integrate.DOP853
-        limit = self.until.time if end is None else end
-        return kind(rates, t, y, limit, rtol=max(self.tolerance, 3e-14), atol=self.tolerance * scale)
 
     def _add(self, first: float, last: float, dense: Any, begun: State, sense: float) -> None:
         def at(times: Array) -> Array:

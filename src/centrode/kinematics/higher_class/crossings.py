@@ -16,7 +16,8 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
-from centrode.kinematics.higher_class.curves import Places, Reached, bordered, motion_along, quintic
+from centrode.kinematics.higher_class.bordering import bordered, motion_along
+from centrode.kinematics.higher_class.curves import Places, Reached, quintic
 from centrode.kinematics.higher_class.surroundings import Surroundings
 from centrode.kinematics.higher_class.system import Motion, total
 from centrode.kinematics.paths import JETS

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
-from centrode.kinematics.higher_class.curves import Places, Reached, bordered, quintic, reach
+from centrode.kinematics.higher_class.bordering import bordered
+from centrode.kinematics.higher_class.curves import Places, Reached, quintic, reach
 from centrode.kinematics.higher_class.surroundings import Surroundings
 from centrode.kinematics.higher_class.system import total
 

@@ -22,11 +22,12 @@ from centrode.model.cams.parts import (
     Start,
 )
 from centrode.model.cams.values import CONSTANT, POINT
+from centrode.model.entries import choice
 from centrode.model.part import Part
 from centrode.model.problems import Problem, Problems, nearest, shown
 from centrode.model.reports import CamReportWishes
 from centrode.model.tabled import part_tables
-from centrode.model.values import Text, choice
+from centrode.model.values import Text
 
 SomeCam = TypeVar("SomeCam", bound=Part)
 

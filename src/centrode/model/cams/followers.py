@@ -12,10 +12,11 @@ from centrode.model import limits
 from centrode.model.asked import read_samples
 from centrode.model.cams.parts import Material
 from centrode.model.cams.values import Flag, Size, Steepness, Stress
+from centrode.model.entries import choice, listed
 from centrode.model.part import Part, missing_key
 from centrode.model.problems import Problem, shown
 from centrode.model.segments import DRIVEN
-from centrode.model.values import Angle, choice, listed, not_negative, positive, quantity, si
+from centrode.model.values import Angle, not_negative, positive, quantity, si
 
 KINDS = ("translating", "oscillating")
 CONTACTS = ("knife", "roller", "flat")

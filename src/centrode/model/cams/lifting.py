@@ -14,10 +14,11 @@ from centrode import laws
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
+from centrode.model.entries import choice, entries
 from centrode.model.part import Part, missing_key
 from centrode.model.problems import Problem, shown
 from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
-from centrode.model.values import choice, entries, positive, si
+from centrode.model.values import positive, si
 
 MOST = 200
 """Segments of a turn."""

@@ -23,10 +23,11 @@ from centrode.model.cams.values import (
     read_poisson,
     whole,
 )
+from centrode.model.entries import choice, listed
 from centrode.model.frozen import FrozenMap
 from centrode.model.part import Part, missing_key
 from centrode.model.problems import Problem, shown
-from centrode.model.values import Angle, choice, listed, not_negative, positive, quantity, si
+from centrode.model.values import Angle, not_negative, positive, quantity, si
 
 LAWS = ("constant", "exponential", "linear", "spline", "formula")
 _NEEDED: dict[str, tuple[str, ...]] = {

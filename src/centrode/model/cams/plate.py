@@ -11,11 +11,12 @@ from centrode.laws import SegmentedLaw
 from centrode.model.asked import Display
 from centrode.model.cams.followers import Bounds, CamBody, Follower, FollowerStudy, Tool
 from centrode.model.cams.lifting import MOST, LiftSegment, lift_law, segment_problems
+from centrode.model.entries import choice, listed
 from centrode.model.part import Part
 from centrode.model.problems import Problems
 from centrode.model.reports import CamReportWishes
 from centrode.model.segments import DRIVEN
-from centrode.model.values import Text, choice, listed
+from centrode.model.values import Text
 
 
 class PlateCam(Part):

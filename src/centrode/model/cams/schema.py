@@ -28,11 +28,9 @@ from centrode.model.cams.plate import PlateCam
 from centrode.model.cams.values import CONSTANT, LETTER, PARAMETERS, POINT
 from centrode.model.part import Part
 from centrode.model.reports import CamReportWishes
-from centrode.model.schema import (
+from centrode.model.schema import CHAPTERS, PROPERTIES, REPORT_DIGITS
+from centrode.model.schema_parts import (
     AMOUNT,
-    CHAPTERS,
-    PROPERTIES,
-    REPORT_DIGITS,
     TEXT,
     Schema,
     above_zero,

@@ -12,10 +12,11 @@ from pydantic import PlainValidator
 from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.entries import named_entries
 from centrode.model.frozen import FrozenMap
 from centrode.model.problems import KEY, Problem, likely, shown
 from centrode.model.tables import Columns, read_rows
-from centrode.model.values import READING, named_entries, positive, quantity, read_text, si
+from centrode.model.values import READING, positive, quantity, read_text, si
 
 _POINTS = Columns(("angle", "curvature"), "[angle, curvature]", 2)
 MOST_PARAMETERS = 8

@@ -15,20 +15,61 @@ from matplotlib.patches import Circle, Polygon
 from centrode.cams.frames import frames as frames_along
 from centrode.locale import _
 from centrode.present import signs
+from centrode.present.animations.captions import turned_caption
 from centrode.present.animations.layers import Array, Layer, View
+from centrode.present.animations.stage import Stage
 from centrode.present.cams.walking_drawing import draw_wheel, reach, wheel_keys
 from centrode.present.scene import turned
+from centrode.present.shown import shown_as
 from centrode.present.style import GROUND, INK, MUTED, PALETTE
+from centrode.study.moving.films import frame_ways
 
 if TYPE_CHECKING:
     from centrode.cams.profiles.bodies import CamBody
     from centrode.cams.wheel.walking import Mover
+    from centrode.model.asked import Display
+    from centrode.study.moving.courses import Loop
 
 POINTS = 720
 CAM, ROLLER = PALETTE[0], PALETTE[1]
 CHAIN = (0, (5, 1.2, 1.2, 1.2))
 STEM = 3.0
 """Length of the follower's stem above its highest place, in radii of the roller."""
+
+
+def walking_stage(
+    wheel: Mover, frames: int, size: tuple[int, int], title: str, display: Display | None, *, dark: bool
+) -> Stage:
+    """The stage of one step of a walking wheel."""
+    angles = -wheel.half + math.tau / wheel.legs * frame_ways("round", frames)
+    layer = WalkingLayer(wheel, angles, shown_as("m", display)[0])
+    return _turning(layer, angles, size, title, display, dark=dark)
+
+
+def roller_stage(
+    body: CamBody, frames: int, size: tuple[int, int], title: str, display: Display | None, *, dark: bool
+) -> Stage:
+    """The stage of a cam that turns below its roller, once round or, where it is open, there and back."""
+    first, last = body.closed.start, body.closed.stop
+    angles = first + (last - first) * frame_ways(loop_of(body), frames)
+    layer = TurningCamLayer(body, angles, shown_as("m", display)[0])
+    return _turning(layer, angles, size, title, display, dark=dark)
+
+
+def loop_of(body: CamBody) -> Loop:
+    """How the animation of a cam runs on."""
+    return "round" if _whole(body) else "back"
+
+
+def _whole(body: CamBody) -> bool:
+    return body.closed.stop - body.closed.start >= math.tau * (1.0 - 1e-9)
+
+
+def _turning(
+    layer: Layer, angles: Array, size: tuple[int, int], title: str, display: Display | None, *, dark: bool
+) -> Stage:
+    captions = [turned_caption(float(angle), display) for angle in angles]
+    return Stage([layer], len(angles), size, title, lambda frame: captions[frame], dark=dark)
 
 
 class WalkingLayer(Layer):
@@ -101,7 +142,7 @@ class TurningCamLayer(Layer):
     def draw(self, axes: Axes, frame: int) -> None:
         """The cam with the path of the roller's centre, the roller, its stem, and the hub."""
         profile, path = self.at(self.profile, frame), self.at(self.path, frame)
-        if self.body.closed.stop - self.body.closed.start >= math.tau * (1.0 - 1e-9):
+        if _whole(self.body):
             axes.add_patch(Polygon(profile, facecolor=CAM, edgecolor="none", alpha=0.15, zorder=3))
         else:
             shape = np.concatenate([np.zeros((1, 2)), profile])

@@ -1,35 +1,34 @@
-"""Animations of results that are there already: a motion, centrodes, a walking wheel, a cam with its follower."""
+"""Animations of results that are there already: a motion, centrodes, a walking wheel, a cam with roller or follower.
+
+What `frames`, `dark` and `said` are is told by `animate_motion` for all of them; what is shown of cams has the units of
+`display`, metres and radians if it is left out.
+"""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.present.animations import timing
 from centrode.present.animations.animate import stage_of
-from centrode.present.animations.cams import WalkingLayer
-from centrode.present.animations.captions import turned_caption
+from centrode.present.animations.cams import roller_stage, walking_stage
 from centrode.present.animations.centrodes import CentrodesLayer
 from centrode.present.animations.encoding import Said, no_progress
 from centrode.present.animations.followers import follower_stage
 from centrode.present.animations.motions import scene_of_film
 from centrode.present.animations.paces import write_stage
 from centrode.present.animations.shown import Shown
-from centrode.present.animations.stage import Stage
 from centrode.present.animations.timing import SIZE, Timing
-from centrode.present.shown import shown_as
 from centrode.study.moving.courses import course_from
-from centrode.study.moving.films import film_from, frame_ways
+from centrode.study.moving.films import film_from
 
 if TYPE_CHECKING:
     import xarray
 
     from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.profiles.bodies import CamBody
     from centrode.cams.wheel.walking import Mover
     from centrode.model.asked import Display
     from centrode.model.mechanism import Mechanism
@@ -58,9 +57,9 @@ def animate_motion(
         Its motion, of `motion` or of `simulate` with the motion: the frames are some of its samples. `animate` computes
         its own, evenly spaced.
     path : Path
-        The file.
+        The file, GIF or MP4 by the ending of its name.
     frames : int
-        Of the motion one way; 48 if left out.
+        Of the motion one way; 48 if left out, 36 of a step of a walking wheel, 60 of a turn of a cam.
     dark : bool
         Light lines on a dark ground.
     said : callable
@@ -109,31 +108,24 @@ def animate_walking(
     dark: bool = False,
     said: Said = no_progress,
 ) -> None:
-    """Write an animation (GIF or MP4) of one step of a walking wheel, seen from its hub.
+    """Write an animation (GIF or MP4) of one step of a walking wheel, that of `walking_wheel`, seen from its hub."""
+    stage = walking_stage(wheel, frames or FRAMES_OF_A_STEP, SIZE, title, display, dark=dark)
+    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND), said)
 
-    Parameters
-    ----------
-    wheel : Mover
-        Of `walking_wheel`.
-    path : Path
-        The file.
-    title : str
-    display : Display, optional
-        Its units of length and angle; metres and radians if left out.
-    frames : int
-        Of a step; 36 if left out.
-    dark : bool
-        Light lines on a dark ground.
-    said : callable
-        Told after each frame how many are done, and of how many.
-    """
-    count = frames or FRAMES_OF_A_STEP
-    angles = -wheel.half + math.tau / wheel.legs * frame_ways("round", count)
-    layer = WalkingLayer(wheel, np.asarray(angles), shown_as("m", display)[0])
-    stage = Stage(
-        [layer], count, SIZE, title, lambda frame: turned_caption(float(angles[frame]), display), dark=dark
-    )
-    write_stage(stage, Path(path), Timing(count, PER_SECOND), said)
+
+def animate_cam_body(
+    body: CamBody,
+    path: Path,
+    title: str = "",
+    display: Display | None = None,
+    *,
+    frames: int | None = None,
+    dark: bool = False,
+    said: Said = no_progress,
+) -> None:
+    """Write an animation (GIF or MP4) of a turn of a cam, that of `cam_body`, below its roller, or there and back."""
+    stage = roller_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
+    write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND_OF_A_TURN), said)
 
 
 def animate_follower(
@@ -146,23 +138,6 @@ def animate_follower(
     dark: bool = False,
     said: Said = no_progress,
 ) -> None:
-    """Write an animation (GIF or MP4) of one turn of a cam below its follower.
-
-    Parameters
-    ----------
-    body : FollowerCam
-        Of `follower_cam`.
-    path : Path
-        The file.
-    title : str
-    display : Display, optional
-        Its units of length and angle; metres and radians if left out.
-    frames : int
-        Of a turn; 60 if left out.
-    dark : bool
-        Light lines on a dark ground.
-    said : callable
-        Told after each frame how many are done, and of how many.
-    """
+    """Write an animation (GIF or MP4) of one turn of a cam, that of `follower_cam`, below its follower."""
     stage = follower_stage(body, frames or FRAMES_OF_A_TURN, SIZE, title, display, dark=dark)
     write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND_OF_A_TURN), said)

@@ -32,23 +32,7 @@ def draw_globe(
     colour: str | None = None,
     names: bool = True,
 ) -> None:
-    """Draw a spherical mechanism at one sample of its motion, over fading pictures of others.
-
-    Parameters
-    ----------
-    axes : Axes
-        They get equal scales and limits that hold the whole motion.
-    globe : Globe
-        The motion, read by `globe_of`.
-    sample : int
-        What cannot be placed at this sample is left out.
-    faded : iterable of int
-        Samples drawn faintly below.
-    colour : str, optional
-        One colour for all links; each link its own if left out.
-    names : bool
-        Write the points' names beside them.
-    """
+    """Draw a spherical mechanism, whose motion `globe_of` has read; all else is as `draw_mechanism` has it."""
     links = pens(globe.mechanism.link_names)
     if colour is not None:
         links = dict.fromkeys(links, Pen(colour))

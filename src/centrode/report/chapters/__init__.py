@@ -12,8 +12,6 @@ from typing import NamedTuple, TypeAlias
 from centrode.locale import mark
 from centrode.report.blocks import Chapter
 from centrode.report.chapters.cams.chapters import (
-    cam_choice_chapter,
-    cam_contact_chapter,
     cam_data_chapter,
     cam_motion_chapter,
     cam_path_chapter,
@@ -21,6 +19,7 @@ from centrode.report.chapters.cams.chapters import (
     cam_routes_chapter,
     cam_walking_chapter,
 )
+from centrode.report.chapters.cams.contact import cam_choice_chapter, cam_contact_chapter
 from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
 from centrode.report.chapters.followers.laws import laws_chapter

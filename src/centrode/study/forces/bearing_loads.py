@@ -16,7 +16,7 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import display_unit
 from centrode.study.forces.bearings import places_of
-from centrode.study.forces.reacting import each_reaction
+from centrode.study.forces.named_reactions import each_reaction
 from centrode.study.scalars import Scalar
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -26,6 +26,7 @@ from centrode.structure.plan import Structure
 from centrode.structure.wheel_groups import Train
 from centrode.study.words.drives import sentence_on_drive
 from centrode.study.words.joints import links_at
+from centrode.study.words.levers import extent, on_lever
 from centrode.study.words.lists import called, links_listed
 from centrode.study.words.roles import Roles
 
@@ -40,30 +41,6 @@ FOLLOWERS = {
     "moves": mark("Coupler {coupler} passes the motion on to link {follower}, which turns about {pivot}."),
     "still": mark("Coupler {coupler} leads to link {follower}, which does not turn."),
 }
-LEVERS = {
-    "turns": mark("The slider in {point} moves along link {link} and turns it fully about {pivot}."),
-    "swings": mark(
-        "The slider in {point} moves along link {link} and swings it about {pivot} through {angle}."
-    ),
-    "moves": mark("The slider in {point} moves along link {link} and turns it about {pivot}."),
-    "still": mark("The slider in {point} moves along link {link}, which does not turn."),
-}
-BLOCKS = {
-    "turns": mark("Link {block} slides along link {link} and turns it fully about {pivot}."),
-    "swings": mark("Link {block} slides along link {link} and swings it about {pivot} through {angle}."),
-    "moves": mark("Link {block} slides along link {link} and turns it about {pivot}."),
-    "still": mark("Link {block} slides along link {link}, which does not turn."),
-}
-RESTING = {
-    "turns": mark("Link {link} rests on wheel {wheel} and is turned fully about {pivot}."),
-    "swings": mark("Link {link} rests on wheel {wheel} and swings about {pivot} through {angle}."),
-    "moves": mark("Link {link} rests on wheel {wheel} and turns about {pivot}."),
-    "still": mark("Link {link} rests on wheel {wheel} and does not turn."),
-}
-
-
-STILL = 1e-9
-"""A link that turns less than this does not turn [rad]."""
 
 
 def sentences_on_motion(structure: Structure, roles: Roles) -> Iterator[str]:
@@ -88,7 +65,7 @@ def sentences_on_motion(structure: Structure, roles: Roles) -> Iterator[str]:
 
 def _on_group(structure: Structure, roles: Roles, group: Group, told: set[str]) -> Iterator[str]:
     if isinstance(group, Aim):
-        yield _on_lever(roles, group)
+        yield on_lever(roles, group)
     elif isinstance(group, Meet):
         yield from _on_meeting(structure, roles, group)
     elif isinstance(group, Train):
@@ -100,28 +77,6 @@ def _on_group(structure: Structure, roles: Roles, group: Group, told: set[str]) 
         yield _(
             "Link {link}, hinged in {first} and {second}, only follows: without it everything else moves the same."
         ).format(link=called(group.link), first=group.first, second=group.second)
-
-
-def _extent(roles: Roles, link: str) -> tuple[str, str]:
-    """How a link on a pivot moves, as a key of sentences, and its angle."""
-    if link not in roles.swings:
-        return "moves", ""
-    if roles.swings[link] < STILL:
-        return "still", ""
-    if roles.turns_fully(link):
-        return "turns", ""
-    return "swings", roles.angle_text(roles.swings[link])
-
-
-def _on_lever(roles: Roles, group: Aim) -> str:
-    key, angle = _extent(roles, group.link)
-    place = {"link": called(group.link), "pivot": group.pivot, "angle": angle}
-    if group.contact is not None:
-        return _(RESTING[key]).format(wheel=called(group.contact.link), **place)
-    block = group.block or roles.mechanism.guide(group.guide).link
-    if block is not None:
-        return _(BLOCKS[key]).format(block=called(block), **place)
-    return _(LEVERS[key]).format(point=group.target, **place)
 
 
 def _on_turned_link(roles: Roles, group: TurnedLink) -> Iterator[str]:
@@ -168,7 +123,7 @@ def _on_meeting(structure: Structure, roles: Roles, group: Meet) -> Iterator[str
 
 def _moved_by_cylinder(roles: Roles, cylinder: str, link: str) -> str:
     pivot = roles.pivot(link)
-    key, angle = _extent(roles, link)
+    key, angle = extent(roles, link)
     place = {"cylinder": cylinder, "link": called(link), "pivot": pivot, "angle": angle}
     if pivot is None:
         return _("Cylinder {cylinder} moves link {link}.").format(**place)
@@ -207,7 +162,7 @@ def _on_two_links(mechanism: Mechanism, roles: Roles, one: Rod, other: Rod) -> s
     if len(pivoted) == 1:
         follower = pivoted[0]
         coupler = other if follower is one else one
-        key, angle = _extent(roles, follower.link)
+        key, angle = extent(roles, follower.link)
         return _(FOLLOWERS[key]).format(
             coupler=called(coupler.link), follower=called(follower.link), pivot=follower.centre, angle=angle
         )

@@ -1,0 +1,100 @@
+# The names of presentations by subject, for type checkers and for lazy_loader, which imports by it.
+
+# Tables
+from .tables import motion_table as motion_table
+from .tables import write_motion_csv as write_motion_csv
+from .tables import write_motion_netcdf as write_motion_netcdf
+from .workbooks import workbook_of_csv as workbook_of_csv
+from .workbooks import write_motion_xlsx as write_motion_xlsx
+from .decimal_comma import spell_with_comma as spell_with_comma
+from .spelled_tables import TableSpelling as TableSpelling
+from .coefficient_tables import write_coefficients_csv as write_coefficients_csv
+from .region_tables import write_region_csv as write_region_csv
+from .centres_tables import write_centres_csv as write_centres_csv
+from .centres_tables import write_centrodes_csv as write_centrodes_csv
+from .integration_tables import write_integration_csv as write_integration_csv
+from .sweep_tables import sweep_csv as sweep_csv
+from .variant_folders import write_variants as write_variants
+
+# Figures of motions, centres and plans
+from .saving import save_figures as save_figures
+from .dark import darkened as darkened
+from .figures import motion_figures as motion_figures
+from .reading import scene_of as scene_of
+from .drawing import draw_mechanism as draw_mechanism
+from .transmission_curves import transmission_figure as transmission_figure
+from .regions import region_figure as region_figure
+from .centres import centres_figure as centres_figure
+from .centrodes import centrodes_figure as centrodes_figure
+from .curvature import curvature_figure as curvature_figure
+from .instant_drawing import diagram_figures as diagram_figures
+from .plan_drawing import plan_figure as plan_figure
+from .integrations import integration_figures as integration_figures
+
+# Equations
+from .equations.text import equations_rows as equations_rows
+from .equations.text import equations_text as equations_text
+from .equations.latex import equations_latex as equations_latex
+from .equations.latex import equations_markdown as equations_markdown
+
+# Forces
+from .forces.reduction_tables import write_reduction_csv as write_reduction_csv
+from .forces.reduction_figures import reduction_figures as reduction_figures
+from .forces.reaction_tables import write_joint_table_csv as write_joint_table_csv
+from .forces.reaction_tables import write_reactions_csv as write_reactions_csv
+from .forces.reaction_figures import reaction_figures as reaction_figures
+from .forces.bearing_tables import write_bearing_loads_csv as write_bearing_loads_csv
+from .forces.bearing_figures import bearing_figures as bearing_figures
+from .forces.polygon_drawing import polygon_figures as polygon_figures
+from .forces.balance_tables import write_balance_csv as write_balance_csv
+from .forces.balance_tables import write_harmonics_csv as write_harmonics_csv
+from .forces.balance_figures import balance_figures as balance_figures
+from .forces.machine_figures import machine_figures as machine_figures
+from .forces.simulation_figures import simulation_figures as simulation_figures
+
+# Cams
+from .cams.bodies import cam_body_figures as cam_body_figures
+from .cams.choice import choice_figures as choice_figures
+from .cams.choice import trade_off_figure as trade_off_figure
+from .cams.choice_tables import write_choice as write_choice
+from .cams.contact import contact_figure as contact_figure
+from .cams.drawing import cam_curves_figure as cam_curves_figure
+from .cams.drawing import cam_figures as cam_figures
+from .cams.drawing import cam_path_figure as cam_path_figure
+from .cams.drawing import cam_routes_figure as cam_routes_figure
+from .cams.forces import cam_forces_figure as cam_forces_figure
+from .cams.motion_drawing import cam_motion_figure as cam_motion_figure
+from .cams.motion_drawing import laws_figure as laws_figure
+from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
+from .cams.outline_files import write_cam_outlines as write_cam_outlines
+from .cams.outline_svg import write_outlines_svg as write_outlines_svg
+from .cams.plate_curves import plate_curves_figure as plate_curves_figure
+from .cams.plate_drawing import follower_cam_figure as follower_cam_figure
+from .cams.profile_drawing import profile_figure as profile_figure
+from .cams.profile_tables import write_profile_csv as write_profile_csv
+from .cams.tables import write_cam_contact_csv as write_cam_contact_csv
+from .cams.tables import write_cam_csv as write_cam_csv
+from .cams.tables import write_cam_forces_csv as write_cam_forces_csv
+from .cams.tables import write_cam_laws_csv as write_cam_laws_csv
+from .cams.tables import write_cam_motion_csv as write_cam_motion_csv
+from .cams.tables import write_cam_routes_csv as write_cam_routes_csv
+from .cams.tables import write_cam_tables as write_cam_tables
+from .cams.walking_drawing import walking_figure as walking_figure
+
+# Animations
+from .animations.animate import animate as animate
+from .animations.given import animate_cam_body as animate_cam_body
+from .animations.given import animate_centrodes as animate_centrodes
+from .animations.given import animate_follower as animate_follower
+from .animations.given import animate_motion as animate_motion
+from .animations.given import animate_walking as animate_walking
+from .animations.paces import Animation as Animation
+from .animations.paces import Pace as Pace
+from .animations.shown import Shown as Shown
+
+# Drawings at full size, models for other programs
+from .drafting.sheet import mechanism_drawing as mechanism_drawing
+from .drafting.dxf import write_drawing_dxf as write_drawing_dxf
+from .drafting.svg import drawing_svg as drawing_svg
+from .drafting.svg import write_drawing_svg as write_drawing_svg
+from .mjcf.writing import mjcf_text as mjcf_text
