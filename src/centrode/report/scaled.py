@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from centrode.present.saving import METADATA
+from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
 from centrode.report.blocks import Picture
-from centrode.report.figures import spell_decimals
 
 INCH = 25.4
 ROOM = 2.0

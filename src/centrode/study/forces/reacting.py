@@ -13,6 +13,8 @@ from centrode.errors import Status
 from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.model.names import body_word
+from centrode.model.spoken import reaction_name, side_name
 from centrode.quantities import status_word
 from centrode.study.forces.rubbing import friction_rows
 from centrode.study.wording import value_text
@@ -42,7 +44,7 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     ]
     if found.attrs["undetermined"]:
         names = found.attrs["undetermined"].split("; ")
-        rows.append((_("not determined"), "; ".join(map(_said, names))))
+        rows.append((_("not determined"), "; ".join(map(reaction_name, names))))
     if "tooth_force" in found:
         absent = np.isnan(found["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
         gears = ", ".join(found["gear"].to_numpy()[absent])
@@ -59,19 +61,6 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     for text, word, name in zip(texts, words, CHECKS, strict=True):
         rows.append((text, word.format(share=found.attrs[name])))
     return rows
-
-
-def _said(name: str) -> str:
-    """The name of a reaction in the language of the reader; datasets name it in English."""
-    for start, text in (
-        ("moment of guide ", _("guide {name}, moment")),
-        ("guide ", _("guide {name}")),
-        ("gear ", _("gear {name}")),
-        ("rolling ", _("wheel {name}")),
-    ):
-        if name.startswith(start):
-            return text.format(name=name.removeprefix(start))
-    return name
 
 
 def _counts(status: npt.NDArray[np.int8]) -> str:
@@ -125,7 +114,7 @@ def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
         return []
     sample, side = np.unravel_index(np.nanargmax(size), size.shape)
     text = _("{side}: {force:.6g} N at {place}").format(
-        side=found["side"].to_numpy()[side],
+        side=side_name(str(found["side"].to_numpy()[side])),
         force=size[sample, side],
         place=_place(mechanism, found, int(sample)),
     )
@@ -214,7 +203,7 @@ def _friction(found: xarray.Dataset) -> Iterator[Named]:
             values = found["friction_moment"].sel(bearing=label).to_numpy()
             yield (
                 f"friction_moment_{label}",
-                _("{side}, moment of friction").format(side=label),
+                _("{side}, moment of friction").format(side=side_name(label)),
                 "N m",
                 values,
             )
@@ -242,10 +231,9 @@ def _hinges(found: xarray.Dataset, like: xarray.Dataset) -> Iterator[Named]:
     """Sides of hinges; of two that are action and reaction one, named after both bodies."""
     points, bodies = found["side_point"].to_numpy(), found["side_link"].to_numpy()
     values, known = found["joint_force"].to_numpy(), like["joint_force"].to_numpy()
-    said = {"frame": _("frame")}
     for point in dict.fromkeys(points.tolist()):
         sides = np.flatnonzero(points == point)
-        names = [said.get(str(bodies[k]), str(bodies[k])) for k in sides]
+        names = [body_word(str(bodies[k])) for k in sides]
         keys = [f"joint_force_{point}/{bodies[k]}" for k in sides]
         if len(sides) == 2 and _opposite(known[:, sides[0]], known[:, sides[1]]):
             label = _("{point}: {other} on {body}").format(point=point, other=names[1], body=names[0])
