@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -20,26 +20,32 @@ _DECIMALS = re.compile(r"(?<![\w.])(\d+)\.(\d+)(?![\w.])")
 def spell_decimals(figure: Figure) -> None:
     """Give the numbers of a figure the decimal mark of the language.
 
-    Below the first line of its title stands the mechanism's own, which is what a user wrote; so are texts with the
-    label `AS_WRITTEN`.
+    Names in formulas and in other words ("B2.1") stay.
     """
     if decimal_mark() == ".":
         return
+    respell(figure, with_decimal_mark)
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):
             if not isinstance(axis.get_major_formatter(), _Spelled):
                 axis.set_major_formatter(_Spelled(axis.get_major_formatter()))
+
+
+def respell(figure: Figure, spelling: Callable[[str], str]) -> None:
+    """Spell every text of a figure anew, ticks and what a user wrote left out.
+
+    Below the first line of its title stands the mechanism's own, which is what a user wrote; so are texts with the
+    label `AS_WRITTEN`.
+    """
     title = figure.get_suptitle()
     for text in figure.findobj(Text):
         assert isinstance(text, Text)
         told = text.get_text()
-        if text.get_label() == AS_WRITTEN:
+        if not told or text.get_label() == AS_WRITTEN:
             continue
-        if told and told != title:
-            text.set_text(with_decimal_mark(told))
-        elif told:
-            first, line, own = told.partition("\n")
-            text.set_text(with_decimal_mark(first) + line + own if line else told)
+        first, line, own = told.partition("\n") if told == title else (told, "", "")
+        if line or told != title:
+            text.set_text(spelling(first) + line + own)
 
 
 def with_decimal_mark(text: str) -> str:

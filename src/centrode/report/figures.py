@@ -10,9 +10,10 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from centrode.present.saving import METADATA
-from centrode.present.spelled_figures import spell_decimals
+from centrode.present.spelled_figures import respell, spell_decimals
 from centrode.present.style import house_style
 from centrode.report.blocks import Picture
+from centrode.report.rows import degrees
 
 FLAT = 0.68
 """Height of curves by their width of which two, with their captions, find room on a page."""
@@ -25,16 +26,23 @@ LETTER, EDGES, GAP = 0.078, 1.3, 0.12
 def picture(figure: Figure, caption: str, *, to_scale: bool = False) -> Picture:
     """A figure as a block, with its caption; one `to_scale` (at most as wide as A4) keeps its size on paper.
 
-    Curves are drawn no higher than half a page; numbers have the decimal mark of the language.
+    Curves are drawn no higher than half a page; numbers have the decimal mark of the language, degrees
+    their sign, as in the tables.
     """
+    spell_as_in_tables(figure)
     if not to_scale:
         _flatten(figure)
-    spell_decimals(figure)
     with house_style():
         stream = io.BytesIO()
         canvas: Any = FigureCanvasSVG(figure)
         canvas.print_svg(stream, metadata=METADATA["svg"])
     return Picture(stream.getvalue(), caption, float(figure.get_figwidth()), to_scale)
+
+
+def spell_as_in_tables(figure: Figure) -> None:
+    """Numbers with the decimal mark of the language, degrees by their sign."""
+    spell_decimals(figure)
+    respell(figure, degrees)
 
 
 def _flatten(figure: Figure) -> None:
@@ -51,6 +59,6 @@ def _flatten(figure: Figure) -> None:
     figure.set_figheight(min(FLAT * figure.get_figwidth(), figure.get_figheight()))
     room = int(((figure.get_figheight() - EDGES) / rows - GAP) / LETTER)
     for one in axes:
-        label = one.get_ylabel()
+        label = one.get_ylabel().replace(" = ", "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}")
         if len(label) > room and "$" not in label:
             one.set_ylabel(textwrap.fill(label, max(room, 1), break_long_words=False))
