@@ -240,6 +240,7 @@ from .study.integrating import integration_failure as integration_failure
 from .study.variants.computing import variants as variants
 from .study.variants.computing import variant_rows as variant_rows
 from .study.variants.computing import variants_summary as variants_summary
+from .study.variants.telling import spoken_variants as spoken_variants
 from .study.words.describing import describe as describe
 
 # Many mechanisms

@@ -171,6 +171,17 @@ def test_variants_with_a_row_that_is_refused(centrode: Centrode, folder: Path, t
     assert (folder / "r" / "variant-3" / "motion.csv").exists()
 
 
+def test_causes_are_told_in_the_language_asked_for(centrode: Centrode, folder: Path, table: Path) -> None:
+    table.write_text(TABLE + "4;-1;1,9;3,5\n5;9;1,9;3,5\n", encoding="utf-8")
+    done = centrode("variants", "t.csv", "--topology", "slider-between-cranks", "--out", "r", "--lang", "ru")
+    assert done.code == 3
+    assert "Traceback" not in done.err and "length must be positive" not in done.err
+    assert done.err.splitlines()[1].startswith("4: [links.CB]: length: ")
+    assert "group" not in done.out and "variant " not in done.out
+    summary = (folder / "r" / "summary.csv").read_text(encoding="utf-8")
+    assert "length must be positive" in summary and summary.isascii()
+
+
 def test_variants_are_gone_on_with(
     centrode: Centrode, folder: Path, table: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -13,8 +13,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from centrode.locale import speaking
+from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import Decimals, house_style
-from centrode.report.figures import FLAT, picture, spell_decimals
+from centrode.report.figures import FLAT, picture
 
 TITLE = "Press 2.5"
 

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.errors import InputError
+from centrode.locale import speaking
 from centrode.study.variants.computing import VariantRow, computed
 from centrode.study.variants.tables import read_variants
 
@@ -228,3 +230,25 @@ def test_places_that_are_refused(tmp_path: Path) -> None:
 
 def nested(folder: Path) -> None:
     ct.write_variants(WORKED, TWO, folder)
+
+
+@pytest.mark.parametrize("language", ["ru", "uk"])
+def test_causes_in_the_language_of_the_reader(language: str) -> None:
+    table = [{"variant": "a", "l2": 1.0}, {"variant": "b", "l2": -1.0}, {"variant": "c", "l2": "300 mm"}]
+    rows = [results.row for results in ct.variants(WORKED, table)]
+    assert [row.status for row in rows] == ["ok", "refused", "locks"]
+    assert ct.spoken_variants(WORKED, table, rows) == tuple(rows)
+    with speaking(language):
+        free, refused, locks = ct.spoken_variants(WORKED, table, rows)
+        limits = ct.rotatability(with_l2(0.3)).limits
+        with pytest.raises(InputError) as refusal:
+            with_l2(-1.0)
+    assert free == rows[0]
+    assert refused.cause.partition(": ")[2] == str(refusal.value).partition(": ")[2]
+    assert not refused.cause.isascii() and rows[1].cause.isascii()
+    assert locks.group in {limit.group for limit in limits} and not locks.group.isascii()
+    assert not locks.cause.isascii() and (locks.limit, locks.status) == (rows[2].limit, rows[2].status)
+
+
+def with_l2(length: float) -> ct.Mechanism:
+    return read_variants(WORKED, [{"variant": "x", "l2": length}])[0].of(WORKED)

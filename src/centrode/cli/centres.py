@@ -17,6 +17,7 @@ from centrode.cli.reached import is_moving, tell_absent
 from centrode.cli.tables import tables_options
 from centrode.errors import InputError
 from centrode.locale import _, mark
+from centrode.model.spoken import body_name
 
 if TYPE_CHECKING:
     import xarray
@@ -83,7 +84,7 @@ def centres(
                     _draw(description, motion, made, asked, draft, dark)
                 files = output.finished(draft)
     click.echo(_(description.title) or mechanism)
-    click.echo(f"\n{_numbered(names)}")
+    click.echo(f"\n{_numbered(description, names)}")
     for text in texts:
         click.echo(f"\n{text}")
     if out is not None:
@@ -91,9 +92,9 @@ def centres(
     tell_absent(mechanism, motion)
 
 
-def _numbered(names: Iterable[str]) -> str:
+def _numbered(description: ct.Mechanism, names: Iterable[str]) -> str:
     """The bodies by number; a number and its name stay in one line."""
-    items = [_unbroken(f"{number} {name}") for number, name in enumerate(names)]
+    items = [_unbroken(f"{number} {body_name(description, name)}") for number, name in enumerate(names)]
     return output.paragraph(_("bodies") + ":", items).replace("\N{NO-BREAK SPACE}", " ")
 
 

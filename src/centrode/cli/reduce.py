@@ -61,7 +61,7 @@ def reduce(
     click.echo(_(description.title) or mechanism)
     click.echo()
     click.echo(output.table(ct.reduction_rows(description, found)))
-    header, rows = ct.reduction_parts(found)
+    header, rows = ct.reduction_parts(found, description)
     click.echo("\n" + output.table(rows, header, right=(2, 3, 4)))
     if out is not None:
         click.echo("\n" + output.files_in(out, names))

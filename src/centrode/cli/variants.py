@@ -79,6 +79,7 @@ def variants(
         note = _("what is finished stays in {folder}; the same command goes on from there")
         click.echo(note.format(folder=folder), err=True)
         raise
+    rows = ct.spoken_variants(description, table, rows)
     header = (_("variant"), _("turns fully"), _("limit"), _("group"), _("status"))
     click.echo(output.table(ct.variant_rows(rows), header))
     summary, failure = ct.variants_summary(rows)

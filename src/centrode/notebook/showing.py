@@ -18,6 +18,7 @@ from centrode.present.figures import read_scene
 from centrode.present.pictures import mechanism_figure
 from centrode.present.saving import METADATA
 from centrode.present.shown import shown_as
+from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
 from centrode.study.summary import check_rows
 
@@ -75,7 +76,9 @@ def _is_motion(dataset: xarray.Dataset) -> bool:
 def _drawing(mechanism: Mechanism, dataset: xarray.Dataset) -> str:
     """The mechanism over fading pictures of its motion, as SVG within a page."""
     with house_style():
-        canvas: Any = FigureCanvasSVG(mechanism_figure(read_scene(mechanism, dataset), dataset, []))
+        figure = mechanism_figure(read_scene(mechanism, dataset), dataset, [])
+        spell_decimals(figure)
+        canvas: Any = FigureCanvasSVG(figure)
         drawn = io.BytesIO()
         canvas.print_svg(drawn, metadata=METADATA["svg"])
     text = drawn.getvalue().decode()

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from centrode.analysis.instant_centres.centres import bearing
 from centrode.locale import _, ngettext
-from centrode.model.names import body_word
+from centrode.model.spoken import body_name
 from centrode.present.curves import write_title
 from centrode.present.drawing import draw_mechanism
 from centrode.present.obstacles import lines
@@ -171,7 +171,7 @@ def _column(
         else Line2D([], [], color=INK, linewidth=0.0)
         for name in needed.bodies
     ]
-    texts = [f"{number} {plain(body_word(name))}" for number, name in enumerate(needed.bodies)]
+    texts = [f"{number} {plain(body_name(mechanism, name))}" for number, name in enumerate(needed.bodies)]
     columns = 1 if len(texts) <= 4 else 2 if len(texts) <= 12 else 3
     key.legend(
         handles, texts, loc="upper left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=8.0,

@@ -14,6 +14,7 @@ from matplotlib.patches import FancyArrowPatch
 from centrode.locale import _
 from centrode.present.page import Array, Page, View, new_page
 from centrode.present.shown import plain, shown_as
+from centrode.present.spelled_figures import AS_WRITTEN
 from centrode.present.style import GROUND, INK, Pen, pens
 from centrode.quantities import typeset_unit
 from centrode.study.graphic import sine_lines, trial_lines
@@ -180,7 +181,7 @@ def write_head(
     """Title and mechanism above, at the right what the page is about and how it was drawn."""
     page.write(6.0, TOP, title, size=11.0, va="bottom")
     name = textwrap.shorten(plain(_(mechanism.title)), 60, placeholder=" …")
-    page.write(COLUMN, TOP, textwrap.fill(name, 40), size=7.5, va="bottom")
+    page.write(COLUMN, TOP, textwrap.fill(name, 40), size=7.5, va="bottom", label=AS_WRITTEN)
     y = TOP - 6.0
     for text in head:
         page.write(COLUMN, y, text if "$" in text else typeset(text), size=8.0, va="top")

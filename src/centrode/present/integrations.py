@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from centrode.locale import _
+from centrode.model.spoken import constraint_name
 from centrode.present.abscissa import Abscissa, over_time
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.panels import Motion, Rows, of_guides, of_links, of_points
@@ -126,12 +127,15 @@ def _errors(mechanism: Mechanism, integration: xarray.Dataset) -> Figure:
     upper, lower = figure.subplots(2, 1, sharex=True)
     abscissa = over_time(integration)
     factor, unit = shown_as(QUANTITIES["angle_difference"].unit, mechanism.display)
-    constraints = integration["constraint"].to_numpy().tolist()
+    constraints = {
+        constraint_name(name): integration["drift"].sel(constraint=name).to_numpy()
+        for name in integration["constraint"].to_numpy().tolist()
+    }
     turning = [name for name in mechanism.link_names if integration["angle_difference"].sel(link=name).any()]
     _magnitudes(
         upper,
         abscissa,
-        {name: integration["drift"].sel(constraint=name).to_numpy() for name in constraints},
+        constraints,
         pens(constraints),
         _("drift, greatest length = 1"),
     )

@@ -22,6 +22,7 @@ from centrode.present.reading import scene_of
 from centrode.present.scene import Scene
 from centrode.present.sheet import SIGN_INCHES
 from centrode.present.shown import plain, shown_as
+from centrode.present.spelled_figures import AS_WRITTEN
 from centrode.present.style import INK, MUTED, house_style, pens
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def plan_figure(mechanism: Mechanism, plan: PositionPlan) -> Figure:
         for name, place in scene.at(0).items():
             page.name(view.mm(place), plain(name), clear=SIGN + 0.6, size=9.0)
         page.write(6.0, TOP, _("Plan of positions"), size=11.0, va="bottom")
-        page.write(6.0, TOP - 5.0, plain(_(mechanism.title))[:90], size=7.5, va="bottom")
+        page.write(6.0, TOP - 5.0, plain(_(mechanism.title))[:90], size=7.5, va="bottom", label=AS_WRITTEN)
         write_column(page, mechanism, plan, f"μ_l = {scale:g} {unit} " + _("per mm"))
         page.place_names(np.array([[1.0, 1.0], [COLUMN - 1.0, TOP - 7.0]]))
         return page.figure

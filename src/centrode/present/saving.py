@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
+from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import house_style
 
 # Nothing that differs from one run or machine to the next: no date, no version.
@@ -22,6 +23,8 @@ DPI = 150
 
 def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     """Write each figure as PNG (150 dpi) and SVG; the same figures give the same bytes.
+
+    Numbers get the decimal mark of the language that is spoken.
 
     Parameters
     ----------
@@ -38,6 +41,7 @@ def save_figures(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
     written: list[Path] = []
     with house_style():
         for name, figure in figures.items():
+            spell_decimals(figure)
             # The canvases' own printing: `savefig` would draw every figure twice as often.
             raster: Any = FigureCanvasAgg(figure)
             engine, dpi = figure.get_layout_engine(), figure.dpi

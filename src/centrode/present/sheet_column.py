@@ -10,6 +10,7 @@ from centrode.dynamics.force_polygons.polygon import sheet_of
 from centrode.locale import _
 from centrode.present.page import Page
 from centrode.present.shown import plain
+from centrode.present.spelled_figures import AS_WRITTEN
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
@@ -32,7 +33,7 @@ def write_title(page: Page, column: float, title: str, mechanism: Mechanism) -> 
     _wide, high = page.size
     page.write(LEFT, high - TOP + 3.0, title, size=11.0, va="bottom")
     name = textwrap.shorten(plain(_(mechanism.title)), 50, placeholder=" …")
-    page.write(column, high - TOP + 3.0, name, size=8.0, va="bottom")
+    page.write(column, high - TOP + 3.0, name, size=8.0, va="bottom", label=AS_WRITTEN)
 
 
 def write_column(page: Page, column: float, title: str, heads: Sequence[str], lines: Sequence[str]) -> None:

@@ -15,7 +15,7 @@ from matplotlib.transforms import Bbox
 from centrode.present.saving import METADATA
 from centrode.present.style import house_style
 from centrode.report.blocks import Picture
-from centrode.report.figures import spell_decimals
+from centrode.report.figures import spell_as_in_tables
 
 INCH = 25.4
 ROOM = 2.0
@@ -31,7 +31,7 @@ def drawn_to_scale(figure: Figure, caption: str, right: float, top: float) -> Pi
     caption : what it is, with its scale
     right, top : where the page's column and its head begin [mm]
     """
-    spell_decimals(figure)
+    spell_as_in_tables(figure)
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     kept: list[Any] = []

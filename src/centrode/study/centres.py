@@ -17,6 +17,7 @@ from centrode.errors import Status
 from centrode.kinematics.ready import ready
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Display, Drive, Mechanism
+from centrode.model.spoken import body_name
 from centrode.quantities import display_unit, status_word
 from centrode.study.wording import value_text
 
@@ -91,7 +92,9 @@ def centres_rows(
         rows.append(
             (
                 centre_symbol(pair, len(names)),
-                _("{first} against {second}").format(first=first, second=second),
+                _("{first} against {second}").format(
+                    first=body_name(mechanism, first), second=body_name(mechanism, second)
+                ),
                 place_text(at, mechanism.display),
                 *_speed(at, mechanism.display),
                 Case(int(at["centre_case"])).sentence,
@@ -169,7 +172,7 @@ def centrode_rows(mechanism: Mechanism, centrodes: xr.Dataset) -> Rows:
     arcs = [centrodes[name].to_numpy() for name in ("fixed_arc", "moving_arc")]
     rolled = [sum(_last(arc[pieces == piece]) for piece in np.unique(pieces[pieces >= 0])) for arc in arcs]
     slip = float(np.nanmax(np.abs(arcs[0] - arcs[1]), initial=0.0))
-    link, against = (str(centrodes.attrs[name]) for name in ("link", "against"))
+    link, against = (body_name(mechanism, str(centrodes.attrs[name])) for name in ("link", "against"))
     display, unit = mechanism.display, "m" if mechanism.space == "plane" else "rad"
     return [
         (_("bodies"), _("{first} against {second}").format(first=link, second=against)),

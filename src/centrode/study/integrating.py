@@ -10,6 +10,7 @@ from centrode.errors import Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
+from centrode.model.spoken import constraint_name
 from centrode.quantities import status_word
 from centrode.study.wording import value_text
 
@@ -114,7 +115,8 @@ def _drift(integration: xr.Dataset) -> str:
         return _("none")
     _row, column = np.unravel_index(int(np.nanargmax(drift)), drift.shape)
     return _("{value:.1e} of the greatest length ({constraint})").format(
-        value=float(np.nanmax(drift)), constraint=str(integration["constraint"].to_numpy()[column])
+        value=float(np.nanmax(drift)),
+        constraint=constraint_name(str(integration["constraint"].to_numpy()[column])),
     )
 
 

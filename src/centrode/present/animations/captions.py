@@ -9,6 +9,7 @@ import numpy as np
 
 from centrode.cams.followers.guidance import Oscillating
 from centrode.errors import Status
+from centrode.locale import decimal_mark
 from centrode.present.animations.layers import Array
 from centrode.present.shown import drive_unit, shown_as
 from centrode.quantities import QUANTITIES, status_word, typeset_unit
@@ -76,4 +77,4 @@ def _plain(value: float, decimals: int) -> str:
     text = f"{value:.{decimals}f}"
     if float(text) == 0.0:
         text = text.lstrip("-")
-    return text.replace("-", "−")
+    return text.replace("-", "−").replace(".", decimal_mark())

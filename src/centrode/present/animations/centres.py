@@ -13,7 +13,8 @@ from matplotlib.lines import Line2D
 from centrode.analysis.instant_centres.bodies import sliders_of
 from centrode.analysis.instant_centres.centres import instant_centres
 from centrode.locale import _
-from centrode.model.names import FRAME, body_word
+from centrode.model.names import FRAME
+from centrode.model.spoken import body_name
 from centrode.present.animations.layers import WHOLE, Array
 from centrode.present.animations.motions import FAR, MotionLayer
 from centrode.present.scene import Scene
@@ -107,5 +108,5 @@ class CentresLayer(MotionLayer):
                     if name in links
                     else Line2D([], [], linewidth=0.0)
                 )
-                found.append((line, f"{number} {body_word(name)}"))
+                found.append((line, f"{number} {body_name(self.film.mechanism, name)}"))
         return found

@@ -13,7 +13,8 @@ from matplotlib.lines import Line2D
 from centrode.analysis.instant_centres.centrodes import centrodes
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.names import FRAME, body_word
+from centrode.model.names import FRAME
+from centrode.model.spoken import body_name
 from centrode.present.animations.layers import WHOLE, Array
 from centrode.present.animations.motions import FAR, MotionLayer
 from centrode.present.scene import Scene
@@ -101,7 +102,7 @@ class CentrodesLayer(MotionLayer):
         return [
             (
                 Line2D([], [], color=colour, linewidth=1.6),
-                text.format(name=body_word(body)),
+                text.format(name=body_name(self.film.mechanism, body)),
             )
             for colour, text, body in zip((FIXED, MOVING), texts, self.bodies, strict=True)
         ]

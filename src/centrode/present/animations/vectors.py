@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
-from centrode.locale import _, ngettext
+from centrode.locale import _, decimal_mark, ngettext
 from centrode.present.animations.arrows import arrow_outlines
 from centrode.present.animations.layers import NOTHING, Array, Layer, ScaleArrow
 from centrode.present.animations.margins import ARROW_HEAD
@@ -103,7 +103,8 @@ class VectorLayer(MotionLayer):
         if not self.greatest > 0.0:
             return ()
         value = round_down(KEY * self.greatest)
-        text = f"{self.vectors.title}: {value:g} {self.vectors.unit}"
+        number = f"{value:g}".replace(".", decimal_mark())
+        text = f"{self.vectors.title}: {number} {self.vectors.unit}"
         return [ScaleArrow(self.scale * value, text, self.vectors.colour)]
 
     def notes(self) -> Sequence[str]:

@@ -73,7 +73,7 @@ def follower_cam_figure(
         _arrow(axes, body, factor)
         finish(axes, labelled("x", unit), labelled("y", unit))
         write_legend(axes, keys, inches=5.2)
-        write_title(figure, _("Profile of the cam, and its follower at 0 deg"), title)
+        write_title(figure, _("Profile of the cam, and its follower at 0°"), title)
     return figure
 
 

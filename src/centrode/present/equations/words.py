@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from centrode.locale import _
+from centrode.model.spoken import GEAR, ROLLING
 from centrode.quantities import display_unit
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ def meaning_text(meaning: Meaning, equations: Equations) -> str:
         "spin": _("turns of wheel {first} over turns of its centre"),
         "radius": _("radius of wheel {first}"),
         "constant": _("constant of {first}"),
+        "constant of gear": _("constant of gear {first}"),
+        "constant of wheel": _("constant of the rolling of wheel {first}"),
         "arc": _("arc from {first} to {second}"),
         "arc of circle": _("arc from the pole of guide {first} to its circle"),
         "corner": _("angle in {second} from arc {second}-{first} to arc {second}-{third}"),
@@ -44,11 +47,20 @@ def meaning_text(meaning: Meaning, equations: Equations) -> str:
         "angle on circle": _("angle of {first} about {second} from arc {second}-{third}"),
         "angle to path": _("angle of link {first} in {second} to the path of {second} about {third}"),
     }
-    if meaning.kind == "constant":
-        first = _constraint_of(meaning.symbol, equations)
+    kind = meaning.kind
+    if kind == "constant":
+        kind, first = _constant(_constraint_of(meaning.symbol, equations))
     if meaning.kind.startswith("offset") and not third:
         third = _("the origin")
-    return sentences[meaning.kind].format(first=first, second=second, third=third, body=body)
+    return sentences[kind].format(first=first, second=second, third=third, body=body)
+
+
+def _constant(constraint: str) -> tuple[str, str]:
+    """What a constant belongs to, and its name: gears and wheels have names of their own."""
+    for start, kind in ((GEAR, "constant of gear"), (ROLLING, "constant of wheel")):
+        if constraint.startswith(start):
+            return kind, constraint.removeprefix(start)
+    return "constant", constraint
 
 
 def _constraint_of(symbol: str, equations: Equations) -> str:

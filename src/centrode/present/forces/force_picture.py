@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.board import round_scale
 from centrode.locale import _
+from centrode.model.spoken import side_name
 from centrode.present.cams.driving_drawing import draw_cams
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, write_head
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links
@@ -63,7 +64,7 @@ def force_page(mechanism: Mechanism, reactions: xarray.Dataset, motion: xarray.D
     for k, label in enumerate(reactions["side"].to_numpy().tolist()):
         if points[k] in places:
             colour = colours[str(bodies[k])]
-            _vector(page, view.mm(places[points[k]]), force[sample, k] / per_mm, label, colour)
+            _vector(page, view.mm(places[points[k]]), force[sample, k] / per_mm, side_name(label), colour)
     _guides(page, view, reactions.isel(sample=sample), scene, sample, per_mm)
     _moments(page, view, mechanism, reactions.isel(sample=sample), places)
     unit = shown_as("m", mechanism.display)[1]
@@ -129,7 +130,7 @@ def _list(here: xarray.Dataset) -> list[str]:
     found = []
     named = list(
         zip(
-            here["side"].to_numpy().tolist(),
+            map(side_name, here["side"].to_numpy().tolist()),
             here["joint_force"].transpose("side", "axis").to_numpy(),
             strict=True,
         )

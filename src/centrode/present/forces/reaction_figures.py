@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from centrode.locale import _
+from centrode.model.spoken import reaction_name, side_name
 from centrode.present.abscissa import main_abscissa
 from centrode.present.curves import Panel, sheet
 from centrode.present.shown import formula, labelled
@@ -77,7 +78,7 @@ def _hinges(dataset: xarray.Dataset) -> list[Panel]:
         if np.nanmax(apart, initial=0.0) <= ALIKE * np.nanmax(first, initial=0.0):
             curves[point] = first
         else:
-            curves |= {str(labels[k]): sizes[:, k] for k in sides}
+            curves |= {side_name(str(labels[k])): sizes[:, k] for k in sides}
     return _panels("joint_force", curves, split=True)
 
 
@@ -90,7 +91,7 @@ def _components(dataset: xarray.Dataset) -> list[Panel]:
     panels = []
     for axis in dataset["axis"].to_numpy().tolist():
         values = dataset["joint_force"].sel(axis=axis)
-        curves = {side: values.sel(side=side).to_numpy() for side in first}
+        curves = {side_name(side): values.sel(side=side).to_numpy() for side in first}
         panels += _panels("joint_force", curves, split=True, along=axis)
     return panels
 
@@ -150,9 +151,7 @@ def _friction(dataset: xarray.Dataset) -> list[Panel]:
     power = dataset["friction_power"]
     powers = {}
     for label in power["friction"].to_numpy().tolist():
-        guide = label.removeprefix("guide ")
-        name = label if guide == label else _("guide {name}").format(name=guide)
-        powers[name] = power.sel(friction=label).to_numpy()
+        powers[reaction_name(label)] = power.sel(friction=label).to_numpy()
     efficiency = {_("efficiency"): dataset["efficiency"].to_numpy()}
     return [*_panels("friction_power", powers), *_panels("efficiency", efficiency)]
 

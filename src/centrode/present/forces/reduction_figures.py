@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from centrode.locale import _
+from centrode.model.spoken import load_name
 from centrode.present.abscissa import main_abscissa
 from centrode.present.curves import Panel, sheet
 from centrode.present.shown import formula, labelled, plain
@@ -46,9 +47,9 @@ def reduction_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str
     with house_style():
         abscissa = main_abscissa(mechanism, dataset)
         if "reduced_inertia" in dataset:
-            found = _of_one_drive(dataset)
+            found = _of_one_drive(mechanism, dataset)
         else:
-            found = _of_several(dataset)
+            found = _of_several(mechanism, dataset)
         return {
             name: sheet(title, _(mechanism.title), [[panel] for panel in panels], abscissa)
             for name, (title, panels) in found.items()
@@ -56,30 +57,37 @@ def reduction_figures(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str
         }
 
 
-def _of_one_drive(dataset: xarray.Dataset) -> dict[str, tuple[str, list[Panel]]]:
-    moment = _parts(dataset, "reduced_moment", "load")
-    inertia = [_parts(dataset, name, "link") for name in ("reduced_inertia", "reduced_inertia_slope")]
+def _of_one_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str, tuple[str, list[Panel]]]:
+    moment = _parts(mechanism, dataset, "reduced_moment", "load")
+    inertia = [
+        _parts(mechanism, dataset, name, "link") for name in ("reduced_inertia", "reduced_inertia_slope")
+    ]
     return {
         "reduced-inertia": (_("Reduced moment of inertia and its derivative"), inertia),
         "reduced-moment": (_("Reduced moment of the loads"), [moment, *_small(moment)]),
     }
 
 
-def _parts(dataset: xarray.Dataset, name: str, dimension: str) -> Panel:
+def _parts(mechanism: Mechanism, dataset: xarray.Dataset, name: str, dimension: str) -> Panel:
     """The parts of a quantity along links or loads, and their sum."""
     parts = dataset[f"{name}_part"]
-    curves = {str(label): parts.sel({dimension: label}).to_numpy() for label in parts[dimension].to_numpy()}
+    labels = [str(label) for label in parts[dimension].to_numpy()]
+    names = [load_name(mechanism, label) if dimension == "load" else label for label in labels]
+    curves = {
+        name: parts.sel({dimension: label}).to_numpy() for name, label in zip(names, labels, strict=True)
+    }
     return _panel(name, str(parts.attrs["units"]), curves, dataset[name].to_numpy())
 
 
-def _of_several(dataset: xarray.Dataset) -> dict[str, tuple[str, list[Panel]]]:
+def _of_several(mechanism: Mechanism, dataset: xarray.Dataset) -> dict[str, tuple[str, list[Panel]]]:
     drives = [str(name) for name in dataset["drive"].to_numpy()]
     forces, matrix = dataset["generalised_force_part"], dataset["inertia_matrix"]
     units = str(forces.attrs["units"]).split(", ")
     panels = []
     for number, drive in enumerate(drives):
         chosen = forces.isel(drive=number)
-        curves = {str(label): chosen.sel(load=label).to_numpy() for label in forces["load"].to_numpy()}
+        labels = [str(label) for label in forces["load"].to_numpy()]
+        curves = {load_name(mechanism, label): chosen.sel(load=label).to_numpy() for label in labels}
         total = dataset["generalised_force"].isel(drive=number).to_numpy()
         panels.append(_panel("generalised_force", units[number % len(units)], curves, total, drive))
     pairs = [(i, j) for i in range(len(drives)) for j in range(i, len(drives))]

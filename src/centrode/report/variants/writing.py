@@ -21,6 +21,7 @@ from centrode.report.variants.answers import Answers, answers_of
 from centrode.report.variants.sheet import answer_sheet
 from centrode.report.writing import FORMATS, check_formats, document, write_report
 from centrode.study.variants.tables import Table, read_variants
+from centrode.study.variants.telling import spoken_variants
 
 if TYPE_CHECKING:
     from centrode.present.spelled_tables import TableSpelling
@@ -101,7 +102,11 @@ def write_variant_reports(
     )
     with speaking(spoken):
         digits = topology.report.digits or DIGITS
-        sheet = answer_sheet(topology, variants, rows, _answers(Path(folder), rows), digits)
+        answers = _answers(Path(folder), rows)
+        without = [row for row in rows if row.variant not in answers]
+        told = {row.variant: row for row in spoken_variants(topology, table, without)}
+        said = [told.get(row.variant, row) for row in rows]
+        sheet = answer_sheet(topology, variants, said, answers, digits)
         write_report(sheet, folder, formats, name="answers")
     return rows
 

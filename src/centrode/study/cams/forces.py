@@ -166,7 +166,7 @@ def _bound(facts: dict[str, float]) -> str:
 
 
 def _turns(speed: float) -> str:
-    return f"{speed * 30 / math.pi:.6g} rpm"
+    return _("{turns} rpm").format(turns=f"{speed * 30 / math.pi:.6g}")
 
 
 def _failures(cam: PlateCam, forces: xr.Dataset) -> tuple[str, ...]:

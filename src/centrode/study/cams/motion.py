@@ -55,8 +55,8 @@ def _follower(cam: PlateCam) -> Rows:
     )
     rows = [(_("follower"), told)]
     if cam.body.speed is not None:
-        said = _("{speed:.6g} rpm, a turn takes {time:.6g} s").format(
-            speed=cam.body.speed * 30 / math.pi, time=math.tau / cam.body.speed
+        said = _("{turns} rpm, a turn takes {time:.6g} s").format(
+            turns=f"{cam.body.speed * 30 / math.pi:.6g}", time=math.tau / cam.body.speed
         )
         rows.append((_("speed of the cam"), said))
     return rows

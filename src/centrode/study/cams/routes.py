@@ -98,7 +98,9 @@ def _reach(cam: Cam, found: xr.Dataset) -> str:
             "it converges up to about {radius} (estimated from its coefficients; no singularity was found)"
         )
         return said.format(radius=units.angle(radius, 4))
-    place = f"{math.degrees(x):.6g} ± {math.degrees(abs(y)):.6g}i deg" if y > 1e-12 else units.angle(x)
+    place = units.angle(x)
+    if y > 1e-12:
+        place = f"{math.degrees(x):.6g} deg ± i·{math.degrees(y):.6g} deg"
     said = _("it converges up to {radius}: cos γ = 0 at φ = {place}; its coefficients alone tell {estimate}")
     return said.format(radius=units.angle(radius, 7), place=place, estimate=units.angle(estimate, 4))
 

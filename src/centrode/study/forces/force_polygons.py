@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.locale import _
-from centrode.model.names import FRAME
+from centrode.model.spoken import body_name, load_name
 
 if TYPE_CHECKING:
     from centrode.dynamics.force_polygons.lever import Lever
@@ -25,9 +25,13 @@ HEADS = (
 
 def polygon_about(found: ForcePolygons) -> list[tuple[str, str]]:
     """Numbers of the bodies, the speed, what F1 and M1 stand for."""
-    said = [_("frame") if name == FRAME else name for name in found.names]
+    said = [body_name(found.mechanism, name) for name in found.names]
     numbers = ", ".join(f"{number} {name}" for number, name in enumerate(said))
-    loads = {one.symbol.partition("(")[0]: one.label for one in found.outer if one.source != "inertia"}
+    loads = {
+        one.symbol.partition("(")[0]: load_name(found.mechanism, one.label)
+        for one in found.outer
+        if one.source != "inertia"
+    }
     return [
         (_("bodies"), numbers),
         (_("speed of the drive"), _speed(found)),

@@ -10,6 +10,8 @@ import numpy.typing as npt
 
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.model.names import body_word
+from centrode.model.spoken import side_name
 
 if TYPE_CHECKING:
     import xarray
@@ -61,7 +63,7 @@ def _friction(found: xarray.Dataset) -> Iterator[Named]:
             values = found["friction_moment"].sel(bearing=label).to_numpy()
             yield (
                 f"friction_moment_{label}",
-                _("{side}, moment of friction").format(side=label),
+                _("{side}, moment of friction").format(side=side_name(label)),
                 "N m",
                 values,
             )
@@ -89,10 +91,9 @@ def _hinges(found: xarray.Dataset, like: xarray.Dataset) -> Iterator[Named]:
     """Sides of hinges; of two that are action and reaction one, named after both bodies."""
     points, bodies = found["side_point"].to_numpy(), found["side_link"].to_numpy()
     values, known = found["joint_force"].to_numpy(), like["joint_force"].to_numpy()
-    said = {"frame": _("frame")}
     for point in dict.fromkeys(points.tolist()):
         sides = np.flatnonzero(points == point)
-        names = [said.get(str(bodies[k]), str(bodies[k])) for k in sides]
+        names = [body_word(str(bodies[k])) for k in sides]
         keys = [f"joint_force_{point}/{bodies[k]}" for k in sides]
         if len(sides) == 2 and _opposite(known[:, sides[0]], known[:, sides[1]]):
             label = _("{point}: {other} on {body}").format(point=point, other=names[1], body=names[0])

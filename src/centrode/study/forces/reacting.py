@@ -13,6 +13,7 @@ from centrode.errors import Status
 from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.model.spoken import reaction_name, side_name
 from centrode.quantities import status_word
 from centrode.study.forces.named_reactions import ROUNDING, Array, each_reaction
 from centrode.study.forces.rubbing import friction_rows
@@ -38,7 +39,7 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     ]
     if found.attrs["undetermined"]:
         names = found.attrs["undetermined"].split("; ")
-        rows.append((_("not determined"), "; ".join(map(_said, names))))
+        rows.append((_("not determined"), "; ".join(map(reaction_name, names))))
     if "tooth_force" in found:
         absent = np.isnan(found["tooth_force"].sel(axis="x").to_numpy()).all(axis=0)
         gears = ", ".join(found["gear"].to_numpy()[absent])
@@ -55,19 +56,6 @@ def reaction_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     for text, word, name in zip(texts, words, CHECKS, strict=True):
         rows.append((text, word.format(share=found.attrs[name])))
     return rows
-
-
-def _said(name: str) -> str:
-    """The name of a reaction in the language of the reader; datasets name it in English."""
-    for start, text in (
-        ("moment of guide ", _("guide {name}, moment")),
-        ("guide ", _("guide {name}")),
-        ("gear ", _("gear {name}")),
-        ("rolling ", _("wheel {name}")),
-    ):
-        if name.startswith(start):
-            return text.format(name=name.removeprefix(start))
-    return name
 
 
 def _counts(status: npt.NDArray[np.int8]) -> str:
@@ -121,7 +109,7 @@ def greatest_reaction(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
         return []
     sample, side = np.unravel_index(np.nanargmax(size), size.shape)
     text = _("{side}: {force:.6g} N at {place}").format(
-        side=found["side"].to_numpy()[side],
+        side=side_name(str(found["side"].to_numpy()[side])),
         force=size[sample, side],
         place=_place(mechanism, found, int(sample)),
     )

@@ -12,6 +12,7 @@ from centrode.errors import Status
 from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.model.spoken import load_name
 from centrode.quantities import status_word
 from centrode.study.wording import value_text
 
@@ -27,7 +28,8 @@ ROUNDING = 1e-12
 
 def reduction_rows(mechanism: Mechanism, reduction: xarray.Dataset) -> Rows:
     """Masses, loads, speed of the drive, jumps and statuses, in the language and the units of the reader."""
-    links, loads = (", ".join(reduction[name].to_numpy()) for name in ("link", "load"))
+    links = ", ".join(reduction["link"].to_numpy())
+    loads = ", ".join(load_name(mechanism, str(label)) for label in reduction["load"].to_numpy())
     massless = ", ".join(massless_links(mechanism))
     status = reduction["status"].to_numpy()
     counts = [(Status(code), int(np.sum(status == code))) for code in np.unique(status)]
@@ -59,10 +61,13 @@ def _of_one_drive(mechanism: Mechanism, reduction: xarray.Dataset) -> Rows:
     ]
 
 
-def reduction_parts(reduction: xarray.Dataset) -> tuple[list[str], list[list[str]]]:
+def reduction_parts(
+    reduction: xarray.Dataset, mechanism: Mechanism | None = None
+) -> tuple[list[str], list[list[str]]]:
     """Header and rows of a table: least, greatest and mean value of each part and of the whole, over the samples.
 
-    The mean is over the drive's value where one drive runs one way, else over time, by the trapezoidal rule.
+    The mean is over the drive's value where one drive runs one way, else over time, by the trapezoidal rule. Given
+    their mechanism, loads are named in the language of the reader.
     """
     along = _along(reduction)
     header = ["", _("unit"), _("least"), _("greatest"), _("mean")]
@@ -74,9 +79,10 @@ def reduction_parts(reduction: xarray.Dataset) -> tuple[list[str], list[list[str
         if name in reduction:
             unit = str(reduction[name].attrs["units"])
             found.append([text, unit, *_extremes(reduction[name].to_numpy(), along)])
-            for label in reduction[dimension].to_numpy():
+            for label in map(str, reduction[dimension].to_numpy()):
                 values = reduction[part].sel({dimension: label}).to_numpy()
-                found.append([f"  {label}", unit, *_extremes(values, along)])
+                name = load_name(mechanism, label) if mechanism and dimension == "load" else label
+                found.append([f"  {name}", unit, *_extremes(values, along)])
     for name, text in (
         ("inertia_matrix", _("inertia {drives}")),
         ("generalised_force", _("force by {drives}")),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from centrode.locale import _, ngettext
+from centrode.model.spoken import reaction_name
 
 if TYPE_CHECKING:
     import xarray
@@ -36,7 +37,8 @@ def friction_rows(found: xarray.Dataset) -> Rows:
         rows.append((_("friction turns round"), text.format(n=turning)))
     if found.attrs["standing"]:
         text = _("{contacts}: nothing moves there, friction is taken as 0")
-        rows.append((_("no friction"), text.format(contacts=found.attrs["standing"].replace("; ", ", "))))
+        contacts = ", ".join(map(reaction_name, found.attrs["standing"].split("; ")))
+        rows.append((_("no friction"), text.format(contacts=contacts)))
     text = _("off by {share:.1e} after at most {n} steps")
     residual, steps = found.attrs["friction_residual"], found.attrs["friction_iterations"]
     rows.append((_("friction against reactions"), text.format(share=residual, n=steps)))
@@ -54,8 +56,8 @@ def friction_losses(found: xarray.Dataset) -> Table | None:
     for k, label in enumerate(found["friction"].to_numpy().tolist()):
         power = found["friction_power"].to_numpy()[:, k]
         greatest = f"{np.nanmax(power):.6g}" if np.isfinite(power).any() else ""
-        guide = label.removeprefix("guide ")
-        name = label if guide == label else _("guide {name}").format(name=guide)
         work = f"{works[k]:.6g}" if np.isfinite(works[k]) else ""
-        rows.append([name, greatest, work, f"{100.0 * works[k] / works.sum():.2f}" if known else ""])
+        rows.append(
+            [reaction_name(label), greatest, work, f"{100.0 * works[k] / works.sum():.2f}" if known else ""]
+        )
     return header, rows

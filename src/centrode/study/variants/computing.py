@@ -107,10 +107,7 @@ def computed(topology: Mechanism, variant: Variant) -> VariantResults:
     """One variant; what it says in words is English, as files are."""
     with speaking("en"):
         try:
-            mechanism = variant.of(topology)
-            prepared = ready(mechanism)
-            results = study(mechanism)
-            rotation = rotation_of(prepared)
+            mechanism, results, rotation = studied(topology, variant)
         except InputError as refusal:
             return VariantResults(VariantRow(variant.name, None, None, "", "", str(refusal), REFUSED))
         try:
@@ -120,12 +117,24 @@ def computed(topology: Mechanism, variant: Variant) -> VariantResults:
         return VariantResults(_row(variant.name, rotation, results), mechanism, results, integration, note)
 
 
+def studied(topology: Mechanism, variant: Variant) -> tuple[Mechanism, StudyResults, Rotation]:
+    """A variant's mechanism, its study and rotatability; raises InputError where it is none that moves."""
+    mechanism = variant.of(topology)
+    prepared = ready(mechanism)
+    return mechanism, study(mechanism), rotation_of(prepared)
+
+
 def _row(name: str, rotation: Rotation, results: StudyResults) -> VariantRow:
     status = COMPUTED if results.failure is None else LOCKS
-    cause = f"{rotation.cause}: {rotation.condition}" if rotation.condition else rotation.cause
+    cause = cause_of(rotation)
     return VariantRow(
         name, rotation.turns_fully, rotation.limit, rotation.unit, rotation.group, cause, status
     )
+
+
+def cause_of(rotation: Rotation) -> str:
+    """Why a variant locks, in words and in symbols."""
+    return f"{rotation.cause}: {rotation.condition}" if rotation.condition else rotation.cause
 
 
 def variants_summary(rows: Sequence[VariantRow]) -> tuple[str, str | None]:

@@ -190,7 +190,7 @@ class Worked:
         degrees = f"{self.si.math(math.degrees(at))} degree"
         return (
             ("phi", degrees),
-            ('F_(0, "least")', f"-({letters})", f"-({worked})", with_unit(self.si, needed, self.unit)),
+            ('F_(0, "min")', f"-({letters})", f"-({worked})", with_unit(self.si, needed, self.unit)),
         )
 
     def stress(self, at: float) -> tuple[tuple[str, ...], ...]:

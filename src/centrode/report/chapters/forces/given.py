@@ -9,9 +9,9 @@ import numpy as np
 from centrode.dynamics.bodies import Centre
 from centrode.dynamics.masses import masses_of, massless_links
 from centrode.locale import _, mark
+from centrode.model.spoken import LOADS, load_name
 from centrode.quantities import display_unit
 from centrode.report.blocks import Block, Chapter, Paragraph, Section, Table
-from centrode.report.chapters.forces.names import KINDS
 from centrode.report.rows import told
 from centrode.report.telling import facts, listed
 
@@ -106,7 +106,10 @@ def _loads(mechanism: Mechanism, numbers: Numbers) -> tuple[Block, ...]:
         )
     if mechanism.loads:
         head = (_("load"), _("kind"), _("acts on"), _("amount (SI)"))
-        rows = [(_name(one), _(KINDS[one.kind]), _acts_on(one), _amount(one)) for one in mechanism.loads]
+        rows = [
+            (load_name(mechanism, one.label), _(LOADS[one.kind]), _acts_on(one), _amount(one))
+            for one in mechanism.loads
+        ]
         blocks.append(listed(numbers, head, rows))
     return tuple(blocks)
 
@@ -120,10 +123,6 @@ def _acts_on(load: Load) -> str:
     if load.link is not None:
         return load.link if load.relative_to == "frame" else f"{load.link}, {load.relative_to}"
     return load.point or ""
-
-
-def _name(load: Load) -> str:
-    return load.name or f"{_(KINDS[load.kind])} {_acts_on(load)}"
 
 
 def _amount(load: Load) -> str:

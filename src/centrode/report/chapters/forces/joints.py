@@ -8,6 +8,7 @@ import numpy as np
 
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
+from centrode.model.spoken import reaction_name
 from centrode.present.forces.bearing_figures import bearing_figures
 from centrode.present.forces.reaction_figures import reaction_figures
 from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, shown
@@ -129,7 +130,7 @@ def _checks(study: ReportStudy) -> list[Check]:
     open_ = found.attrs["undetermined"]
     if open_:
         text = _("Constraints that repeat each other leave open: {names}. These have no numbers.")
-        checks.append(Check(text.format(names=shown(open_)), True))
+        checks.append(Check(text.format(names=shown("; ".join(map(reaction_name, open_.split("; "))))), True))
     return checks
 
 

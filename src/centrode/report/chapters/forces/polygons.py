@@ -14,7 +14,6 @@ from centrode.present.forces.polygon_drawing import column_of, group_scale, poly
 from centrode.present.sheet_column import TOP, sheet_size
 from centrode.present.shown import shown_as
 from centrode.report.blocks import Block, Chapter, Check, Items, Paragraph, Picture, Section, shown
-from centrode.report.chapters.forces.names import with_load_names
 from centrode.report.chapters.forces.places import instants, titles
 from centrode.report.chapters.forces.results import has_forces
 from centrode.report.numbers import spelled_number
@@ -69,10 +68,7 @@ def polygons_chapter(study: ReportStudy) -> Chapter | None:
 def _instant(study: ReportStudy, found: ForcePolygons, title: str) -> list[Section]:
     """An instant: what is what, group by group with its drawing, all forces, the balancing moment."""
     figures = polygon_figures(found)
-    labels = [one.label for one in found.outer]
-    blocks: list[Block] = [
-        facts(study.numbers, with_load_names(study.mechanism, labels, polygon_about(found)))
-    ]
+    blocks: list[Block] = [facts(study.numbers, polygon_about(found))]
     for number, group in enumerate(found.groups, start=1):
         name = told(group_title(group), study.numbers)
         steps = tuple(worked(study.numbers, step) for step in group.steps)

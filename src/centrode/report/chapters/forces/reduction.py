@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, TypeAlias
 from centrode.locale import _
 from centrode.present.forces.reduction_figures import reduction_figures
 from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table
-from centrode.report.chapters.forces.names import load_name, with_load_names
 from centrode.report.chapters.forces.places import few, head_of_places, places_of, unit_of_place
 from centrode.report.chapters.forces.reduced_sums import sums_at_instants
 from centrode.report.chapters.forces.results import has_forces, reduced
@@ -27,12 +26,12 @@ def reduction_chapter(study: ReportStudy) -> Chapter | None:
     if not has_forces(study):
         return None
     mechanism, data = study.mechanism, reduced(study)
-    sections = [Section("", (*_meaning(study), facts(study.numbers, _rows(study))))]
+    sections = [Section("", (*_meaning(study), facts(study.numbers, reduction_rows(mechanism, data))))]
     if "reduced_inertia" in data:
         sections += sums_at_instants(study)
         sections.append(Section(_("Over the motion"), (_course(study),)))
-    header, rows = reduction_parts(data)
-    own = [[_part(study, cells[0]), *cells[1:]] for cells in rows]
+    header, rows = reduction_parts(data, mechanism)
+    own = [[_part(cells[0]), *cells[1:]] for cells in rows]
     sections.append(Section(_("Extremes and means"), (listed(study.numbers, header, own),)))
     captions = {
         "reduced-inertia": _("Reduced inertia with the parts of the links, and its derivative"),
@@ -45,16 +44,9 @@ def reduction_chapter(study: ReportStudy) -> Chapter | None:
     return Chapter("reduction", _("Reduction to the drive"), tuple(sections))
 
 
-def _rows(study: ReportStudy) -> list[tuple[str, str]]:
-    """What was reduced, at which speed."""
-    data = reduced(study)
-    labels = [str(label) for label in data["load"].to_numpy()]
-    return with_load_names(study.mechanism, labels, reduction_rows(study.mechanism, data))
-
-
-def _part(study: ReportStudy, label: str) -> str:
+def _part(label: str) -> str:
     """A whole as it is, the part of a link or of a load behind a dash."""
-    return "– " + load_name(study.mechanism, label.strip()) if label.startswith("  ") else label
+    return "– " + label.strip() if label.startswith("  ") else label
 
 
 def _meaning(study: ReportStudy) -> tuple[Block, ...]:

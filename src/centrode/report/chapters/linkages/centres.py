@@ -11,7 +11,8 @@ from centrode.analysis.instant_centres.centres import instant_centres
 from centrode.analysis.instant_centres.construction import Construction
 from centrode.analysis.instant_centres.kennedy import MOST_BODIES, construct_centres
 from centrode.locale import _, ngettext
-from centrode.model.mechanism import FRAME, Mechanism
+from centrode.model.mechanism import Mechanism
+from centrode.model.spoken import body_name
 from centrode.present.centres import centres_figure
 from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
 from centrode.report.figures import picture
@@ -34,7 +35,7 @@ def centres_chapter(study: ReportStudy) -> Chapter | None:
     if not study.is_planar:
         return None
     names = body_names(study.mechanism)
-    numbered = ", ".join(f"{number} {_called(name, study.mechanism)}" for number, name in enumerate(names))
+    numbered = ", ".join(f"{number} {body_name(study.mechanism, name)}" for number, name in enumerate(names))
     first = Section("", (Paragraph(told(_("Bodies: {names}.").format(names=numbered), study.numbers)),))
     instants = [Section(moment.title, tuple(_instant(study, moment, names))) for moment in moments_of(study)]
     return Chapter("centres", _("Instant centres of velocity"), (first, *instants))
@@ -76,15 +77,7 @@ def _instant(study: ReportStudy, moment: Moment, names: tuple[str, ...]) -> Iter
 
 
 def _bodies(names: Sequence[str], mechanism: Mechanism) -> str:
-    return " – ".join(shown(_called(name, mechanism)) for name in names)
-
-
-def _called(name: str, mechanism: Mechanism) -> str:
-    """A body's name in the reader's language: links have names of their own, the frame and sliders have not."""
-    if name == FRAME:
-        return _("frame")
-    slider = name.removeprefix("slider ")
-    return name if slider == name or name in mechanism.links else _("slider {point}").format(point=slider)
+    return " – ".join(shown(body_name(mechanism, name)) for name in names)
 
 
 def _cell(text: str, column: int, study: ReportStudy) -> str:

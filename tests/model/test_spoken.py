@@ -1,0 +1,79 @@
+"""Names that results have in English, in the language of the reader; what a user named stays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import centrode as ct
+from centrode.locale import LANGUAGES, speaking
+from centrode.model.spoken import (
+    LOADS,
+    body_name,
+    constraint_name,
+    load_name,
+    reaction_name,
+    side_name,
+)
+
+PRESS = ct.example("six-bar-press")
+FRAME = {"en": "frame", "ru": "стойка", "uk": "стояк"}
+SAID = {
+    ("ru", "weight AB"): "вес AB",
+    ("ru", "weight AB 2"): "вес AB 2",
+    ("uk", "weight AB"): "вага AB",
+    ("ru", "force H"): "сила H",
+}
+
+
+def named(name: str) -> ct.Mechanism:
+    load: dict[str, Any] = {"kind": "force", "name": name, "point": "A", "vector": [1, 0]}
+    return ct.Mechanism(
+        frame={"points": {"O": [0, 0]}},
+        links={"OA": {"length": 1}, "slider C": {"points": {"A": [0, 0], "B": [1, 0]}}},
+        drives=[{"link": "OA", "speed": 1}, {"link": "slider C", "speed": 2}],
+        loads=[load],
+    )
+
+
+@pytest.mark.parametrize(("language", "label"), SAID)
+def test_loads_without_a_name(language: str, label: str) -> None:
+    with speaking(language):
+        assert load_name(PRESS, label) == SAID[language, label]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("name", ["friction A", "weight AB", "load", "force"])
+def test_names_of_users_stay(language: str, name: str) -> None:
+    with speaking(language):
+        assert load_name(named(name), name) == name
+        assert load_name(named(name), f"{name} 2") == f"{name} 2"
+        assert body_name(named(name), "slider C") == "slider C"
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_bodies_and_sides(language: str) -> None:
+    with speaking(language):
+        assert body_name(PRESS, "frame") == FRAME[language]
+        assert body_name(PRESS, "slider") == "slider"
+        assert side_name("O/frame") == f"O/{FRAME[language]}"
+        for label in ("O/OA", "guide 1/OA", "gear/slider C"):
+            assert side_name(label) == reaction_name(label) == label
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_english_is_what_results_have(language: str) -> None:
+    """In English labels stay; in other languages none of their words does."""
+    for label in ("guide H", "gear H", "slider H", *(f"{kind} H" for kind in LOADS)):
+        with speaking(language):
+            said = {reaction_name(label), body_name(PRESS, label), load_name(PRESS, label)} - {label}
+        assert len(said) == (language != "en")
+        assert all(one.endswith(" H") and not one[:-1].isascii() for one in said)
+
+
+def test_constraints_by_a_symbol_stay() -> None:
+    with speaking("ru"):
+        assert constraint_name("x_C") == "x_C"
+        assert constraint_name("gear sun-planet") == "зубчатая передача sun-planet"
+        assert constraint_name("rolling wheel") == "колесо wheel"
