@@ -82,6 +82,11 @@ class Path:
         return self.pace is not None
 
     @property
+    def turns(self) -> bool:
+        """Whether the parameter is an angle."""
+        return not self.by_time and self.driven[0].drive.kind == "angle"
+
+    @property
     def step(self) -> float:
         """Distance of mesh nodes."""
         return self.unit * tau / NODES_PER_TURN

@@ -54,11 +54,15 @@ class Surroundings:
 
     def known_at(self, parameter: Array, lanes: Lanes) -> Positions:
         """The same at plain parameters."""
+        return needed(self.equations, self.before(parameter, lanes))
+
+    def before(self, parameter: Array, lanes: Lanes) -> Positions:
+        """Everything that is known before the group, at plain parameters."""
         used = self.kinematics.taken(lanes)
         with np.errstate(all="ignore"):
             at = used.frame(ARRAYS, parameter)
             used.advance(at, range(self.group), ARRAYS, self.hooks(ARRAYS, parameter, lanes))
-        return needed(self.equations, at)
+        return at
 
     def bounded(self, parameter: Array, lanes: Lanes) -> Positions:
         """The same with bounds of rounding errors."""

@@ -72,6 +72,11 @@ class System:
         """Number of free coordinates."""
         return self.pattern.free
 
+    @property
+    def turning(self) -> int:
+        """How many numbers of a state are angles with their turns: the last ones."""
+        return len(self._turns)
+
     @cached_property
     def _turns(self) -> dict[str, int]:
         """The free coordinate that turns a link, where turns are counted."""

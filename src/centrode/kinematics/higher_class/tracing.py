@@ -3,7 +3,7 @@
 Steps choose themselves: the polynomial of the last piece foretells the next place, Newton's method finds it on a
 plane square to the curve. Where the determinant bordered by the curve's direction changes its sign, two curves
 meet or nearly meet (`crossings` tells which): a change point is passed straight on, a near miss in smaller steps.
-Where the parameter turns back is a limit.
+Where the parameter turns back is a limit. A curve that closes after whole turns of the drive ends there.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from centrode.kinematics.branches import Event
 from centrode.kinematics.higher_class.crossings import crossing
 from centrode.kinematics.higher_class.curves import Places, Reached, quintic, reach
 from centrode.kinematics.higher_class.limits import limits
+from centrode.kinematics.higher_class.periods import Rounds, repeated
 from centrode.kinematics.higher_class.surroundings import Surroundings
 from centrode.kinematics.higher_class.system import total
 from centrode.kinematics.higher_class.tracks import Piece, Tracks, Trail
@@ -57,6 +58,7 @@ class Walkers:
     passed: Array
     """Their arcs, and the rate of these by the present ones: (k, 2)."""
     trails: list[Trail]
+    rounds: Rounds
     active: Mask
 
     def stop(self, walker: np.intp, lost: bool = False) -> None:
@@ -94,7 +96,8 @@ def trace(
             and abs(trail.pieces[-1].last - stop) <= AT_A_STOP * around.unit
         ):
             trail.end, trail.limit = "limit", float(stop)
-    return Tracks.of(walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1]), events
+    tracks = Tracks.of(initial, walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1])
+    return tracks, [other for event in events for other in repeated(event, tracks, extent)]
 
 
 def _setting_out(around: Surroundings, start: Array, initial: float, extent: tuple[float, float]) -> Walkers:
@@ -117,7 +120,7 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     walkers = Walkers(
         both, forward, np.where(forward < 0.0, *extent), here, np.full(2 * lanes, FIRST),
         np.sign(here.size), np.full((2 * lanes, 6, width), np.nan), np.zeros((2 * lanes, 2)),
-        [Trail() for _ in both], found.found.copy(),
+        [Trail() for _ in both], Rounds.of(around, both, forward, initial, start.shape[1]), found.found.copy(),
     )  # fmt: skip
     for walker in np.nonzero(~found.found)[0]:
         walkers.stop(walker, lost=True)
@@ -203,6 +206,10 @@ def _go_on(walkers: Walkers, who: Lanes, here: Places, there: Reached, passed: A
     with np.errstate(all="ignore"):
         longer = np.clip((TARGET * walkers.step[who] / there.wrong) ** (1.0 / 5.0), 0.3, 2.0)
     walkers.step[who] = np.minimum(walkers.step[who] * longer, GREATEST)
+    for walker, period in walkers.rounds.closed(who, here.parameter, pieces, there.places.parameter):
+        if walkers.trails[walker].end == "on":
+            walkers.trails[walker].period = period
+            walkers.stop(walker)
 
 
 def _turn_back(

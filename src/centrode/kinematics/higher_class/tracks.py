@@ -1,7 +1,8 @@
 """The track of a group of higher class: its curve over the path in pieces, and where Newton's method starts.
 
 Pieces belong to the mechanism and its path, not to the samples: a place starts from the piece on which it lies.
-So what is found does not depend on what else is asked for.
+So what is found does not depend on what else is asked for. A curve that closes after whole turns is followed once:
+behind that every place starts from the one as many turns before.
 """
 
 from __future__ import annotations
@@ -36,6 +37,14 @@ class Piece:
     sense: float
 
 
+@dataclass(frozen=True)
+class Period:
+    """After so much of the path a closed curve repeats itself; the numbers of the state have grown by (width,)."""
+
+    length: float
+    grown: Array
+
+
 @dataclass
 class Trail:
     """The pieces in one sense of the path, outward from the initial position, and how they end.
@@ -49,6 +58,8 @@ class Trail:
     margin: float = -1.0
     state: Array | None = None
     """There, if the limit is the group's own."""
+    period: Period | None = None
+    """Of a closed curve."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +76,12 @@ class Foretold:
 class Tracks:
     """The tracks of all mechanisms of a batch: one trail behind and one ahead of each initial position.
 
-    `powers` (6, width + 1, pieces) are the coefficients of all pieces.
+    `powers` (6, width + 1, pieces) are the coefficients of all pieces. Curves that are closed repeat themselves after a
+    `period` (lanes, 2) of the path, and have `grown` (lanes, 2, width) then.
     """
 
     lanes: int
+    initial: float
     powers: Array
     origin: Array
     sense: Array
@@ -78,15 +91,18 @@ class Tracks:
     margins: Array
     at_limit: Array
     followed: Array
+    period: Array
+    grown: Array
 
     @classmethod
-    def of(cls, behind: Sequence[Trail], ahead: Sequence[Trail], width: int) -> Tracks:
+    def of(cls, initial: float, behind: Sequence[Trail], ahead: Sequence[Trail], width: int) -> Tracks:
         """Tracks from trails; a mechanism without pieces has no track."""
         pieces: list[Piece] = []
         edges, first = [], []
         limits, margins = np.full((len(ahead), 2), np.nan), np.zeros((len(ahead), 2))
         at_limit = np.full((len(ahead), 2, width), np.nan)
         followed = np.full((len(ahead), 2), np.nan)
+        period, grown = np.full((len(ahead), 2), np.inf), np.zeros((len(ahead), 2, width))
         for lane, trails in enumerate(zip(behind, ahead, strict=True)):
             own = [*reversed(trails[0].pieces), *trails[1].pieces]
             first.append(len(pieces))
@@ -99,9 +115,12 @@ class Tracks:
                     limits[lane, side], margins[lane, side] = trail.limit, trail.margin
                 if trail.state is not None:
                     at_limit[lane, side] = trail.state
+                if trail.period is not None:
+                    period[lane, side], grown[lane, side] = trail.period.length, trail.period.grown
         coefficients = np.array([piece.coefficients for piece in pieces]).reshape(-1, 6, width + 1)
         return cls(
             len(ahead),
+            initial,
             np.ascontiguousarray(np.moveaxis(coefficients, 0, 2)),
             np.array([piece.origin for piece in pieces]),
             np.array([piece.sense for piece in pieces]),
@@ -111,22 +130,35 @@ class Tracks:
             margins,
             at_limit,
             followed,
+            period,
+            grown,
         )
 
     def foretell(self, parameter: Array, lanes: Lanes) -> Foretold:
         """Starting states at parameters, one lane for each."""
+        parameter, grown = self._repeated(parameter, lanes)
         which, known = self._pieces(parameter, lanes)
         state = np.full((self.at_limit.shape[2], len(parameter)), np.nan).T
         sense = np.zeros(len(parameter))
         chosen = which[known]
         if len(chosen):
-            share = _share(self.powers[:, -1], chosen, parameter[known] - self.origin[chosen])
+            share = share_at(self.powers[:, -1], chosen, parameter[known] - self.origin[chosen])
             for column, powers in enumerate(np.moveaxis(self.powers[:, :-1], 1, 0)):
                 state[known, column] = _value(powers, chosen, share)
             sense[known] = self.sense[chosen]
+            state += grown
         limit = self._at_limits(parameter, lanes, state)
         past = (parameter < self.limits[lanes, 0]) | (parameter > self.limits[lanes, 1])
         return Foretold(state, sense, past & ~limit, limit)
+
+    def _repeated(self, parameter: Array, lanes: Lanes) -> tuple[Array, Array]:
+        """The places on the first round of closed curves that come before places, and how states grow between them."""
+        side = (parameter > self.initial).astype(np.intp)
+        period = self.period[lanes, side]
+        # the end of a round belongs to it
+        rounds = np.maximum(np.ceil(np.abs(parameter - self.initial) / period) - 1.0, 0.0)
+        back = rounds * np.where(np.isfinite(period), period, 0.0) * (1.0 - 2.0 * side)
+        return parameter + back, rounds[:, None] * self.grown[lanes, side]
 
     def _pieces(self, parameter: Array, lanes: Lanes) -> tuple[Lanes, Mask]:
         """The piece of each place, and whether the curve was followed as far as that."""
@@ -152,7 +184,7 @@ class Tracks:
         return limit
 
 
-def _share(powers: Array, which: Lanes, wanted: Array) -> Array:
+def share_at(powers: Array, which: Lanes, wanted: Array) -> Array:
     """Where polynomials (6, pieces) that run one way from 0 to 1 take values: Newton's method between bounds."""
     own = powers[:, which]
     slopes = own[1:] * np.arange(1.0, len(own))[:, None]
