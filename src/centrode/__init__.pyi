@@ -224,6 +224,7 @@ from .analysis.instant_centres.kennedy import MOST_BODIES as MOST_BODIES
 from .analysis.instant_centres.centrodes import centrodes as centrodes
 from .analysis.instant_centres.curvature import curvature as curvature
 from .study.centres import body_names as body_names
+from .model.spoken import body_name as body_name
 from .study.centres import initial_place as initial_place
 from .study.centres import place_words as place_words
 from .study.centres import centres_header as centres_header

@@ -17,7 +17,6 @@ from centrode.cli.reached import is_moving, tell_absent
 from centrode.cli.tables import tables_options
 from centrode.errors import InputError
 from centrode.locale import _, mark
-from centrode.model.spoken import body_name
 
 if TYPE_CHECKING:
     import xarray
@@ -94,7 +93,7 @@ def centres(
 
 def _numbered(description: ct.Mechanism, names: Iterable[str]) -> str:
     """The bodies by number; a number and its name stay in one line."""
-    items = [_unbroken(f"{number} {body_name(description, name)}") for number, name in enumerate(names)]
+    items = [_unbroken(f"{number} {ct.body_name(description, name)}") for number, name in enumerate(names)]
     return output.paragraph(_("bodies") + ":", items).replace("\N{NO-BREAK SPACE}", " ")
 
 
