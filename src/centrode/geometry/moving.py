@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol, TypeAlias
 
 from centrode.algebra.jets import Jet
+from centrode.geometry.plane import is_literal_zero
 
 Number: TypeAlias = Any
 Place: TypeAlias = Sequence[Number]
@@ -106,27 +107,23 @@ def coefficients(place: Place, k: int) -> tuple[Number, ...]:
 # arithmetic in which what is plainly zero costs nothing
 
 
-def _is_zero(x: Number) -> bool:
-    return type(x) is float and x == 0.0
-
-
 def times(a: Number, b: Number) -> Number:
     """Product."""
-    return 0.0 if _is_zero(a) or _is_zero(b) else a * b
+    return 0.0 if is_literal_zero(a) or is_literal_zero(b) else a * b
 
 
 def less(a: Number, b: Number) -> Number:
     """Difference."""
-    if _is_zero(b):
+    if is_literal_zero(b):
         return a
-    return -b if _is_zero(a) else a - b
+    return -b if is_literal_zero(a) else a - b
 
 
 def total(terms: Iterable[Number]) -> Number:
     """Sum."""
     found: Number = 0.0
     for term in terms:
-        found = term if _is_zero(found) else found if _is_zero(term) else found + term
+        found = term if is_literal_zero(found) else found if is_literal_zero(term) else found + term
     return found
 
 
