@@ -53,6 +53,12 @@ SHARE = 0.75
 """Greatest half width in units of the radius: towards the circle itself the derivatives of a series lose digits."""
 LEAST_CIRCLE = 1e-10
 """Radius below which a series is given up, in the path's units: rounding leaves nothing of such a circle."""
+LARGE = 0.5 * CIRCLE / WINDOW
+"""Circles below this many half widths have shrunk."""
+LOST = 1e-3
+"""Greatest rounding error on such a circle, in units of the motion along it, of the number that moves most."""
+BARE = 4e-3
+"""Half width, in the path's units, without derivatives where there is no series: rounding is 1e-16 over its cube."""
 SHRINKING, GROWING = 0.25, 2.0**0.5
 """A circle shrinks by great steps until it holds no singularity, then it grows by small ones."""
 REACH = 0.32
@@ -155,52 +161,64 @@ class Continuation:
 
     def _with_circles(self, group: int, windows: Windows) -> tuple[Windows, Series]:
         """The windows with the greatest circles that hold no singularity, and the series that rest on these."""
-        least = LEAST_CIRCLE / CIRCLE * windows.half
-        radius, best = windows.radius.copy(), np.zeros(len(windows))
+        count, radius = len(windows), windows.radius.copy()
+        best, growing = np.zeros(count), np.zeros(count, dtype=bool)
         series: Series | None = None
-        trying, growing = np.arange(len(windows)), np.zeros(len(windows), dtype=bool)
+        trying = np.arange(count)
         while len(trying):
-            tried = replace(windows.of(trying), radius=radius[trying])
-            found, whole = self._around(group, tried)
-            series = found.put(series, trying[whole], whole, len(windows))
+            found, whole = self._around(group, replace(windows.of(trying), radius=radius[trying]))
+            series = found.put(series, trying[whole], whole, count)
             best[trying[whole]] = radius[trying[whole]]
-            going = np.where(
-                whole,
-                radius[trying] < windows.radius[trying],
-                ~growing[trying] & (radius[trying] > least[trying]),
+            growing[trying[whole]] = True
+            # a circle that holds a singularity ends the growing of one that held none before
+            larger = whole & (radius[trying] < windows.radius[trying])
+            smaller = (
+                ~whole & ~growing[trying] & (radius[trying] > LEAST_CIRCLE / WINDOW * windows.half[trying])
             )
-            growing[trying] |= whole
-            radius[trying] *= np.where(whole, GROWING, SHRINKING)
-            trying = trying[going]
-            radius = np.minimum(radius, windows.radius)
+            radius[trying] = np.minimum(
+                radius[trying] * np.where(whole, GROWING, SHRINKING), windows.radius[trying]
+            )
+            trying = trying[larger | smaller]
         assert series is not None
-        return replace(
-            windows, half=np.minimum(windows.half, SHARE * best), radius=best
-        ), series.without_rounding()
+        half = np.where(best > 0.0, np.minimum(windows.half, SHARE * best), BARE / WINDOW * windows.half)
+        return replace(windows, half=half, radius=best), series.without_rounding()
 
     def _around(self, group: int, windows: Windows) -> tuple[Series, Mask]:
         """What a group gives on circles, as series, and which circles hold no singularity."""
-        count, nodes = len(windows), len(HALF_CIRCLE)
-        lanes = np.repeat(windows.lane, nodes)
-        along = (windows.centre[:, None] + windows.radius[:, None] * HALF_CIRCLE).reshape(-1)
-        used = self.kinematics.taken(lanes)
-        hooks = Circling(self, along, lanes, group)
-        ends = (windows.centre[:, None] + windows.radius[:, None] * np.array([1.0, -1.0])).reshape(-1)
-        at_ends = self.kinematics.taken(both := np.repeat(windows.lane, 2))
-        with np.errstate(all="ignore"):
-            at = used.frame(ARRAYS, along)
-            used.advance(at, range(group + 1), ARRAYS, hooks)
-            bounded = at_ends.frame(ROUNDED, Rounded.of(ends))
-            at_ends.advance(bounded, range(group + 1), ROUNDED, Unmended(self, ROUNDED, ends, both, group))
-            numbers = [coefficients(x, count) for x in numbers_of(self.kinematics, group, at)]
-            bounds = [
-                np.max(np.broadcast_to(Rounded.of(x).bound, ends.shape).reshape(count, 2), axis=1)
-                for x in numbers_of(self.kinematics, group, bounded)
-            ]
-        whole = hooks.whole
+        numbers, followed = self._on_circles(group, windows)
+        bounds = self._bounds_on_circles(group, windows)
+        whole, lost = followed, np.full(len(windows), np.inf)
         for number, bound in zip(numbers, bounds, strict=True):
+            # an analytic function has no negative powers: what is left of them is rounding
             whole = whole & (np.max(np.abs(number[:, TERMS:]), axis=1) <= bound)
+            with np.errstate(all="ignore"):
+                lost = np.fmin(lost, bound / np.sum(np.abs(number[:, 1:TERMS]), axis=1))
+        # on a circle as small as rounding errors everything looks analytic
+        shrunk = windows.radius < LARGE * windows.half
+        whole &= ~shrunk | (lost <= LOST)
         return Series([number[:, :TERMS] for number in numbers], bounds), whole
+
+    def _on_circles(self, group: int, windows: Windows) -> tuple[list[Array], Mask]:
+        """Coefficients of what a group gives on circles, and on which of these it could be followed."""
+        lanes = np.repeat(windows.lane, len(HALF_CIRCLE))
+        parameter = (windows.centre[:, None] + windows.radius[:, None] * HALF_CIRCLE).reshape(-1)
+        kinematics, hooks = self.kinematics.taken(lanes), Circling(self, parameter, lanes, group)
+        with np.errstate(all="ignore"):
+            at = kinematics.frame(ARRAYS, parameter)
+            kinematics.advance(at, range(group + 1), ARRAYS, hooks)
+            numbers = [coefficients(x, len(windows)) for x in numbers_of(kinematics, group, at)]
+        return numbers, hooks.followed
+
+    def _bounds_on_circles(self, group: int, windows: Windows) -> list[Array]:
+        """Rounding errors of what a group gives on circles: those at the two real values of each (windows,)."""
+        lanes = np.repeat(windows.lane, 2)
+        ends = (windows.centre[:, None] + windows.radius[:, None] * np.array([1.0, -1.0])).reshape(-1)
+        kinematics = self.kinematics.taken(lanes)
+        with np.errstate(all="ignore"):
+            at = kinematics.frame(ROUNDED, Rounded.of(ends))
+            kinematics.advance(at, range(group + 1), ROUNDED, Unmended(self, ROUNDED, ends, lanes, group))
+        bounds = [Rounded.of(x).bound for x in numbers_of(kinematics, group, at)]
+        return [np.max(np.broadcast_to(x, ends.shape).reshape(-1, 2), axis=1) for x in bounds]
 
 
 class Smooth(Hooks):
@@ -247,50 +265,45 @@ class Unmended(Smooth):
 
 
 class Circling(Unmended):
-    """Positions on half circles about change points of a group, followed from their real beginnings.
+    """Positions on half circles about change points of a group, one circle after the other.
 
-    Roots, angles and groups of higher class go on along a half circle from one value to the next. At its end they have
-    to be where the motion is.
+    Roots, angles and groups of higher class go on along a half circle from its real beginning, value by value: so they
+    stay on one branch, whatever the cuts of complex functions are. At the real end they have to be where the motion is.
     """
 
     def __init__(self, continuation: Continuation, parameter: Array, lanes: Lanes, group: int) -> None:
         super().__init__(continuation, ARRAYS, parameter, lanes, group)
         self.which = lanes
-        self.circles = (-1, len(HALF_CIRCLE))
-        self.whole = np.ones(len(lanes) // len(HALF_CIRCLE), dtype=bool)
-        """Circles on which everything is where it has to be."""
+        self.followed: Mask = np.ones(len(lanes) // len(HALF_CIRCLE), dtype=bool)
+        """Circles on which everything ends where the motion is."""
 
     def root(self, group: int, radicand: Number) -> Number:
-        root = self._on_circles(np.sqrt(radicand + 0j))
-        real = self.continuation.branches.sign(group, self.parameter.real, self.lanes).reshape(self.circles)
+        root = self._by_circles(np.sqrt(radicand + 0j))
+        real = self._by_circles(self.continuation.branches.sign(group, self.parameter.real, self.which))
         turned = np.where((root[:, 1:] * root[:, :-1].conj()).real < 0.0, -1.0, 1.0)
         signs = np.cumprod(np.concatenate([real[:, :1], turned], axis=1), axis=1)
-        self.whole &= signs[:, -1] == real[:, -1]
+        self.followed &= signs[:, -1] == real[:, -1]
         return (root * signs).reshape(-1)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
-        self.continuation.follow(group, at, self.parameter, self.which, self.circles[1])
+        self.continuation.follow(group, at, self.parameter, self.which, len(HALF_CIRCLE))
 
     def continued(self, group: int, key: str, angle: Number) -> Number:
-        angle = self._on_circles(angle)
-        steps = np.round((angle[:, :-1] - angle[:, 1:]).real / TURN)
-        whole = np.concatenate([np.zeros((len(angle), 1)), np.cumsum(steps, axis=1)], axis=1)
+        along, parameter = self._by_circles(angle), self._by_circles(self.parameter).real
         turns = self.continuation.branches.turns[key]
-        real = [
-            turns.continued(
-                angle[:, k].real,
-                self.parameter.reshape(self.circles)[:, k].real,
-                self.which[:: self.circles[1]],
-            )
+        first, last = (
+            turns.continued(along[:, k].real, parameter[:, k], self.which[:: len(HALF_CIRCLE)])
             for k in (0, -1)
-        ]
-        followed = angle + TURN * whole
-        followed += (np.round((real[0] - followed[:, 0].real) / TURN) * TURN)[:, None]
-        self.whole &= np.abs(followed[:, -1].real - real[1]) < 0.5 * TURN
-        return followed.reshape(-1)
+        )
+        steps = np.round(-np.diff(along.real, axis=1) / TURN)
+        whole = np.round((first - along[:, 0].real) / TURN)[:, None] + np.zeros(along.shape)
+        whole[:, 1:] += np.cumsum(steps, axis=1)
+        found = along + TURN * whole
+        self.followed &= np.abs(found[:, -1].real - last) < 0.5 * TURN
+        return found.reshape(-1)
 
-    def _on_circles(self, number: Number) -> Any:
-        return np.broadcast_to(number, self.parameter.shape).reshape(self.circles)
+    def _by_circles(self, number: Number) -> Any:
+        return np.broadcast_to(number, self.parameter.shape).reshape(-1, len(HALF_CIRCLE))
 
 
 class Rough(Smooth):

@@ -155,8 +155,18 @@ def mended(
     chosen: Lanes,
     along: Array,
 ) -> Number:
-    """A number with the entries at `index`, at parameters `along`, given by the series of the chosen windows."""
+    """A number with the entries at `index`, at parameters `along`, given by the series of the chosen windows.
+
+    Where a window has no series the value stays, without derivatives.
+    """
     order = old.order if isinstance(old, Jet) else 0
+    bare = windows.radius[chosen] == 0.0
+    if bare.any():
+        bare_at = tuple(part[bare] for part in index)
+        if isinstance(old, Jet):
+            there = np.full(len(bare_at[0]), np.nan)
+            old = Jet([old.value, *(_put(c, shape, bare_at, there) for c in old.coefficients[1:])])
+        index, chosen, along = tuple(part[~bare] for part in index), chosen[~bare], along[~bare]
     known = _summed(series[chosen], (along - windows.centre[chosen]) / windows.radius[chosen], order)
     scale = 1.0 / windows.radius[chosen]
     if isinstance(old, Jet):
