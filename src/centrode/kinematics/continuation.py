@@ -140,6 +140,10 @@ class Continuation:
             self._windows[group] = self._found_windows(group)
         return self._windows[group]
 
+    def has_windows(self, group: int) -> bool:
+        """Whether the stretches of a group are known already; its events are, then."""
+        return group in self._windows
+
     def _found_windows(self, group: int) -> Windows | None:
         events = self.branches.events
         centres = [event for event in events if event.group == group and event.kind == "change point"]

@@ -154,7 +154,7 @@ class Eventful:
         for k, link in enumerate(plan.turning):
             known[link] = nodes = search.turns(link, self.ready.assembled.angles[link])
             angle, sine = found["angles"][0, :, :, layout.angles.index(link)], found[SINES][:, :, k]
-            turns = nodes.at(nearest, angle, sine)
+            turns = nodes.at(nearest, angle, sine, self.span.parameter)
             np.arctan2(sine, angle, out=angle)
             if turns.any():
                 angle += TURN * turns

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -26,6 +26,9 @@ from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.events import Scan
 from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.mending import inside
+from centrode.kinematics.quick_turns import QuickTurns
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -39,6 +42,11 @@ def of_mesh(plan: Traced) -> dict[str, Nodes]:
     found = {f"radicand {group}": _pair(x) for group, x in plan.radicands.items()}
     found |= {f"divisor {group}": _pair(x) for group, x in plan.divisors.items() if isinstance(x, Jet)}
     return found | {f"rotor {link}": boxed(rotor) for link, rotor in plan.turning.items()}
+
+
+def _angle_of(link: str, numbers: Dimensions, at: Positions) -> Any:
+    cosine, sine = rotor_of_angle(ARRAYS, numbers, at, link)
+    return np.arctan2(sine, cosine)
 
 
 def _pair(number: Any) -> Nodes:
@@ -80,7 +88,13 @@ class Search:
         if len(self._mended[0]):
             cosine[self._mended], sine[self._mended] = self._rotors_mended[link]
         start = int(np.argmin(np.abs(self.mesh - self.continuation.branches.initial)))
-        return node_turns((cosine, sine), initial, start, len(self.mesh))
+        quick = self._quick.measured(partial(_angle_of, link))
+        return node_turns((cosine, sine), initial, start, len(self.mesh), quick)
+
+    @cached_property
+    def _quick(self) -> QuickTurns:
+        groups = self.continuation.kinematics.structure.groups
+        return QuickTurns(self.continuation, self.mesh, len(groups))
 
     def _write(self) -> None:
         _plan, writer = self.writers(self._counts)
