@@ -1,8 +1,8 @@
 """The search for events on a mesh that machine code has filled: what is found, and its bits, are those of `events`.
 
 All radicands are computed at once with constant signs. Where a group has change points, those of the groups
-behind it are computed again with its signs, and at the nodes next to its change points, which the arrays
-interpolate, by the arrays.
+behind it are computed again with its signs, and at the nodes next to its change points, which power
+series give, by the arrays.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ class Search:
         return True
 
     def _with_patches(self, scan: Scan, group: int, pair: Array) -> Jet:
-        """Value and slope of a radicand or divisor, those of the arrays where a group before it is interpolated."""
+        """Value and slope of a radicand or divisor, those of the arrays where a series gives a group before it."""
         lanes, nodes = self._near_change_points(range(group))
         if len(lanes):
             guard = scan.guard(group, lanes, self.mesh[nodes], 1)
@@ -137,7 +137,7 @@ class Search:
 
     @cached_property
     def _rotors_mended(self) -> dict[str, tuple[Any, Any]]:
-        """Rotors where any group is interpolated, as the arrays have them."""
+        """Rotors where a series gives any group, as the arrays have them."""
         lanes, nodes = self._mended
         parameter = self.mesh[nodes]
         kinematics = self.continuation.kinematics.taken(lanes)
