@@ -28,7 +28,7 @@ from centrode.sweeps.arrays import Task
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import described
 from centrode.sweeps.executors import bare
-from centrode.sweeps.locking import locked
+from centrode.files.locks import locked
 from centrode.sweeps.results import Frame
 from centrode.sweeps.streams import Columns
 from centrode.sweeps.tallies import Tally
