@@ -242,13 +242,14 @@ def test_two_runs_at_once_are_refused_and_a_dead_one_is_not_feared(tmp_path: Pat
         [
             sys.executable,
             "-c",
-            "import sys, time, pathlib\n"
+            "import sys, pathlib\n"
             "from centrode.files.locks import locked\n"
             "with locked(pathlib.Path(sys.argv[1]), ''):\n"
             "    print('held', flush=True)\n"
-            "    time.sleep(300)\n",
+            "    sys.stdin.read()\n",
             str(store / "progress" / "lock"),
         ],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         encoding="utf-8",
     )
