@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -75,6 +76,14 @@ def test_every_failure_is_a_message_and_a_code(
     ended, said = ends(monkeypatch, capsys, raising(failure))
     assert ended == code
     assert message in said
+
+
+@pytest.mark.parametrize("kind", [InputError, MotionError])
+def test_failures_cross_processes_whole(kind: type[InputError | MotionError]) -> None:
+    failure = pickle.loads(pickle.dumps(kind("press.toml", "no drive", "add one")))
+    assert type(failure) is kind
+    assert (failure.where, failure.what, failure.repair) == ("press.toml", "no drive", "add one")
+    assert str(failure) == "press.toml: no drive; add one"
 
 
 def test_a_command_may_return_its_exit_code(
