@@ -239,7 +239,7 @@ def test_a_reader_that_is_gone_before_the_first_line() -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="no such pipes")
 @pytest.mark.parametrize(("words", "stream", "code"), [("", "stdout", 2), ("nothing", "stderr", 2)])
 def test_a_pipe_that_is_full_and_does_not_wait(words: str, stream: str, code: int) -> None:
-    """Nobody reads, and the pipe refuses instead of waiting: told where it can be, and no traceback."""
+    """Nobody reads, and the pipe refuses instead of waiting: a message where one can be read, and no traceback."""
     reader, writer = os.pipe()
     os.set_blocking(writer, False)
     with pytest.raises(BlockingIOError):
