@@ -234,3 +234,27 @@ def test_a_reader_that_is_gone_before_the_first_line() -> None:
     )  # fmt: skip
     os.close(writer)
     assert (done.returncode, done.stderr) == (command_line.READER_GONE, "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such pipes")
+@pytest.mark.parametrize(("words", "stream", "code"), [("", "stdout", 2), ("nothing", "stderr", 2)])
+def test_a_pipe_that_is_full_and_does_not_wait(words: str, stream: str, code: int) -> None:
+    """Nobody reads, and the pipe refuses instead of waiting: a message where one can be read, and no traceback."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    with pytest.raises(BlockingIOError):
+        while True:
+            os.write(writer, bytes(512))
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: writer}
+    # without its buffer Python loses what such a pipe refuses, and says nothing
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        [sys.executable, "-m", "centrode", "--lang", "en", "examples", *words.split()],
+        env=buffered, encoding="utf-8", check=False, **streams,
+    )  # fmt: skip
+    os.close(writer)
+    os.close(reader)
+    assert done.returncode == code
+    told = "" if stream == "stderr" else "Error: the operating system refused: "
+    assert ((done.stdout or "") + (done.stderr or "")).startswith(told)
+    assert "Traceback" not in f"{done.stderr}"

@@ -134,6 +134,29 @@ def test_a_bad_block_is_named_and_computed_again(store: Path, damage: Callable[[
         xr.testing.assert_equal(plain, memory)
 
 
+@pytest.mark.parametrize("damage", [cut_off, grown])
+def test_a_bad_block_at_the_edge(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[Path], None]
+) -> None:
+    """The last block is no whole chunk; what is in its place is not read when it is computed again."""
+    monkeypatch.setattr(limits, "BLOCK_POSITIONS", 2000)
+    asked = {
+        "vary": ct.grid({"links.AB.length": np.linspace(3.2, 3.8, 7)}),
+        "outputs": "angle.DB",
+        "samples": 7,
+    }
+    store = tmp_path / "r.zarr"
+    whole = ct.sweep(ct.example("crank-rocker"), **asked, store=store).load()
+    chunks = sorted(store.glob("angle.DB/c/*/0"))
+    step = xr.open_zarr(store)["angle.DB"].encoding["chunks"][0]
+    assert len(chunks) > 1
+    assert 7 % step
+    monkeypatch.setattr(f"{__name__}.chunk", lambda _store: chunks[-1])
+    damage(store)
+    with pytest.warns(DamageWarning, match="1 block is damaged"):
+        xr.testing.assert_equal(ct.sweep(ct.example("crank-rocker"), **asked, store=store), whole)
+
+
 def test_many_bad_blocks(store: Path) -> None:
     shutil.rmtree(store / "position.B" / "c")
     with pytest.warns(

@@ -106,7 +106,8 @@ def write_whole(file: Path, told: Mapping[str, Any]) -> None:
 def remove_file(path: Path) -> None:
     """Remove a file of an earlier run, if it is there; InputError where it is one that was read."""
     keep_inputs(path)
-    path.unlink(missing_ok=True)
+    with suppress(FileNotFoundError, NotADirectoryError):
+        path.unlink()
 
 
 def clear_folder(path: Path) -> None:

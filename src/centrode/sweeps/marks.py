@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from centrode.errors import InputError
-from centrode.files.drafts import write_whole
-from centrode.files.inputs import keep_inputs
+from centrode.files.drafts import remove_file, write_whole
 from centrode.locale import _
 from centrode.sweeps.asked import Column
 from centrode.sweeps.blocks import Blocks
@@ -54,9 +53,13 @@ class Marks:
             size = math.prod(extents) * column.bytes + CHECK
             yield self.store.joinpath(column.name, "c", *place, *inner), size
 
-    def keep_inputs(self, block: int) -> None:
-        """Raise InputError where a chunk of a block is a file that was read."""
-        keep_inputs(*(file for file, _size in self.chunks(block)))
+    def remove_chunks(self, block: int) -> None:
+        """Remove a block's chunks: what is there must not be read where zarr writes a part of a chunk.
+
+        Raises InputError where one of them is a file that was read.
+        """
+        for file, _size in self.chunks(block):
+            remove_file(file)
 
     def write(self, block: int, tally: Tally) -> None:
         """Mark a block whose chunks are written."""

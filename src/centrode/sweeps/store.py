@@ -103,7 +103,7 @@ class Store:
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
         region = self.blocks.region(block)
         extent = tuple(along.stop - along.start for along in region)
-        self.marks.keep_inputs(block)
+        self.marks.remove_chunks(block)
         for column in self.frame.asked.columns:
             values = results[column.name].reshape(extent + column.shape)
             self.arrays[column.name][(*region, *[slice(None)] * len(column.shape))] = values
@@ -142,7 +142,7 @@ def opened(path: Path, frame: Frame, blocks: Blocks, task: Task) -> Iterator[Sto
 
 
 def read(path: Path, frame: Frame) -> xr.Dataset:
-    """The result in a store; numbers are read when they are asked for, coordinates are those of the sweep."""
+    """The result in a store; numbers are read when they are used, coordinates are those of the sweep."""
     coordinates = frame.empty.coords
     data = xr.open_zarr(str(path), chunks=None, drop_variables=list(map(str, coordinates)))
     # a folder has no order of its own
