@@ -54,7 +54,9 @@ class TurnedStretch:
     def turns(self, angle: Array, parameter: Array, at_first: float) -> Array:
         """Turns of angles at parameters on the stretch; `at_first` are those at its first place."""
         nearest = nearest_node(self.stretch.places, parameter)
-        return at_first + self.passed[nearest] + np.round((self.angle[nearest] - angle) / TURN)
+        apart = np.round((self.angle[nearest] - angle) / TURN)
+        # where an angle is absent there is nothing to turn
+        return at_first + self.passed[nearest] + np.where(np.isfinite(apart), apart, 0.0)
 
 
 def with_quick_steps(steps: Counts, turned: Sequence[TurnedStretch]) -> None:
