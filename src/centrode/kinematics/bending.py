@@ -12,7 +12,7 @@ from centrode.algebra.bends import BendFunctions, Bent, Cells
 from centrode.algebra.jets import Jet
 from centrode.kinematics.continuation import Continuation, Rough
 from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.mending import NODES, WEIGHTS, inside, numbers_of, set_numbers
+from centrode.kinematics.mending import Windows, inside, numbers_of, set_numbers
 from centrode.kinematics.paths import JETS, Path
 from centrode.structure.groups import Newton, links_of, points_of
 from centrode.structure.positions import Positions
@@ -25,13 +25,8 @@ Namespace: TypeAlias = Any
 BENDS = BendFunctions(ARRAYS)
 
 
-LOOKS = 3 * len(NODES)
-LOOKED = 2.0 * np.cos((np.arange(LOOKS) + 0.5) * np.pi / LOOKS)
-"""Chebyshev points of the stretch between the outermost nodes of a window, in its half widths."""
-BASIS = WEIGHTS / (LOOKED[:, None] - NODES)
-BASIS /= BASIS.sum(axis=1, keepdims=True)
-BETWEEN = 1.0 / np.cos(0.5 * np.pi * (len(NODES) - 1) / LOOKS)
-"""How many times its greatest value at these a polynomial may reach elsewhere (Ehlich and Zeller, 1964)."""
+INSIDE = 0.95
+"""Share of a circle's radius up to which the terms of a series bound its second derivative."""
 ROOM = 2.0
 """What is known of a law at three places of a cell is taken this many times for the cell: laws are not bounded."""
 
@@ -89,40 +84,39 @@ class Bending(Rough):
         at.angles.update({name: known.angles[name] for name in links_of(which) if name in known.angles})
 
     def after(self, group: int, at: Positions) -> None:
-        windows = self.continuation.windows_of(group)
+        continuation = self.continuation
+        windows = continuation.windows_of(group)
         if windows is None:
             return
-        kinematics = self.continuation.kinematics
-        before = numbers_of(kinematics, group, at)
+        before = numbers_of(continuation.kinematics, group, at)
         super().after(group, at)
         index, chosen = inside(windows, self.parameter.reshape(-1), self.lanes)
         if not len(chosen):
             return
-        known = self.continuation._at_nodes(group, bounded=False)
-        shape = (
-            (self.continuation.branches.lanes, self.parameter.shape[-1])
-            if self.lanes is None
-            else self.parameter.shape
-        )
+        shape = self.parameter.shape
+        if self.lanes is None:
+            shape = continuation.branches.lanes, shape[-1]
+        along = self.parameter.reshape(-1)[index[-1]]
         numbers = []
-        for old, new, nodes in zip(before, numbers_of(kinematics, group, at), known, strict=True):
+        for old, new, series in zip(
+            before,
+            numbers_of(continuation.kinematics, group, at),
+            continuation._series[group].numbers,
+            strict=True,
+        ):
             if isinstance(old, Bent) and isinstance(new, Jet):
-                bend = np.array(np.broadcast_to(old.bend, shape), dtype=np.float64)
                 half = np.broadcast_to(old.cells.half, shape)[index]
-                bend[index] = np.where(
-                    half <= windows.half[chosen],
-                    _bends(nodes, len(windows), bend[index], chosen),
-                    bend[index],
-                )
+                bend = np.array(np.broadcast_to(old.bend, shape), dtype=np.float64)
+                bend[index] = _bends(series, windows.of(chosen), chosen, along, half, bend[index])
                 new = Bent(*new.coefficients, bend, old.cells)
             numbers.append(new)
-        set_numbers(kinematics, group, at, numbers)
+        set_numbers(continuation.kinematics, group, at, numbers)
 
 
-def _bends(nodes: Number, windows: int, closed: Array, chosen: Lanes) -> Array:
-    """Bends inside windows, from second derivatives at their nodes; those of closed forms where there are none."""
-    if not isinstance(nodes, Jet):
-        return np.zeros(len(chosen))
-    second = np.broadcast_to(nodes.derivative(2), (windows * len(NODES),)).reshape(windows, len(NODES))
-    found = BETWEEN * np.max(np.abs(second @ BASIS.T), axis=1)[chosen]
-    return np.where(np.isfinite(found), found, closed)
+def _bends(series: Array, windows: Windows, chosen: Lanes, along: Array, half: Array, closed: Array) -> Array:
+    """Bends over cells about places in windows, by the terms of the series; those of closed forms beyond it."""
+    share = (np.abs(along - windows.centre) + half) / windows.radius
+    found = np.zeros(len(chosen))
+    for k in range(series.shape[1] - 1, 1, -1):
+        found = found * share + k * (k - 1.0) * np.abs(series[chosen, k])
+    return np.where(share <= INSIDE, found / windows.radius**2, closed)

@@ -112,7 +112,8 @@ def divided(pieces: Pieces, guard: Guard, unit: float) -> Pieces:
         there = np.isfinite(value)
         with np.errstate(all="ignore"):
             known = clear(value, slope, bend, rest.half) | straight(slope, bend, rest.half)
-        done = known | (rest.half <= unit * _finest(rest.lane, there & ~known))
+        # where the law of a drive changes its formula at a change point there are no derivatives
+        done = known | ~np.isfinite(slope) | (rest.half <= unit * _finest(rest.lane, there & ~known))
         every = Pieces(rest.lane, rest.centre, rest.half, value, known, rest.nodes)
         found.append(every.taken(there & done))
         rest = parts_of(every.taken(there & ~done))

@@ -38,6 +38,7 @@ from centrode.kinematics.mesh import (
     low_minima,
     sign_changes,
 )
+from centrode.kinematics.quick_turns import QuickTurns
 from centrode.kinematics.zeros import Zeros
 from centrode.structure.groups import Aim, Meet
 from centrode.structure.positions import Positions
@@ -206,7 +207,7 @@ class _Counting(Rough):
         self.scan = scan
 
     def continued(self, group: int, key: str, angle: Number) -> Number:
-        count(self.scan, key, angle)
+        count(self.scan, group, key, angle)
         return super().continued(group, key, angle)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
@@ -223,7 +224,7 @@ class _Searching(Bending):
         self.last = last
 
     def continued(self, group: int, key: str, angle: Number) -> Number:
-        count(self.scan, key, angle)
+        count(self.scan, group, key, angle)
         return super().continued(group, key, angle)
 
     def root(self, group: int, radicand: Jet) -> Number:
@@ -244,7 +245,8 @@ class _Searching(Bending):
         return divisor
 
 
-def count(scan: Scan, key: str, angle: Number) -> None:
+def count(scan: Scan, group: int, key: str, angle: Number) -> None:
     """Count the turns of an angle on the mesh."""
-    branches = scan.branches
-    branches.turns[key] = counted(angle, scan.mesh, branches.angles.get(key, 0.0), branches.initial)
+    branches, mesh = scan.branches, scan.mesh
+    quick = QuickTurns(scan.continuation, mesh, group).in_plan(group, key)
+    branches.turns[key] = counted(angle, mesh, branches.angles.get(key, 0.0), branches.initial, quick)
