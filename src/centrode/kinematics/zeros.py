@@ -30,6 +30,7 @@ from centrode.kinematics.cells import (
     without_sign,
 )
 from centrode.kinematics.guards import Guards
+from centrode.kinematics.mesh import low_minima
 from centrode.kinematics.pace import nearest_node
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -150,12 +151,8 @@ class Zeros:
         sign = np.sign(value)
         looked = rough[:, :-1] | rough[:, 1:]
         looked[stops.lane, np.searchsorted(self.mesh, stops.at) - 1] = False
-        lanes, cells = np.nonzero(
-            looked
-            & (sign[:, :-1] == sign[:, 1:])
-            & (sign[:, :-1] * slope[:, :-1] < 0.0)
-            & (sign[:, 1:] * slope[:, 1:] >= 0.0)
-        )
+        looked &= sign[:, :-1] == sign[:, 1:]
+        lanes, cells = low_minima(self.mesh, sign * value, sign * slope, looked)
         at = self.guards.minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
         return self._touching(group, lanes, at, sign[lanes, cells])
 
