@@ -134,7 +134,7 @@ def bent(
         sums = [plus(one, times(way, other)) for one, other in zip(sums, locus.pull(cells), strict=True)]
     known, linear, squared = sums
     least = least_bound(known, determinant - linear, squared, cells.m)
-    return tuple(Bent(*axis.coefficients, least, cells) for axis in place)
+    return tuple(Bent(axis.coefficients[0], axis.coefficients[1], least, cells) for axis in place)
 
 
 def bend(place: Place, cells: Cells) -> Number:

@@ -37,7 +37,7 @@ def half_widths(mesh: Array) -> Array | float:
     widest = float(np.max(gaps))
     if np.min(gaps) >= 0.99 * widest:
         return 0.5 * widest
-    return 0.5 * np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
+    return np.asarray(0.5 * np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps)))
 
 
 def bent_drives(path: Path, at: Array, half: Array | float) -> dict[str, Number]:
@@ -108,7 +108,7 @@ class Bending(Rough):
                 half = np.broadcast_to(old.cells.half, shape)[index]
                 bend = np.array(np.broadcast_to(old.bend, shape), dtype=np.float64)
                 bend[index] = _bends(series, windows.of(chosen), chosen, along, half, bend[index])
-                new = Bent(*new.coefficients, bend, old.cells)
+                new = Bent(new.coefficients[0], new.coefficients[1], bend, old.cells)
             numbers.append(new)
         set_numbers(continuation.kinematics, group, at, numbers)
 

@@ -92,13 +92,10 @@ class Pieces:
 def towards(lane: Lanes, low: Array, high: Array, place: Array) -> Pieces:
     """Stretches of the path, each with a place in it, in cells that get shorter towards the place and leave it out."""
     shares = 2.0 ** -np.arange(HALVINGS + 1.0)
-    centres, halves, lanes = [], [], []
-    for end in (low, high):
-        way = (end - place)[:, None]
-        centres.append((place[:, None] + 0.75 * way * shares).ravel())
-        halves.append((0.25 * np.abs(way) * shares).ravel())
-        lanes.append(np.repeat(lane, len(shares)))
-    centre, half, lane = (np.concatenate(each) for each in (centres, halves, lanes))
+    ways = np.concatenate([low - place, high - place])[:, None] * shares
+    centre = (np.tile(place, 2)[:, None] + 0.75 * ways).ravel()
+    half = 0.25 * np.abs(ways).ravel()
+    lane = np.repeat(np.tile(lane, 2), len(shares))
     worth = half > 0.0
     return Pieces.of(lane[worth], centre[worth], half[worth])
 

@@ -46,8 +46,8 @@ def largest_of(value: Array) -> Array:
 
 def low_minima(mesh: Array, value: Array, slope: Array, looked: Mask | None = None) -> tuple[Lanes, Lanes]:
     """Cells with a minimum that may reach zero, among all or those that are `looked` at."""
-    lowest = (slope[:, :-1] < 0.0) & (slope[:, 1:] >= 0.0)
-    lanes, cells = np.nonzero(lowest if looked is None else lowest & looked)
+    turning = (slope[:, :-1] < 0.0) & (slope[:, 1:] >= 0.0)
+    lanes, cells = np.nonzero(turning if looked is None else turning & looked)
     left, right = value[lanes, cells], value[lanes, cells + 1]
     falls, rises = slope[lanes, cells], slope[lanes, cells + 1]
     with np.errstate(all="ignore"):

@@ -212,9 +212,9 @@ class Zeros:
         for k in range(len(lanes)):
             near = minima.at[minima.lane == lanes[k]]
             foretold[k] = ((near > low[k]) & (near < high[k])).any()
-        lanes, low, high, sign = (x[~foretold] for x in (lanes, low, high, sign))
+        lanes, low, high, sign = lanes[~foretold], low[~foretold], high[~foretold], sign[~foretold]
         if len(lanes):
             falls, rises = (sign * self.guards.jets(group, lanes, x, 1).derivative(1) for x in (low, high))
             turns = (falls < 0.0) & (rises >= 0.0)
-            lanes, low, high, sign = (x[turns] for x in (lanes, low, high, sign))
+            lanes, low, high, sign = lanes[turns], low[turns], high[turns], sign[turns]
         return self._touching(group, lanes, self.guards.minima(group, lanes, low, high), sign)

@@ -81,7 +81,8 @@ def _driven(drive: str, value: Number, cells: Cells) -> Number:
     if isinstance(value, Bent) or not isinstance(value, Jet):
         return value
     still = all(type(x) is float and x == 0.0 for x in value.coefficients[2:])
-    return Bent(*value.coefficients[:2], 0.0 if still else variable(_name(drive)), cells)
+    found, slope = value.coefficients[:2]
+    return Bent(found, slope, 0.0 if still else variable(_name(drive)), cells)
 
 
 def bends_of(path: Path, mesh: Array) -> dict[str, Array]:
