@@ -243,7 +243,12 @@ class BendFunctions:
         )
         root = self.base.sqrt(length - strays)
         least = root * root
-        return Bent(flat.coefficients[0], flat.coefficients[1], (plus(bend, 2.0 * speed * speed / least)) / least, cells)
+        return Bent(
+            flat.coefficients[0],
+            flat.coefficients[1],
+            (plus(bend, 2.0 * speed * speed / least)) / least,
+            cells,
+        )
 
     def sign(self, x: Number) -> Number:
         return self.base.sign(x.value if isinstance(x, Jet) else x)
