@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from centrode.algebra.bends import Bent, Cells
 from centrode.algebra.jets import Jet
 from centrode.geometry import sphere
 from centrode.geometry.moving import (
@@ -11,6 +12,7 @@ from centrode.geometry.moving import (
     Number,
     OnLine,
     Place,
+    bent,
     followed,
     less,
     times,
@@ -41,6 +43,9 @@ def meet_circles(one: Circle, other: Circle, root: Root) -> Vector:
     # the cross product of the arms is half the root
     inverse = 2.0 / value(signed)
     x, y = followed(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
+    if isinstance(radicand, Bent):
+        cells = radicand.cells
+        x, y = bent((x, y), loci, _across(loci, cells), 0.5 * cells.m.sqrt(radicand.least), cells)
     return x, y
 
 
@@ -58,6 +63,9 @@ def meet_circle_and_line(one: Circle, other: Line, root: Root) -> Vector:
     # the cross product of the arm and the line's normal is the way from the foot
     inverse = 1.0 / value(signed)
     x, y = followed(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
+    if isinstance(radicand, Bent):
+        cells = radicand.cells
+        x, y = bent((x, y), loci, _across(loci, cells), cells.m.sqrt(radicand.least), cells)
     return x, y
 
 
@@ -99,7 +107,18 @@ def meet_circles_on_sphere(
         ]
 
     x, y, z = followed(place, (one, other, unit), solved, radicand.order)
+    if isinstance(radicand, Bent):
+        cells = radicand.cells
+        across = _across((one, other), cells)
+        ways = (*across, across[0] * across[1])
+        x, y, z = bent((x, y, z), (one, other, unit), ways, cells.m.sqrt(radicand.least), cells)
     return x, y, z
+
+
+def _across(loci: Sequence[AtDistance | OnLine], cells: Cells) -> tuple[Number, Number]:
+    """How far each of two loci can move the place it holds: by the length of the other's gradient."""
+    one, other = (locus.reach(cells) for locus in loci)
+    return other, one
 
 
 def _in_plane(loci: Sequence[AtDistance | OnLine], known: Sequence[Number], inverse: Number) -> Vector:

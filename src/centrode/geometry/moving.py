@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol, TypeAlias
 
+from centrode.algebra.bends import Bent, Cells, least_bound, plus
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import is_literal_zero
 
@@ -32,6 +33,16 @@ class Moving(Protocol):
     def add(self, coefficient: Place, k: int) -> None:
         """Take the point's k-th coefficient."""
 
+    def pull(self, cells: Cells) -> Pull:
+        """Bound over cells of the gradient multiplied by the point's acceleration, its velocity being known."""
+
+    def reach(self, cells: Cells) -> Number:
+        """Bound of the gradient's length over cells."""
+
+
+Pull: TypeAlias = tuple[Number, Number, Number]
+"""Coefficients of a bound that grows with that of the point's acceleration, B: of 1, B and B^2."""
+
 
 class AtDistance:
     """A point at a distance from a centre: arm . arm = distance^2, the arm from the centre to the point."""
@@ -49,6 +60,16 @@ class AtDistance:
     def add(self, coefficient: Place, k: int) -> None:
         self.arm.append(apart(coefficient, coefficients(self.centre, k)))
 
+    def pull(self, cells: Cells) -> Pull:
+        """Of arm . (x'' - c'') = (r^2)''/2 - |x' - c'|^2."""
+        carried = times(self.reach(cells), bend(self.centre, cells))
+        velocity = plus(length(self.arm[1], cells), times(cells.half, bend(self.centre, cells)))
+        known = plus(plus(carried, times(0.5, bend((self.squared,), cells))), times(velocity, velocity))
+        return known, times(2.0 * cells.half, velocity), cells.half * cells.half
+
+    def reach(self, cells: Cells) -> Number:
+        return cells.m.sqrt(self.squared.most if isinstance(self.squared, Bent) else self.squared)
+
 
 class OnLine:
     """A point on a line in the plane: normal . arm = 0, the arm from a point of the line to the point."""
@@ -65,6 +86,23 @@ class OnLine:
     def add(self, coefficient: Place, k: int) -> None:
         self.arm.append(apart(coefficient, coefficients(self.through, k)))
 
+    def pull(self, cells: Cells) -> Pull:
+        """Of n . (x'' - t'') = -2 n' . (x' - t') - n'' . (x - t)."""
+        line, turn = bend(self.through, cells), bend(self.direction, cells)
+        if all(not isinstance(x, Jet) for x in self.direction):
+            return line, 0.0, 0.0
+        rate = plus(length(self._normal(1), cells), times(cells.half, turn))
+        velocity = plus(length(self.arm[1], cells), times(cells.half, line))
+        away = plus(
+            length(self.arm[0], cells),
+            plus(times(cells.half, length(self.arm[1], cells)), times(cells.sagitta, line)),
+        )
+        known = plus(line, plus(times(2.0 * rate, velocity), times(turn, away)))
+        return known, plus(times(2.0 * rate, cells.half), times(turn, cells.sagitta)), 0.0
+
+    def reach(self, cells: Cells) -> Number:
+        return 1.0
+
     def _normal(self, k: int) -> Place:
         x, y = coefficients(self.direction, k)
         return less(0.0, y), x
@@ -80,6 +118,36 @@ def followed(
         for locus in loci:
             locus.add(found[k], k)
     return tuple(Jet(axis) for axis in zip(*found, strict=True))
+
+
+def bent(
+    place: Sequence[Jet], loci: Sequence[Moving], ways: Sequence[Number], determinant: Number, cells: Cells
+) -> tuple[Bent, ...]:
+    """A place that was followed, with a bound of its acceleration over cells.
+
+    The acceleration is the sum of what the loci pull at it, each along its way: `ways` bound the lengths of these,
+    `determinant` is what the determinant of the gradients does not fall below. A bound B of the acceleration is one of
+    the velocity's change as well, on which the pulls depend: it is the least with B determinant = sum of all.
+    """
+    sums: list[Number] = [0.0, 0.0, 0.0]
+    for locus, way in zip(loci, ways, strict=True):
+        sums = [plus(one, times(way, other)) for one, other in zip(sums, locus.pull(cells), strict=True)]
+    known, linear, squared = sums
+    least = least_bound(known, determinant - linear, squared, cells.m)
+    return tuple(Bent(axis.coefficients[0], axis.coefficients[1], least, cells) for axis in place)
+
+
+def bend(place: Place, cells: Cells) -> Number:
+    """Bound of a place's acceleration over cells."""
+    return length([x.bend for x in place if isinstance(x, Bent)], cells)
+
+
+def length(place: Place, cells: Cells) -> Number:
+    """Length of a vector of plain numbers; infinite numbers have infinite ones."""
+    some = [x for x in place if not is_literal_zero(x)]
+    if not some:
+        return 0.0
+    return cells.m.abs(some[0]) if len(some) == 1 else cells.m.sqrt(total(x * x for x in some))
 
 
 def value(x: Number) -> Number:

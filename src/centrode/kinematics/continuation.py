@@ -140,6 +140,10 @@ class Continuation:
             self._windows[group] = self._found_windows(group)
         return self._windows[group]
 
+    def series_of(self, group: int) -> Series:
+        """The series of a group on its stretches, which `windows_of` has found."""
+        return self._series[group]
+
     def has_windows(self, group: int) -> bool:
         """Whether the stretches of a group are known already; its events are, then."""
         return group in self._windows

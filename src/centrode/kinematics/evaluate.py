@@ -122,8 +122,12 @@ class Kinematics:
 
     def guard(self, m: Namespace, parameter: Number, group: int, hooks: Hooks) -> Number:
         """The number whose sign decides whether a group closes: its radicand, or the divisor of a group without one."""
+        return self.guard_behind(self.frame(m, parameter), m, group, hooks)
+
+    def guard_behind(self, at: Positions, m: Namespace, group: int, hooks: Hooks) -> Number:
+        """The same from what is known before the first group of the plan."""
         try:
-            self.positions(m, parameter, _UpTo(group, hooks))
+            self.advance(at, range(group + 1), m, _UpTo(group, hooks))
         except Reached as reached:
             return reached.value
         raise ValueError(f"group {group} has neither a radicand nor a divisor")

@@ -1,27 +1,35 @@
 """Limits and change points: where a group's radicand reaches zero along the path.
 
-The radicand is sampled with its derivative on a mesh that belongs to the mechanism, not to the samples
-asked for. A minimum of the radicand is refined by the root of its derivative: zero within the rounding
-error of the formulas is a change point, below zero a pair of limits. Other sign changes are limits. A
-divisor's sign change is a limit as well (the group's point goes to infinity).
+The radicand is looked at on a mesh that belongs to the mechanism, not to the samples asked for, with its derivative at
+each node and a bound of its second derivative in the cell about it. Cells in which it may have more than one zero are
+divided (`cells`). A minimum of the radicand is refined by the root of its derivative: zero within the rounding error of
+the formulas is a change point, below zero a pair of limits. Other sign changes are limits. A divisor's sign change is a
+limit as well (the group's point goes to infinity), and so is a place where it touches zero.
+
+Behind a group of higher class no second derivative is bounded: there minima and sign changes are looked for from node
+to node.
 """
 
 from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.bends import Bent
 from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
+from centrode.algebra.rounding import SAFETY
+from centrode.kinematics.bending import BENDS, Bending, bent_frame
 from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.continuation import Continuation, Rough
 from centrode.kinematics.counted_turns import counted
 from centrode.kinematics.evaluate import Kinematics, Reached
+from centrode.kinematics.guards import Guards
 from centrode.kinematics.mesh import (
     CLOSING_IN,
     cut_cells,
@@ -30,14 +38,14 @@ from centrode.kinematics.mesh import (
     low_minima,
     sign_changes,
 )
-from centrode.kinematics.paths import JETS
 from centrode.kinematics.quick_turns import QuickTurns
-from centrode.kinematics.roots import bracketed_roots
+from centrode.kinematics.zeros import Zeros
 from centrode.structure.groups import Aim, Meet
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
 
@@ -65,9 +73,9 @@ class Scan:
         last = max((i for i, group in enumerate(groups) if isinstance(group, (Meet, Aim))), default=0)
         along = self.mesh[None, :]
         with np.errstate(all="ignore"):
-            at = self.kinematics.frame(JETS, Jet.variable(along, 1))
+            at = bent_frame(self.kinematics, along, self.zeros.half)
             with suppress(Reached):  # slopes are needed up to the last radicand, and not beyond
-                self.kinematics.advance(at, range(last + 1), JETS, _Searching(self, last))
+                self.kinematics.advance(at, range(last + 1), BENDS, _Searching(self, last))
             plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
             self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, _Counting(self, ARRAYS))
         return plain
@@ -76,20 +84,42 @@ class Scan:
         """Follow a group of higher class over the mesh."""
         self.continuation.trace(group, (float(self.mesh[0]), float(self.mesh[-1])))
 
-    def find(self, group: int, radicand: Jet) -> None:
+    @property
+    def guards(self) -> Guards:
+        """Radicands and divisors at single places."""
+        return Guards(self.continuation)
+
+    @cached_property
+    def zeros(self) -> Zeros:
+        """What looks for their zeros, as far as their second derivatives are bounded."""
+        return Zeros(self.guards, self.mesh)
+
+    def find(self, group: int, radicand: Number) -> None:
         """Record where a group's radicand is zero."""
         value, slope = self._on_mesh(radicand)
         self.branches.largest[group] = largest_of(value)
-        self.branches.add(group, self._events(group, value, slope))
+        bend = self._bend_on_mesh(radicand)
+        if bend is None:
+            events = self._events(group, value, slope)
+        else:
+            limits, touches = self.zeros.found(group, value, slope, bend, self.branches.largest[group])
+            events = self._limits(group, *limits)
+            events += [Event("change point", group, int(k), float(x)) for k, x in zip(*touches, strict=True)]
+        self.branches.add(group, events)
 
-    def find_poles(self, group: int, divisor: Jet) -> None:
+    def find_poles(self, group: int, divisor: Number) -> None:
         """Record where a group goes to infinity."""
-        value, _slope = self._on_mesh(divisor)
-        lanes, cells = sign_changes(value)
-        found = self._roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
-        beside = self._beside_limits(group, value)
-        lanes, found = np.concatenate([lanes, beside[0]]), np.concatenate([found, beside[1]])
-        limits = [Event("limit", group, int(k), float(x)) for k, x in zip(lanes, found, strict=True)]
+        value, slope = self._on_mesh(divisor)
+        bend = self._bend_on_mesh(divisor)
+        if bend is None:
+            lanes, cells = sign_changes(value)
+            found = self.guards.roots(group, lanes, self.mesh[cells], self.mesh[cells + 1])
+            places = [(lanes, found), self._beside_limits(group, value)]
+        else:
+            places = list(self.zeros.found(group, value, slope, bend, largest_of(value)))
+        limits = [
+            Event("limit", group, int(k), float(x)) for place in places for k, x in zip(*place, strict=True)
+        ]
         self.branches.add(group, limits)
 
     def _on_mesh(self, jet: Number) -> tuple[Array, Array]:
@@ -98,13 +128,20 @@ class Scan:
             return np.broadcast_to(jet, shape), np.zeros(shape)
         return np.broadcast_to(jet.value, shape), np.broadcast_to(jet.derivative(1), shape)
 
+    def _bend_on_mesh(self, jet: Number) -> Array | None:
+        """Bound of the second derivative about each node; None where nothing is known of it."""
+        shape = (self.branches.lanes, len(self.mesh))
+        if isinstance(jet, Bent):
+            return np.broadcast_to(jet.bend, shape)
+        return None if isinstance(jet, Jet) else np.zeros(shape)
+
     def _events(self, group: int, value: Array, slope: Array) -> list[Event]:
         found: list[Event] = []
         settled = np.zeros((value.shape[0], value.shape[1] - 1), dtype=bool)
         lanes, cells = low_minima(self.mesh, value, slope)
         if len(lanes):
-            at = self._minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
-            least, bound = self.with_bound(group, lanes, at)
+            at = self.guards.minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
+            least, bound = self.guards.rounded(group, lanes, at)
             touches = np.abs(least) <= SAFETY * bound
             found += [
                 Event("change point", group, int(lane), float(x))
@@ -115,12 +152,12 @@ class Scan:
             for first, last in ((self.mesh[cells], at), (at, self.mesh[cells + 1])):
                 edge = value[lanes, cells] if last is at else value[lanes, cells + 1]
                 chosen = dips & (edge > 0.0)
-                roots = self._roots(group, lanes[chosen], first[chosen], last[chosen])
+                roots = self.guards.roots(group, lanes[chosen], first[chosen], last[chosen])
                 found += self._limits(group, lanes[chosen], roots)
             settled[lanes[dips], cells[dips]] = True
         lanes, cells = sign_changes(value)
         rest = ~settled[lanes, cells]
-        roots = self._roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
+        roots = self.guards.roots(group, lanes[rest], self.mesh[cells[rest]], self.mesh[cells[rest] + 1])
         beside = self._beside_limits(group, value)
         return found + self._limits(group, lanes[rest], roots) + self._limits(group, *beside)
 
@@ -135,17 +172,17 @@ class Scan:
             return lanes, ends
         nodes = np.where(np.isfinite(value[lanes, cells]), self.mesh[cells], self.mesh[cells + 1])
         places = ends[:, None] + (nodes - ends)[:, None] * CLOSING_IN
-        guard, bound = self.with_bound(group, np.repeat(lanes, len(CLOSING_IN)), places.ravel())
+        guard, bound = self.guards.rounded(group, np.repeat(lanes, len(CLOSING_IN)), places.ravel())
         # what is rounding has no sign: groups that stop together do not stop each other
         signs = np.where(np.abs(guard) > SAFETY * bound, np.sign(guard), 0.0).reshape(places.shape)
         rows, last, first = first_changes(signs)
         ends = np.sort([places[rows, last], places[rows, first]], axis=0)
-        return lanes[rows], self._roots(group, lanes[rows], *ends)
+        return lanes[rows], self.guards.roots(group, lanes[rows], *ends)
 
     def _limits(self, group: int, lanes: Lanes, at: Array) -> list[Event]:
         if not len(lanes):
             return []
-        rises = self.guard(group, lanes, at, 1).derivative(1) > 0.0
+        rises = self.guards.jets(group, lanes, at, 1).derivative(1) > 0.0
         return [
             Event("limit", group, int(lane), float(x), bool(up))
             for lane, x, up in zip(lanes, at, rises, strict=True)
@@ -161,33 +198,6 @@ class Scan:
         settled[lanes[near], np.maximum(cells[near] - 1, 0)] = True
         settled[lanes[near], np.minimum(cells[near] + 1, last)] = True
 
-    def guard(self, group: int, lanes: Lanes, at: Array, order: int) -> Jet:
-        """Radicand, or divisor, of a group with derivatives at parameters, one mechanism for each."""
-        hooks = self.continuation.hooks(JETS, at, lanes)
-        with np.errstate(all="ignore"):
-            guard = self.kinematics.taken(lanes).guard(JETS, Jet.variable(at, order), group, hooks)
-        return (
-            guard if isinstance(guard, Jet) else Jet((np.broadcast_to(guard, at.shape), *[0.0 * at] * order))
-        )
-
-    def _minima(self, group: int, lanes: Lanes, low: Array, high: Array) -> Array:
-        def slope(x: Array) -> tuple[Array, Array]:
-            jet = self.guard(group, lanes, x, 2)
-            return jet.derivative(1), jet.derivative(2)
-
-        return bracketed_roots(slope, low, high)
-
-    def _roots(self, group: int, lanes: Lanes, low: Array, high: Array) -> Array:
-        def guard(x: Array) -> tuple[Array, Array]:
-            jet = self.guard(group, lanes, x, 1)
-            return jet.value, jet.derivative(1)
-
-        return bracketed_roots(guard, low, high) if len(lanes) else np.zeros(0)
-
-    def with_bound(self, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
-        """Radicand of a group with the bound of its rounding error."""
-        return guard_with_bound(self.continuation, group, lanes, at)
-
 
 class _Counting(Rough):
     """Counts the turns of angles along the mesh, for all that is asked for afterwards."""
@@ -197,9 +207,7 @@ class _Counting(Rough):
         self.scan = scan
 
     def continued(self, group: int, key: str, angle: Number) -> Number:
-        branches, mesh = self.scan.branches, self.scan.mesh
-        quick = QuickTurns(self.scan.continuation, mesh, group).in_plan(group, key)
-        branches.turns[key] = counted(angle, mesh, branches.angles.get(key, 0.0), branches.initial, quick)
+        count(self.scan, group, key, angle)
         return super().continued(group, key, angle)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
@@ -207,12 +215,17 @@ class _Counting(Rough):
         super().higher(group, m, at)
 
 
-class _Searching(_Counting):
+class _Searching(Bending):
     """Looks for the events of every group before it asks for its sign; goes no further than the last radicand."""
 
     def __init__(self, scan: Scan, last: int) -> None:
-        super().__init__(scan, JETS)
+        super().__init__(scan.continuation, scan.mesh[None, :], None)
+        self.scan = scan
         self.last = last
+
+    def continued(self, group: int, key: str, angle: Number) -> Number:
+        count(self.scan, group, key, angle)
+        return super().continued(group, key, angle)
 
     def root(self, group: int, radicand: Jet) -> Number:
         self.scan.find(group, radicand)
@@ -223,6 +236,7 @@ class _Searching(_Counting):
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         if group == self.last:
             raise Reached(None)  # no radicand at all
+        self.scan.trace(group)
         super().higher(group, m, at)
 
     def divisor(self, group: int, divisor: Number) -> Number:
@@ -231,10 +245,8 @@ class _Searching(_Counting):
         return divisor
 
 
-def guard_with_bound(continuation: Continuation, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
-    """Radicand of a group at parameters, one lane for each, with the bound of its rounding error."""
-    hooks = continuation.hooks(ROUNDED, at, lanes)
-    with np.errstate(all="ignore"):
-        used = continuation.kinematics.taken(lanes)
-        guard = Rounded.of(used.guard(ROUNDED, Rounded.of(at), group, hooks))
-    return np.broadcast_to(guard.value, at.shape), np.broadcast_to(guard.bound, at.shape)
+def count(scan: Scan, group: int, key: str, angle: Number) -> None:
+    """Count the turns of an angle on the mesh."""
+    branches, mesh = scan.branches, scan.mesh
+    quick = QuickTurns(scan.continuation, mesh, group).in_plan(group, key)
+    branches.turns[key] = counted(angle, mesh, branches.angles.get(key, 0.0), branches.initial, quick)

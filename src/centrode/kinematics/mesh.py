@@ -15,6 +15,7 @@ from centrode.kinematics.paths import Path
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 
 LOW = 0.25
 """A minimum is looked into if the tangents on both sides meet below this fraction of the values there."""
@@ -43,9 +44,10 @@ def largest_of(value: Array) -> Array:
     return np.asarray(np.max(np.abs(np.where(np.isfinite(value), value, 0.0)), axis=1))
 
 
-def low_minima(mesh: Array, value: Array, slope: Array) -> tuple[Lanes, Lanes]:
-    """Cells with a minimum that may reach zero."""
-    lanes, cells = np.nonzero((slope[:, :-1] < 0.0) & (slope[:, 1:] >= 0.0))
+def low_minima(mesh: Array, value: Array, slope: Array, looked: Mask | None = None) -> tuple[Lanes, Lanes]:
+    """Cells with a minimum that may reach zero, among all or those that are `looked` at."""
+    turning = (slope[:, :-1] < 0.0) & (slope[:, 1:] >= 0.0)
+    lanes, cells = np.nonzero(turning if looked is None else turning & looked)
     left, right = value[lanes, cells], value[lanes, cells + 1]
     falls, rises = slope[lanes, cells], slope[lanes, cells + 1]
     with np.errstate(all="ignore"):

@@ -18,7 +18,7 @@ from centrode.errors import Status
 from centrode.kinematics.branches import Branches
 from centrode.kinematics.continuation import Continuation, Smooth
 from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.events import guard_with_bound
+from centrode.kinematics.guards import guard_with_bound
 from centrode.kinematics.higher_class.places import Judged
 from centrode.kinematics.layout import Layout
 from centrode.kinematics.paths import JETS

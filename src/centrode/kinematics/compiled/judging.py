@@ -1,9 +1,10 @@
 """Which mechanisms of a batch have no events: judged on the mesh of events, along the path where that is needed.
 
-A mechanism is clear where every radicand stays so far above zero, and every divisor so far from it, that the
-search of `events` would find nothing: no sign change and no low minimum. Then no sign flips, nothing is cut off,
-and the formulas of `traced` are the whole motion. What is not clear is left to the arrays; to call a clear
-mechanism unclear costs time and nothing else.
+A mechanism is clear where every radicand stays above zero all over each cell of the mesh, and every divisor off it,
+by the bounds of `algebra.bends`: the search of `events` would find nothing. Behind a group of higher class nothing is
+bounded; there no sign change and no low minimum is enough. Then no sign flips, nothing is cut off, and the formulas of
+`traced` are the whole motion. What is not clear is left to the arrays; to call a clear mechanism unclear costs time and
+nothing else.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
 from centrode.algebra.reductions import Reduction, together
+from centrode.kinematics.compiled.bends import DIVISOR, RADICAND, bends_of
 from centrode.kinematics.compiled.centring import Centring
 from centrode.kinematics.compiled.drives import places_of
 from centrode.kinematics.compiled.passes import Pass, greatest, least, least_of
@@ -39,6 +41,8 @@ Values: TypeAlias = dict[str, Array]
 m = EXPRESSIONS
 SAFE = 2.0
 """Margins of the search are kept this many times over: the last bits may differ from those of the arrays."""
+ROOM = 1.0 + 1e-6
+"""How much more than their bounds numbers may stray: the search's own comparisons are rounded otherwise."""
 SLACK, GAP = "slack", "gap"
 
 
@@ -127,7 +131,8 @@ class Judging:
         """The mesh; with several drives also how far from each node the next one may be."""
         gaps = np.diff(self.mesh)
         either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
-        return self._places(self.mesh) | ({GAP: either} if self._path.by_time else {})
+        found = self._places(self.mesh) | bends_of(self._path, self.mesh)
+        return found | ({GAP: either} if self._path.by_time else {})
 
     @cached_property
     def _of_events(self) -> Reduction:
@@ -136,12 +141,20 @@ class Judging:
         slacks, parts = [], []
         for group, radicand in self.traced.radicands.items():
             value, slope = _with_slope(radicand)
-            # a minimum next to a node lies no deeper than its tangent reaches in one step
-            slacks.append(as_node(value * (1.0 - SAFE * LOW) - m.abs(slope) * step))
+            bent = self.traced.bends.get((RADICAND, group))
+            if bent is None:
+                # a minimum next to a node lies no deeper than its tangent reaches in one step
+                slacks.append(as_node(value * (1.0 - SAFE * LOW) - m.abs(slope) * step))
+            else:
+                slacks.append(as_node(bent.value - ROOM * bent.strays))
             parts.append(greatest(f"largest {group}", as_node(m.abs(value))))
         for group, divisor in self.traced.divisors.items():
-            value = as_node(_with_slope(divisor)[0])
-            parts += [greatest(f"most {group}", value), least(f"least {group}", value)]
+            bent = self.traced.bends.get((DIVISOR, group))
+            if bent is None:
+                value = as_node(_with_slope(divisor)[0])
+                parts += [greatest(f"most {group}", value), least(f"least {group}", value)]
+            else:
+                slacks.append(as_node(m.abs(bent.value) - ROOM * bent.strays))
         if slacks:
             parts.append(least(SLACK, least_of(slacks)))
         return together(*parts)

@@ -16,11 +16,13 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.bends import Bent
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.branches import branches_at_start
+from centrode.kinematics.compiled.bends import bent_guards
 from centrode.kinematics.compiled.deciding import Deciding, chains_of, refuse_untraceable
 from centrode.kinematics.compiled.drives import traced_path, winders_of
 from centrode.kinematics.compiled.newton.steps import Step
@@ -59,6 +61,7 @@ class Traced:
     ----------
     solved : arrays of nodes and floats, of one lane and one sample
     radicands, divisors : group -> jet of first order, or what does not move with the drive: events are their zeros
+    bends : the same over cells of the mesh, as far as they are bounded, see `bends`
     turning : link -> cosine and sine of its angle where its turns have to be found
     winders : drive -> its value, with which links may turn
     turns : link -> the turns that stand in its angle: a whole number
@@ -69,6 +72,7 @@ class Traced:
     solved: Solved
     radicands: Mapping[int, Number]
     divisors: Mapping[int, Number]
+    bends: Mapping[tuple[str, int], Bent]
     turning: Mapping[str, tuple[Operand, Operand]]
     winders: Mapping[str, Operand]
     steps: Mapping[int, Step]
@@ -114,7 +118,10 @@ def traced(
     winders = winders_of(path)
     angles, turning = _angles(layout, at, columns, ready.assembled.angles, _turns(bool(chains), winders))
     solved = _solved(_Parts(ready, kinematics, layout, columns, angles), span, varied)
-    return Traced(solved, hooks.radicands, hooks.divisors, turning, winders, hooks.steps, hooks.counted)
+    bends = bent_guards(ready, span, varied, signs)
+    return Traced(
+        solved, hooks.radicands, hooks.divisors, bends, turning, winders, hooks.steps, hooks.counted
+    )
 
 
 def _turns(walked: bool, winders: Mapping[str, Operand]) -> Turns:

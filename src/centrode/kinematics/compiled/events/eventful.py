@@ -20,6 +20,7 @@ from centrode.algebra.expressions import Node, Operand, as_node, variable
 from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.angles import NodeTurns
+from centrode.kinematics.compiled.bends import bends_of
 from centrode.kinematics.compiled.drives import inputs_of, places_of
 from centrode.kinematics.compiled.events.patches import Patches
 from centrode.kinematics.compiled.events.searching import Search, of_mesh
@@ -139,7 +140,8 @@ class Eventful:
             if not all(isinstance(radicand, Jet) for radicand in plan.radicands.values()):
                 nodes = traced(self.ready, self.span, self.varied, signs, on_mesh=True)
             path = self.ready.kinematics.path
-            mesh, samples = places_of(path, self.mesh, ORDERS - 1), inputs_of(path, self.span)
+            mesh = places_of(path, self.mesh, ORDERS - 1) | bends_of(path, self.mesh)
+            samples = inputs_of(path, self.span)
             self._writers[key] = (
                 plan,
                 Writer(of_mesh(nodes), mesh, self.kernels, self.threads, self._memory[0]),

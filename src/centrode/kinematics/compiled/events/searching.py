@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.bends import Bent, Cells
 from centrode.algebra.jets import Jet
 from centrode.kinematics.angles import NodeTurns, node_turns
 from centrode.kinematics.compiled.events.signs import MOST, counts_of, values_of
@@ -38,9 +39,12 @@ Writers: TypeAlias = Callable[[Mapping[int, int]], tuple[Traced, Writer]]
 
 
 def of_mesh(plan: Traced) -> dict[str, Nodes]:
-    """What is written on the mesh: radicands with slopes, divisors, cosines and sines of angles."""
+    """What is written on the mesh: radicands and divisors with slopes and bends, cosines and sines of angles."""
     found = {f"radicand {group}": _pair(x) for group, x in plan.radicands.items()}
     found |= {f"divisor {group}": _pair(x) for group, x in plan.divisors.items() if isinstance(x, Jet)}
+    for (kind, group), bent in plan.bends.items():
+        if f"{kind} {group}" in found:
+            found[f"bend of {kind} {group}"] = boxed([bent.bend])
     return found | {f"rotor {link}": boxed(rotor) for link, rotor in plan.turning.items()}
 
 
@@ -79,7 +83,8 @@ class Search:
                 if f"{kind} {group}" in self._found:
                     if not self._up_to_date():
                         return False
-                    find(group, self._with_patches(scan, group, self._found[f"{kind} {group}"]))
+                    bend = self._found.get(f"bend of {kind} {group}")
+                    find(group, self._with_patches(scan, group, self._found[f"{kind} {group}"], bend))
         return self._up_to_date()
 
     def turns(self, link: str, initial: float) -> NodeTurns:
@@ -113,13 +118,19 @@ class Search:
             self._write()
         return True
 
-    def _with_patches(self, scan: Scan, group: int, pair: Array) -> Jet:
+    def _with_patches(self, scan: Scan, group: int, pair: Array, bend: Array | None) -> Jet:
         """Value and slope of a radicand or divisor, those of the arrays where a series gives a group before it."""
         lanes, nodes = self._near_change_points(range(group))
+        if bend is None:
+            if len(lanes):
+                guard = scan.guards.jets(group, lanes, self.mesh[nodes], 1)
+                pair[:, lanes, nodes] = guard.value, guard.derivative(1)
+            return Jet((pair[0], pair[1]))
         if len(lanes):
-            guard = scan.guard(group, lanes, self.mesh[nodes], 1)
-            pair[:, lanes, nodes] = guard.value, guard.derivative(1)
-        return Jet((pair[0], pair[1]))
+            half = np.broadcast_to(scan.zeros.half, self.mesh.shape)[nodes]
+            patched = scan.guards.bent(group, lanes, self.mesh[nodes], half)
+            pair[:, lanes, nodes], bend[0, lanes, nodes] = patched[:2], patched[2]
+        return Bent(pair[0], pair[1], bend[0], Cells(scan.zeros.half, ARRAYS))
 
     def _near_change_points(self, groups: range) -> tuple[Lanes, Lanes]:
         """Mechanisms and nodes that lie next to change points of some groups, each once."""

@@ -1,0 +1,102 @@
+"""Radicands and divisors of a traced plan with bounds of their second derivatives over the cells of the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.bends import BendFunctions, Bent, Cells
+from centrode.algebra.expression_functions import EXPRESSIONS
+from centrode.algebra.expressions import Operand, variable
+from centrode.algebra.jets import Jet
+from centrode.kinematics.bending import bent_drives, half_widths
+from centrode.kinematics.compiled.drives import traced_path
+from centrode.kinematics.compiled.variables import PARAMETER, Varied
+from centrode.kinematics.evaluate import Hooks, Reached
+from centrode.kinematics.paths import Path
+from centrode.kinematics.phases import with_phases
+from centrode.kinematics.ready import Ready
+from centrode.kinematics.spans import Span
+from centrode.structure.positions import Positions
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
+
+NODE_BENDS = BendFunctions(EXPRESSIONS)
+HALF = "half a cell"
+RADICAND, DIVISOR = "radicand", "divisor"
+
+
+@dataclass
+class _Bounding(Hooks):
+    """Signs as they are given; keeps radicands and divisors up to the first group of higher class."""
+
+    signs: Mapping[int, Operand]
+    found: dict[tuple[str, int], Bent]
+    cells: Cells
+
+    def root(self, group: int, radicand: Number) -> Number:
+        self.found[RADICAND, group] = self._bent(radicand)
+        return NODE_BENDS.sqrt(radicand) * self.signs[group]
+
+    def divisor(self, group: int, divisor: Number) -> Number:
+        self.found[DIVISOR, group] = self._bent(divisor)
+        return divisor
+
+    def continued(self, group: int, key: str, angle: Number) -> Number:
+        raise Reached(None)  # only walks along the path count turns
+
+    def higher(self, group: int, m: Any, at: Positions) -> None:
+        raise Reached(None)
+
+    def _bent(self, number: Number) -> Bent:
+        return number if isinstance(number, Bent) else Bent(number, 0.0, 0.0, self.cells)
+
+
+def bent_guards(
+    ready: Ready, span: Span, varied: Varied, signs: Mapping[int, Operand] | None = None
+) -> dict[tuple[str, int], Bent]:
+    """(radicand or divisor, group) -> the number on a cell of the mesh, as far as its second derivative is bounded."""
+    known = ready.kinematics
+    path = traced_path(known.path, span.parameter, 2)
+    kinematics = with_phases(replace(known, numbers=varied.numbers, path=path), known.numbers.gearing.phase)
+    half: Operand = variable(HALF) if path.by_time else 0.5 * path.step
+    cells = Cells(half, EXPRESSIONS)
+    place = NODE_BENDS.variable(variable(PARAMETER), half)
+    drives = {drive: _driven(drive, x, cells) for drive, x in path.drive_values(NODE_BENDS, place).items()}
+    hooks = _Bounding(ready.assembled.signs if signs is None else signs, {}, cells)
+    at = Positions.of_frame(kinematics.numbers, drives, NODE_BENDS)
+    with suppress(Reached):
+        kinematics.advance(at, range(len(kinematics.structure.groups)), NODE_BENDS, hooks)
+    return hooks.found
+
+
+def _driven(drive: str, value: Number, cells: Cells) -> Number:
+    """A drive's value with the bend of its law, a variable where that is not plainly zero."""
+    if isinstance(value, Bent) or not isinstance(value, Jet):
+        return value
+    still = all(type(x) is float and x == 0.0 for x in value.coefficients[2:])
+    found, slope = value.coefficients[:2]
+    return Bent(found, slope, 0.0 if still else variable(_name(drive)), cells)
+
+
+def bends_of(path: Path, mesh: Array) -> dict[str, Array]:
+    """What the variables of cells stand for at the nodes of a mesh: name -> (nodes,)."""
+    if not path.by_time:
+        return {}
+    half = half_widths(mesh)
+    found = {HALF: np.broadcast_to(half, mesh.shape)}
+    with np.errstate(all="ignore"):
+        for drive, value in bent_drives(path, mesh, half).items():
+            if isinstance(value, Bent):
+                found[_name(drive)] = np.broadcast_to(value.bend, mesh.shape)
+    return found
+
+
+def _name(drive: str) -> str:
+    return f"bend of drive {drive}"
