@@ -15,7 +15,7 @@ FOR_TESTS := $(VENV)/.stamp-dev
 
 .DELETE_ON_ERROR:
 .PHONY: help demo test format lint types contracts catalogue-check reference-check docs tests tests-without-extras catalogues reference \
-	benchmarks clean
+	campaigns benchmarks clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-22s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -61,6 +61,9 @@ catalogues: $(FOR_TESTS) ## take new sentences into the catalogues and compile t
 
 reference: $(FOR_TESTS) ## make the pages of the documentation that are made from the program
 	$(BIN)/python -m tools.reference
+
+campaigns: $(FOR_TESTS) ## random cases against independent oracles, as far as CAMPAIGNS says; goes on where it was
+	$(BIN)/python -m tools.campaigns $(CAMPAIGNS)
 
 benchmarks: $(FOR_TESTS) ## ratios against peers and against the machine
 	$(PIP) install --editable '.[dev,benchmarks]'

@@ -1,0 +1,15 @@
+"""All campaigns by name: a new one is a module and a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tools.campaigns import change_points
+from tools.campaigns.campaign import Campaign
+
+CAMPAIGNS: Mapping[str, Campaign] = {
+    one.name: one
+    for one in (
+        change_points.CAMPAIGN,
+    )
+}  # fmt: skip
