@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import mpmath
 import pytest
+from tools.campaigns.change_points.cases import CAMPAIGN
+from tools.campaigns.change_points.drawing import drawn
+from tools.campaigns.change_points.linkage import DIGITS
 
-from tools.campaigns.change_points import CAMPAIGN, DIGITS, drawn
-
-SAMPLE = (1, 3, 10, 12, 15, 20, 21, 26, 29, 31, 35, 36, 43, 59)
+SAMPLE = (3, 10, 15, 20, 21, 25, 26, 29, 35, 36, 43, 59)
 """Every kind, alone, in a batch and by machine code, most of them within 0.01 of ratio 1."""
 
 

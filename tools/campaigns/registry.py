@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tools.campaigns import change_points
 from tools.campaigns.campaign import Campaign
+from tools.campaigns.change_points import cases as change_points
 
 CAMPAIGNS: Mapping[str, Campaign] = {
     one.name: one
