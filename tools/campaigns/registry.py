@@ -6,10 +6,14 @@ from collections.abc import Mapping
 
 from tools.campaigns.campaign import Campaign
 from tools.campaigns.change_points import cases as change_points
+from tools.campaigns.commands import cases as commands
+from tools.campaigns.reactions import cases as reactions
 
 CAMPAIGNS: Mapping[str, Campaign] = {
     one.name: one
     for one in (
         change_points.CAMPAIGN,
+        reactions.CAMPAIGN,
+        commands.CAMPAIGN,
     )
 }  # fmt: skip
