@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tools.campaigns.campaign import Campaign
+from tools.campaigns.chains import cases as chains
 from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.commands import cases as commands
 from tools.campaigns.reactions import cases as reactions
@@ -12,6 +13,7 @@ from tools.campaigns.reactions import cases as reactions
 CAMPAIGNS: Mapping[str, Campaign] = {
     one.name: one
     for one in (
+        chains.CAMPAIGN,
         change_points.CAMPAIGN,
         reactions.CAMPAIGN,
         commands.CAMPAIGN,

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import warnings
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from centrode.cli.main import main
@@ -68,8 +72,19 @@ def in_process(words: list[str], folder: Path, out: int, complaint: int) -> int:
     return done.returncode
 
 
+@cache
+def warmed() -> None:
+    """Load what most commands need, so that copies of this process need not."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+        main(["run", "crank-rocker", "--samples", "3", "--xlsx", "--out", f"{folder}/run"])
+        main(["reactions", "six-bar-press", "--samples", "3", "--no-figures", "--out", f"{folder}/reactions"])
+        main(["cam", "valve-cam", "--samples", "7", "--no-figures", "--out", f"{folder}/cam"])
+        main(["report", "crank-rocker", "--format", "html", "--out", f"{folder}/report"])
+
+
 def in_fork(words: list[str], folder: Path, out: int, complaint: int) -> int:
     """The command in a copy of this process, which has loaded what it needs."""
+    warmed()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # threads of libraries do nothing between cases
         child = os.fork()
