@@ -8,13 +8,17 @@ from tools.campaigns.campaign import Campaign
 from tools.campaigns.chains import cases as chains
 from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.commands import cases as commands
+from tools.campaigns.gaps import cases as gaps
 from tools.campaigns.reactions import cases as reactions
+from tools.campaigns.spheres import cases as spheres
 
 CAMPAIGNS: Mapping[str, Campaign] = {
     one.name: one
     for one in (
         chains.CAMPAIGN,
         change_points.CAMPAIGN,
+        gaps.CAMPAIGN,
+        spheres.CAMPAIGN,
         reactions.CAMPAIGN,
         commands.CAMPAIGN,
     )

@@ -1,44 +1,24 @@
 """Closure equations of a grown chain, in the coordinates of its links: no dyads, no branches, no order of groups.
 
 Unknowns are origin and angle of every link, places of guided points that no link carries, and the direction of every
-wheel's centre that rolls on a circle. The formulas take doubles, complex numbers (for derivatives by the complex step)
-and numbers of mpmath alike.
+wheel's centre that rolls on a circle.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Any
 
 import mpmath
 import numpy as np
-import numpy.typing as npt
 
+from tools.campaigns.closure.equations import ARRAYS, EXACT, Array, Equations, Functions
 from tools.campaigns.grown.plane import Growing
 
-Array = npt.NDArray[np.float64]
 Pair = tuple[Any, Any]
-COMPLEX_STEP = 1e-30
-DIGITS = 50
-STEP = mpmath.mpf(10) ** -12
-"""Of difference quotients at `DIGITS`."""
-APART = 1e-3
-"""Step of the second differences of doubles."""
 
 
-@dataclass(frozen=True)
-class Functions:
-    """Sine and cosine of a kind of numbers."""
-
-    cos: Callable[[Any], Any]
-    sin: Callable[[Any], Any]
-
-
-ARRAYS, EXACT = Functions(np.cos, np.sin), Functions(mpmath.cos, mpmath.sin)
-
-
-class Closure:
+class Closure(Equations):
     """The equations of a grown chain."""
 
     def __init__(self, growing: Growing) -> None:
@@ -50,9 +30,8 @@ class Closure:
                 self.carriers.setdefault(point, []).append(name)
         self.loose = [p for p in dict.fromkeys(g["point"] for g in growing.guides) if p not in self.carriers]
         self.circles = [w for w in growing.rolling if "radius" in w["along"]]
-        self.size = 3 * len(self.links) + 2 * len(self.loose) + len(self.circles)
         self.points = [*self.carriers, *self.loose]
-        self.start = self._start()
+        self.start, self.begun = self._start(), growing.start
         self.constants = [0.0] * (len(growing.gears) + len(growing.rolling))
         self.constants = [float(x) for x in self._kept(list(self.start), ARRAYS)]
         ends = [growing.places[name] for name in self.points]
@@ -93,7 +72,7 @@ class Closure:
         local = self.growing.frame[point] if body == "frame" else self.growing.links[body]["points"][point]
         return self._carried(x, body, local, m)
 
-    def places(self, x: Sequence[Any], m: Functions) -> list[Any]:
+    def places(self, x: Sequence[Any], q: Any, m: Functions) -> list[Any]:
         """Coordinates of all points, one after the other."""
         return [u for point in self.points for u in self.place(x, point, m)]
 
@@ -154,58 +133,6 @@ class Closure:
                 slot += 1
         return found
 
-    # --- doubles
-
-    def jacobian(self, x: Array, q: float) -> Array:
-        """Derivatives of the equations by the unknowns and, in the last column, by q."""
-        size = self.size
-        given = x[:, None] + 1j * COMPLEX_STEP * np.eye(size, size + 1)
-        driven = q + 1j * COMPLEX_STEP * np.eye(1, size + 1, size)[0]
-        rows = self.residual(list(given), driven, ARRAYS)
-        return np.array([np.broadcast_to(np.imag(row), size + 1) for row in rows]) / COMPLEX_STEP
-
-    def values(self, x: Array, q: float) -> Array:
-        """The equations at doubles."""
-        return np.array([float(row) for row in self.residual(list(x), q, ARRAYS)])
-
-    def closed(self, x: Array, q: float) -> Array | None:
-        """The solution near a guess, by Newton's method; None where it does not converge."""
-        x = x.copy()
-        for _ in range(12):
-            try:
-                step = np.linalg.solve(self.jacobian(x, q)[:, :-1], self.values(x, q))
-            except np.linalg.LinAlgError:
-                return None
-            x -= step
-            size = float(np.max(abs(step)))
-            if not size < 1.0:
-                return None
-            if size < 1e-13 * (1.0 + float(np.max(abs(x)))):
-                return x
-        return x if size < 1e-10 else None
-
-    # --- numbers of mpmath
-
-    def exact(self, x: Array, value: float) -> tuple[list[Any], list[Any], list[Any]]:
-        """Coordinates of all points with two derivatives by q, from a solution in doubles."""
-        inverse = np.linalg.inv(self.jacobian(x, value)[:, :-1])
-        rows = [[mpmath.mpf(float(u)) for u in row] for row in inverse]
-        with mpmath.workdps(DIGITS):
-            near = [mpmath.mpf(float(u)) for u in x]
-            ends = []
-            for k in (-1, 0, 1):
-                near = self._polished(near, mpmath.mpf(value) + k * STEP, rows)
-                ends.append(self.places(near, EXACT))
-            before, here, after = ends
-            first = [(c - a) / (2 * STEP) for a, c in zip(before, after, strict=True)]
-            second = [(a - 2 * b + c) / STEP**2 for a, b, c in zip(before, here, after, strict=True)]
-        return here, first, second
-
-    def _polished(self, x: list[Any], q: Any, inverse: list[list[Any]]) -> list[Any]:
-        for _ in range(12):
-            wrong = self.residual(x, q, EXACT)
-            steps = [mpmath.fdot(row, wrong) for row in inverse]
-            x = [a - b for a, b in zip(x, steps, strict=True)]
-            if max(abs(step) for step in steps) < mpmath.mpf(10) ** (-DIGITS + 4):
-                return x
-        raise ArithmeticError("Newton's method does not converge in many digits")
+    def far(self, x: Array) -> float:
+        """How far away the farthest link is; angles may grow."""
+        return float(np.max(abs(x.reshape(-1)[: 3 * len(self.links)].reshape(-1, 3)[:, :2])))

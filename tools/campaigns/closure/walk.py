@@ -1,4 +1,4 @@
-"""The curve of positions of a chain, walked along its arc from the initial position until the crank turns back."""
+"""The curve of positions of a mechanism, walked along its arc from the initial position until the crank turns back."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from tools.campaigns.chains.closure import Closure
+from tools.campaigns.closure.equations import Equations
 
 Array = npt.NDArray[np.float64]
 FIRST, GREATEST, LEAST = 0.02, 0.2, 1e-7
@@ -41,7 +41,7 @@ class Walk:
         return np.asarray((a + share * (b - a))[:-1])
 
 
-def tangent(closure: Closure, y: Array, along: Array) -> Array:
+def tangent(closure: Equations, y: Array, along: Array) -> Array:
     """Direction of the curve, in the sense of another direction."""
     rows = closure.jacobian(y[:-1], float(y[-1]))
     bordered = np.vstack([rows, along])
@@ -55,7 +55,7 @@ def tangent(closure: Closure, y: Array, along: Array) -> Array:
     return np.asarray(found / np.linalg.norm(found))
 
 
-def corrected(closure: Closure, y: Array, along: Array) -> Array | None:
+def corrected(closure: Equations, y: Array, along: Array) -> Array | None:
     """The place of the curve on the plane through y square to a direction; None where Newton's method fails."""
     x = y.copy()
     for turn in range(8):
@@ -74,9 +74,9 @@ def corrected(closure: Closure, y: Array, along: Array) -> Array | None:
     return x
 
 
-def walked(closure: Closure, way: float, until: float) -> Walk:
+def walked(closure: Equations, way: float, until: float) -> Walk:
     """Walk from the start, way = 1 with growing and -1 with falling angle of the crank, so far or to a limit."""
-    y = np.append(closure.start, closure.growing.start)
+    y = np.append(closure.start, closure.begun)
     found = Walk([y])
     sense = np.zeros(len(y))
     sense[-1] = way
@@ -95,16 +95,16 @@ def walked(closure: Closure, way: float, until: float) -> Walk:
             return found
         y, along = new, bent
         found.nodes.append(y)
-        if way * (y[-1] - closure.growing.start) > until:
+        if way * (y[-1] - closure.begun) > until:
             return found
-        if np.max(abs(y[: 3 * len(closure.links)])) > FAR:
+        if closure.far(y[:-1]) > FAR:
             break
         step = min(GREATEST, 1.4 * step)
     found.given_up = True
     return found
 
 
-def turning(closure: Closure, y: Array, along: Array, step: float, way: float) -> float | None:
+def turning(closure: Equations, y: Array, along: Array, step: float, way: float) -> float | None:
     """The crank's angle where it turns back, between a place and the next: the slope along the arc vanishes."""
     low, high, at = 0.0, step, y
     for _ in range(45):
