@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tools.campaigns.campaign import Campaign
+from tools.campaigns.cams import cases as cams
 from tools.campaigns.chains import cases as chains
 from tools.campaigns.change_points import cases as change_points
 from tools.campaigns.commands import cases as commands
@@ -19,6 +20,7 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         change_points.CAMPAIGN,
         gaps.CAMPAIGN,
         spheres.CAMPAIGN,
+        cams.CAMPAIGN,
         reactions.CAMPAIGN,
         commands.CAMPAIGN,
     )

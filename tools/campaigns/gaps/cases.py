@@ -221,8 +221,8 @@ parallel; and dyads whose rods are by a very little too short, or too different,
 slider-crank.
 
 The oracle computes what has to be positive for the dyad to close from formulas of its own at 4001 nodes a turn, looks
-for its minima by golden section and for the poles by bisection, and bisects the ends of every gap. Inside the gap
-nearest to the start, and beyond it, no sample may be ok; on the near side all are; the limit stands at the near end.""",
+for its minima by golden section and for the poles by bisection, and bisects the ends of every gap. Inside the gap next
+to the start, and beyond it, no sample may be ok; on the near side all are; the limit stands at the near end.""",
     columns={
         "limit": "error of the limit at the near end of the gap [rad]",
         "limit / rounding": "the same in units of 256 roundings of the squared lengths over the slope; bound 1",
