@@ -24,4 +24,4 @@ CAMPAIGNS: Mapping[str, Campaign] = {
         reactions.CAMPAIGN,
         commands.CAMPAIGN,
     )
-}  # fmt: skip
+}

@@ -216,12 +216,12 @@ def compare_profile(outcome: Outcome, layout: Layout, lift: Lift, phi: Any, body
 CAMPAIGN = Campaign(
     name="cams",
     title="Plate cams",
-    about="""Random plate cams: translating and oscillating followers with an edge, a roller or a flat face, either sense
-of turning, offsets, two to six segments of all curves, polynomials by conditions among them.
+    about="""Random plate cams: translating and oscillating followers with an edge, a roller or a flat face, either
+sense of turning, offsets, two to six segments of all curves, polynomials by conditions among them.
 
-The oracle writes the curves of rise from textbooks and solves the polynomials' conditions at 60 digits; derivatives are
-difference quotients. The profile is the envelope of the follower's places in the cam's axes, its curvature comes from
-how the normal turns along it; where the place of contact runs back the cam is undercut.""",
+The oracle writes the curves of rise from textbooks and solves the polynomials' conditions at 60 digits; derivatives
+are difference quotients. The profile is the envelope of the follower's places in the cam's axes, its curvature comes
+from how the normal turns along it; where the place of contact runs back the cam is undercut.""",
     columns={
         "s": f"error of the lift, in roundings of the greatest term of its formula; bound {LIFT:g}",
         "s'": "of its first derivative by the angle of the cam, and so on",

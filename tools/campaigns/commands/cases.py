@@ -7,7 +7,6 @@ import io
 import os
 import random
 import shlex
-import signal
 import tempfile
 import time
 from pathlib import Path
@@ -34,7 +33,8 @@ def drawn(seed: int, number: int) -> tuple[list[str], str, bytes, random.Random]
         file, content = draw.choice(("crank-rocker", "nothing", "", "../x", "-", "given.toml")), b"x = 1\n"
     else:
         file, content = draw.choice(inputs.NAMES), inputs.content(draw, kind)
-    words = [*path, *lines.words_of(draw, command, file)]
+    names = inputs.names_in(content.decode(errors="replace"))
+    words = [*path, *lines.words_of(draw, command, file, names)]
     return words, file, content, draw
 
 
@@ -91,7 +91,7 @@ def judge(
     outcome.count(f"exit {ended.code}")
     outcome.measure(row, "seconds", round(ended.seconds, 1))
     first = ended.complained.strip().splitlines()[:1]
-    if ended.code in (-signal.SIGALRM, -signal.SIGXCPU, -signal.SIGKILL):
+    if ended.code in processes.TOO_LONG:
         outcome.fault(f"{row}: more than {processes.SECONDS} s")
     elif ended.code not in ORDERLY:
         outcome.fault(f"{row}: exit {ended.code}: {first[0] if first else ''}")

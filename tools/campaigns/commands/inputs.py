@@ -12,6 +12,7 @@ from typing import Any
 import tomli_w
 
 import centrode as ct
+from centrode.errors import CentrodeError
 
 NUMBERS = (
     *(0.0, -0.0, -1.0, 1.0, 2.0, 1e-300, 1e-49, 1e-12, 1e-7, 1e7, 1e12, 1e49, 1e51, 1e300, 5e-324),
@@ -154,7 +155,17 @@ NAMES = (
         "%s{0}.toml",
         "result.toml",
     ),
+    *(
+        "motion.csv",
+        "summary.json",
+        "motion.nc",
+        "reactions.csv",
+        "result.html",
+        "report.html",
+        "positions.svg",
+    ),
 )
+"""Some are those of files that commands write."""
 SWEEP = """mechanism = "crank-rocker"
 outputs = ["angle.DB", "position.B"]
 samples = 9
@@ -189,13 +200,47 @@ def content(draw: random.Random, kind: str) -> bytes:
     return text.encode(errors="surrogatepass")
 
 
+@cache
+def machines() -> tuple[str, ...]:
+    """Built-in linkages with masses: commands about forces need them."""
+    return tuple(name for name in ct.example_names("linkage") if "mass" in example(name))
+
+
 def base(draw: random.Random, kind: str) -> str:
     """A description that is right."""
     if kind == "study":
         return SWEEP
     if kind == "table":
         return VARIANTS
-    return example(draw.choice(ct.example_names("cam" if kind == "cam" else "linkage")))
+    if kind == "cam":
+        return example(draw.choice(ct.example_names("cam")))
+    text = example(draw.choice(machines() if draw.random() < 0.5 else ct.example_names("linkage")))
+    return beside_an_event(draw, text) if draw.random() < 0.08 else text
+
+
+def beside_an_event(draw: random.Random, text: str) -> str:
+    """The description started very near a limit or change point of its motion, where it has one."""
+    tables = tomllib.loads(text)
+    drive = tables["drives"][0]
+    try:
+        motion = ct.motion(ct.parse_mechanism(text), samples=3)
+    except CentrodeError:
+        return text
+    places = motion.event_value.to_numpy()
+    if not len(places) or "link" not in drive:
+        return text
+    drive["start"] = float(draw.choice(list(places))) + draw.choice((-1.0, 1.0)) * 10.0 ** -draw.uniform(
+        2.0, 9.0
+    )
+    for link in tables["links"].values():
+        link.pop("angle", None)
+    drive["start"] = float(drive["start"])
+    return tomli_w.dumps(tables)
+
+
+def names_in(text: str) -> list[str]:
+    """Words that a description uses for its parts."""
+    return re.findall(r"[A-Za-z][\w.-]*", text)[:400] or ["A"]
 
 
 def of_tables(draw: random.Random, text: str) -> str:

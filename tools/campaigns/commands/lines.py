@@ -73,7 +73,47 @@ WORDS = (
         "9**9**9",
     ),
 )
-WHOLE = ("0", "1", "2", "3", "7", "13", "-1", "1000000000", "99999999999999999999", "x", "1.5", "")
+FORMULAS = (
+    *(
+        "10",
+        "10 - 2*sign(omega)",
+        "t**100",
+        "100*exp(-t)",
+        "1/t",
+        "sqrt(t - 1)",
+        "5*sin(phi)",
+        "abs(omega)",
+        "1/omega",
+    ),
+    *(
+        "10 N m",
+        "-3",
+        "min(10, t)",
+        "log(t)",
+        "omega**-1",
+        "tan(phi)",
+        "x",
+        "motor",
+        "10 - omega*1e9",
+        "1e300*t",
+    ),
+)
+WHOLE = (
+    "0",
+    "1",
+    "2",
+    "3",
+    "7",
+    "13",
+    "-1",
+    "1000000",
+    "200001",
+    "1000000000",
+    "99999999999999999999",
+    "x",
+    "1.5",
+    "",
+)
 REAL = ("0", "1", "0.1", "-1", "1e-9", "1e9", "nan", "inf", "x", "")
 PLACES = (
     *(
@@ -100,6 +140,8 @@ PLACES = (
 KINDS = {"cam": ("cam",), "study": ("study",), "table": ("table",), "name": ("name",)}
 """What an argument takes, by its name; any other takes a mechanism, and where it is a description a cam as well."""
 BOTH = ("description", "described")
+LIKELY = ("driving", "repair", "steady", "instants", "full", "least")
+"""Options that are drawn more often: much of what the command does hangs on them."""
 SMALL = {"samples": "7", "frames": "3", "steps": "20"}
 """What keeps a command short that is not meant to be long."""
 
@@ -129,14 +171,14 @@ def takes_both(command: click.Command) -> bool:
     return any(isinstance(one, click.Argument) and one.name in BOTH for one in command.params)
 
 
-def words_of(draw: random.Random, command: click.Command, file: str) -> list[str]:
+def words_of(draw: random.Random, command: click.Command, file: str, names: list[str]) -> list[str]:
     """Arguments and options of a command, each option there or not; the input may stand as the output too."""
     words: list[str] = []
     for parameter in command.params:
         if isinstance(parameter, click.Argument):
             words.append(file if draw.random() < 0.97 else draw.choice(WORDS))
         elif isinstance(parameter, click.Option):
-            words += option_words(draw, parameter, file)
+            words += option_words(draw, parameter, file, names)
     if draw.random() < 0.02:
         words.insert(
             draw.randrange(len(words) + 1), draw.choice(("--unknown", "extra", "--help", "-h", "--lang"))
@@ -144,7 +186,7 @@ def words_of(draw: random.Random, command: click.Command, file: str) -> list[str
     return words
 
 
-def option_words(draw: random.Random, option: click.Option, file: str) -> list[str]:
+def option_words(draw: random.Random, option: click.Option, file: str, names: list[str]) -> list[str]:
     """An option with a value of its kind or of another."""
     name = option.opts[0]
     if option.name in SMALL and draw.random() < 0.8:
@@ -154,7 +196,7 @@ def option_words(draw: random.Random, option: click.Option, file: str) -> list[s
     if option.name in ("out", "force"):
         if draw.random() < 0.5:
             return []
-    elif draw.random() < 0.8:
+    elif draw.random() < (0.4 if option.name in LIKELY else 0.8):
         return []
     if option.is_flag:
         return [name]
@@ -169,4 +211,11 @@ def option_words(draw: random.Random, option: click.Option, file: str) -> list[s
             return [name, draw.choice(WHOLE)]
         case _ if isinstance(option.type, type(click.FLOAT)):
             return [name, draw.choice(REAL)]
+    if option.name == "driving":
+        return [name, draw.choice(FORMULAS)]
+    if draw.random() < 0.5:
+        return [
+            name,
+            draw.choice((",", "=", ":", "-")).join(draw.choices(names, k=draw.choice((1, 1, 1, 2)))),
+        ]
     return [name, draw.choice(WORDS)]

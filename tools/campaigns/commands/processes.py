@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -18,13 +17,18 @@ from pathlib import Path
 
 from centrode.cli.main import main
 
+if sys.platform != "win32":
+    import resource
+
 SECONDS = 120
 """Of processor time. What is drawn small takes well under a second; what is drawn large is to be refused."""
 PATIENCE = 600
 """Seconds by the clock, on a machine that others use too."""
-GIBIBYTES = 3
+GIBIBYTES = 2
 """Of address space beyond what the process begins with."""
 OUT, COMPLAINT = "stdout", "stderr"
+TOO_LONG = (-9, -24, -999)
+"""Codes of what was killed, ran out of processor time, or of `PATIENCE`."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +54,9 @@ def ending(words: list[str], folder: Path, beside: Path, forked: bool) -> Ending
 
 
 def bounded() -> None:
-    """Bound what the process may still use."""
+    """Bound what the process may still use, where the operating system can."""
+    if sys.platform == "win32":
+        return
     with open("/proc/self/statm", encoding="ascii") as stream:
         used = int(stream.read().split()[0]) * resource.getpagesize()
     most = used + GIBIBYTES * 2**30
@@ -61,14 +67,15 @@ def bounded() -> None:
 
 def in_process(words: list[str], folder: Path, out: int, complaint: int) -> int:
     """The command as a terminal runs it."""
+    limit = None if sys.platform == "win32" else bounded
     try:
         done = subprocess.run(
             [sys.executable, "-m", "centrode", *words],
             cwd=folder, stdin=subprocess.DEVNULL, stdout=out, stderr=complaint, check=False,
-            timeout=PATIENCE, preexec_fn=bounded, env={**os.environ, "LANGUAGE": "en"},
+            timeout=PATIENCE, preexec_fn=limit, env={**os.environ, "LANGUAGE": "en"},
         )  # fmt: skip
     except subprocess.TimeoutExpired:
-        return -signal.SIGALRM
+        return TOO_LONG[-1]
     return done.returncode
 
 
@@ -119,6 +126,6 @@ def waited(child: int) -> int:
         if time.monotonic() > until:
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
-            return -signal.SIGALRM
+            return TOO_LONG[-1]
         time.sleep(pause)
         pause = min(0.05, 2.0 * pause)
