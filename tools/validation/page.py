@@ -17,12 +17,13 @@ is wrong, an example repeats its slip and says so, and the right value stands be
 CAMPAIGNS = """## Random cases
 
 Campaigns compare many random cases with oracles that share no code with the program. `make campaigns` runs all of
-them, `make campaigns CAMPAIGNS="gaps --minutes 5"` one for some minutes; a run that was cut short goes on where it was.
-Each writes its page:
+them, `make campaigns CAMPAIGNS="gaps --minutes 5"` one for some minutes; a run that was cut short goes on where it
+was. Each writes its page:
 
 {pages}
 
-`python -m tools.campaigns NAME --case NUMBER` runs one case and shows it in full. The suite runs a fixed sample of each.
+`python -m tools.campaigns NAME --case NUMBER` runs one case and shows it in full. The suite runs a fixed sample of
+each.
 """
 WIDTH = 120
 SOURCES = (

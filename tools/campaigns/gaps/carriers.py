@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from tools.campaigns.gaps.scan import minima
+
 Array = npt.NDArray[np.float64]
 Complex = npt.NDArray[np.complex128]
 
@@ -48,16 +50,7 @@ def crossing_lines(random: np.random.Generator, start: float) -> Carrier:
     local = complex(*random.uniform(-1.0, 1.0, 2))
     # the crank's line meets the frame's at a wide angle in the initial position
     own = heading + float(random.choice([-1.0, 1.0])) * float(random.uniform(0.4, 2.7)) - start
-    parts["guides"] = [
-        {
-            "name": "still",
-            "point": "P",
-            "on": "frame",
-            "through": [through.real, through.imag],
-            "direction": heading,
-        },
-        {"name": "turning", "point": "P", "on": "OA", "through": [local.real, local.imag], "direction": own},
-    ]
+    parts["guides"] = [guide("still", "frame", through, heading), guide("turning", "OA", local, own)]
     along = cmath.exp(1j * heading)
 
     def divisor(q: Array) -> Array:
@@ -93,6 +86,62 @@ def coupler(random: np.random.Generator, start: float) -> Carrier:
     return Carrier("pin of a four-bar", parts, place)
 
 
+def swinging_line(random: np.random.Generator, start: float) -> Carrier:
+    """P on lines of frame and rocker that are all but parallel, or just past it, where the rocker turns back."""
+    carried = coupler(random, start)
+    parts, place = carried.parts, carried.place
+    d = parts["frame"]["points"]["D"][0]
+    parts["links"] = {
+        name.replace("P", "B"): {**link, "points": [x.replace("P", "B") for x in link["points"]]}
+        if "points" in link
+        else link
+        for name, link in parts["links"].items()
+    }
+    parts["assembly"]["sides"] = {"B": parts["assembly"]["sides"]["P"]}
+
+    middle = float(np.angle(place(np.array([start]))[0] - d))
+
+    def angle(q: Array) -> Array:
+        return np.asarray(np.angle((place(q) - d) * np.exp(-1j * middle)))
+
+    nodes = np.linspace(start - np.pi, start + np.pi, 2001)
+    side = float(random.choice([-1.0, 1.0]))
+    ends = minima(lambda q: side * angle(q), nodes)
+    past = side * float(random.choice([1.0, 1.0, -1.0])) * 10.0 ** -float(random.uniform(3.0, 9.0))
+    extreme = float(np.min(side * angle(ends))) * side + past
+    through, local = complex(*random.uniform(-1.5, 1.5, 2)), complex(*random.uniform(-1.0, 1.0, 2))
+    heading = float(random.uniform(-np.pi, np.pi))
+    # parallel where the rocker's angle, counted from its first one, is the extreme
+    own = heading - extreme - middle
+    along = cmath.exp(1j * heading)
+    parts["guides"] = [
+        guide("still", "frame", through, heading),
+        guide("turning", "DB", local, own),
+    ]
+
+    def divisor(q: Array) -> Array:
+        return np.asarray(np.sin(angle(q) - extreme))
+
+    def meeting_place(q: Array) -> Complex:
+        turn = np.exp(1j * (angle(q) + middle))
+        unit, foot = turn * cmath.exp(1j * own), d + local * turn
+        s = np.imag((foot - through) * np.conj(unit)) / np.imag(along * np.conj(unit))
+        return np.asarray(through + s * along)
+
+    return Carrier("point on guides of rocker and frame", parts, meeting_place, divisor)
+
+
+def guide(name: str, on: str, through: complex, direction: float) -> dict[str, Any]:
+    """A guide of P."""
+    return {
+        "name": name,
+        "point": "P",
+        "on": on,
+        "through": [through.real, through.imag],
+        "direction": direction,
+    }
+
+
 def slider(random: np.random.Generator, start: float) -> Carrier:
     """P the slider of a slider-crank."""
     parts, a = crank(random, start)
@@ -120,5 +169,5 @@ def meeting(first: Complex, b: float, second: Complex, c: float, side: float) ->
 
 
 CARRIERS: tuple[Callable[[np.random.Generator, float], Carrier], ...] = (
-    crossing_lines, crossing_lines, crossing_lines, coupler, slider,
+    crossing_lines, crossing_lines, swinging_line, swinging_line, coupler, slider,
 )  # fmt: skip

@@ -20,7 +20,7 @@ from tools.campaigns.gaps.scan import NODES, Gap, gaps_of
 Array = npt.NDArray[np.float64]
 LEAST = 1e-8
 """Gaps narrower than this [rad] are counted, and no fault where they are missed."""
-OPERATIONS = 256.0
+OPERATIONS = 1024.0
 
 
 @dataclass(frozen=True)
@@ -52,22 +52,10 @@ def on_a_pivot(random: np.random.Generator, carrier: Carrier, start: float) -> C
     def apart(q: Array) -> Array:
         return np.asarray(np.abs(carrier.place(q) - pivot))
 
-    if carrier.divisor is not None:
-        far = 10.0 ** float(random.uniform(0.5, 6.0))
-        reach, excess = far, 0.0
-    else:
-        reach, excess = all_but_enough(random, apart(np.linspace(start - np.pi, start + np.pi, NODES)))
-    share = (
-        0.5 * (1.0 + float(random.uniform(-0.3, 0.3))) if excess == 0.0 and carrier.divisor is None else 0.5
+    one, other = rods(
+        random, carrier, apart(np.linspace(start - np.pi, start + np.pi, NODES)), abs(p - pivot)
     )
-    one, other = (
-        (0.5 * (reach + excess), 0.5 * (reach - excess)) if excess else (share * reach, (1.0 - share) * reach)
-    )
-    square = abs(p - pivot)
     reach, excess = one + other, abs(one - other)
-    if not excess < square < reach:
-        one = other = 0.75 * max(square, 0.1)
-        reach, excess = one + other, 0.0
     side = float(random.choice([-1.0, 1.0]))
     parts = carrier.parts
     parts["frame"]["points"]["K"] = [pivot.real, pivot.imag]
@@ -88,13 +76,22 @@ def on_a_pivot(random: np.random.Generator, carrier: Carrier, start: float) -> C
     return Chain(kind, ct.Mechanism(**parts), start, reserve, carrier.divisor, reach**2)
 
 
-def all_but_enough(random: np.random.Generator, lengths: Array) -> tuple[float, float]:
-    """Sum and difference of rods that fail by very little at the greatest or at the least distance."""
+def rods(random: np.random.Generator, carrier: Carrier, distances: Array, now: float) -> tuple[float, float]:
+    """Long rods for a point that runs away; else such as fail by very little at the greatest or least distance."""
     by = 10.0 ** -float(random.uniform(2.0, 13.0))
-    if random.random() < 0.5:
-        return float(np.max(lengths)) * (1.0 - by), 0.0
-    least = float(np.min(lengths))
-    return 2.0 * float(np.max(lengths)) + least, least * (1.0 + by)
+    if carrier.divisor is not None:
+        one = other = 0.5 * 10.0 ** float(random.uniform(0.5, 6.0))
+    elif random.random() < 0.5:
+        reach = float(np.max(distances)) * (1.0 - by)
+        one = reach * float(random.uniform(0.35, 0.65))
+        other = reach - one
+    else:
+        excess = float(np.min(distances)) * (1.0 + by)
+        other = float(np.max(distances))
+        one = other + excess
+    if abs(one - other) < now < one + other:
+        return one, other
+    return 0.75 * max(now, 0.1), 0.75 * max(now, 0.1)
 
 
 def on_a_line(random: np.random.Generator, carrier: Carrier, start: float) -> Chain:
@@ -215,17 +212,17 @@ def decade(width: float) -> str:
 CAMPAIGN = Campaign(
     name="gaps",
     title="Gaps",
-    about="""Chains that do not close over an interval of the crank's angle that may be far narrower than a cell of the
-mesh (half a degree): a dyad with long rods on a point that two guides carry, which runs to infinity where these are
-parallel; and dyads whose rods are by a very little too short, or too different, on the pin of a four-bar or a
-slider-crank.
+    about="""Chains that do not close over an interval of the crank's angle that may be far narrower than a cell of
+the mesh (half a degree): a dyad with long rods on a point that two guides carry, which runs to infinity where these
+are parallel, for a moment or at two angles close together; and dyads whose rods are by a very little too short, or
+too different, on the pin of a four-bar or a slider-crank.
 
 The oracle computes what has to be positive for the dyad to close from formulas of its own at 4001 nodes a turn, looks
-for its minima by golden section and for the poles by bisection, and bisects the ends of every gap. Inside the gap next
-to the start, and beyond it, no sample may be ok; on the near side all are; the limit stands at the near end.""",
+for its minima by golden section and for the poles by bisection, and bisects the ends of every gap. Inside the gap
+next to the start, and beyond it, no sample may be ok; on the near side all are; the limit stands at the near end.""",
     columns={
         "limit": "error of the limit at the near end of the gap [rad]",
-        "limit / rounding": "the same in units of 256 roundings of the squared lengths over the slope; bound 1",
+        "limit / rounding": "the same in units of 1024 roundings of the squared lengths over the slope; bound 1",
     },
     run=run,
     cases=20000,

@@ -37,7 +37,9 @@ def gaps_of(
     nodes = np.linspace(low, high, NODES)
     extra = [minima(reserve, nodes)]
     if divisor is not None:
-        extra.append(roots(divisor, nodes))
+        # where the divisor turns round between two nodes it may cross zero twice
+        turns = [minima(divisor, nodes), minima(lambda q: -divisor(q), nodes)]
+        extra += [*turns, roots(divisor, np.unique(np.concatenate([nodes, *turns])))]
     at = np.unique(np.concatenate([nodes, *extra]))
     with np.errstate(all="ignore"):
         values = reserve(at)
