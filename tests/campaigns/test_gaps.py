@@ -6,7 +6,7 @@ import pytest
 from tools.campaigns.gaps.cases import CAMPAIGN
 
 
-@pytest.mark.parametrize("number", tuple(range(40)))
+@pytest.mark.parametrize("number", tuple(range(20)))
 def test_a_fixed_sample(number: int) -> None:
     outcome = CAMPAIGN.outcome(1, number)
     assert outcome.faults == []

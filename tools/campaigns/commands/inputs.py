@@ -185,6 +185,17 @@ def example(name: str) -> str:
     return ct.example_text(name)
 
 
+def formula(draw: random.Random) -> str:
+    """A formula of the kind that laws, loads and moments are written in."""
+    terms = []
+    for _ in range(draw.choice((1, 1, 2, 3))):
+        inner = draw.choice(("t", "q", "v", "x", "t - 1", "v**2", "q/2", "1/t", "1/v", "0", "-t", "1e9*t"))
+        function = draw.choice(("sin", "cos", "tan", "sqrt", "exp", "log", "abs", "sign", "asin", "", "", ""))
+        power = draw.choice(("", "", "", "**2", "**100", "**0.5", "**-1", "**t"))
+        terms.append(f"{draw.choice(('100', '-3', '0.1', '1e6', '1e300'))}*{function}({inner}){power}")
+    return draw.choice((" + ", " - ", "*", "/")).join(terms)
+
+
 def content(draw: random.Random, kind: str) -> bytes:
     """What stands in the file that a command is given."""
     shape = draw.random()
@@ -257,7 +268,7 @@ def of_tables(draw: random.Random, text: str) -> str:
         case "drop":
             del holder[key]
         case "value":
-            holder[key] = draw.choice(VALUES)
+            holder[key] = formula(draw) if draw.random() < 0.25 else draw.choice(VALUES)
         case "number":
             holder[key] = scaled(draw, holder[key])
         case "key" if isinstance(holder, dict):

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import click
 
 from centrode.cli.main import build_app
+from tools.campaigns.commands.inputs import formula
 
 WORDS = (
     *(
@@ -73,31 +74,6 @@ WORDS = (
         "9**9**9",
     ),
 )
-FORMULAS = (
-    *(
-        "10",
-        "10 - 2*sign(omega)",
-        "t**100",
-        "100*exp(-t)",
-        "1/t",
-        "sqrt(t - 1)",
-        "5*sin(phi)",
-        "abs(omega)",
-        "1/omega",
-    ),
-    *(
-        "10 N m",
-        "-3",
-        "min(10, t)",
-        "log(t)",
-        "omega**-1",
-        "tan(phi)",
-        "x",
-        "motor",
-        "10 - omega*1e9",
-        "1e300*t",
-    ),
-)
 WHOLE = (
     "0",
     "1",
@@ -142,7 +118,7 @@ KINDS = {"cam": ("cam",), "study": ("study",), "table": ("table",), "name": ("na
 BOTH = ("description", "described")
 LIKELY = ("driving", "repair", "steady", "instants", "full", "least")
 """Options that are drawn more often: much of what the command does hangs on them."""
-SMALL = {"samples": "7", "frames": "3", "steps": "20"}
+SMALL = {"samples": "7", "frames": "3", "steps": "20", "duration": "1", "turns": "1"}
 """What keeps a command short that is not meant to be long."""
 
 
@@ -211,8 +187,8 @@ def option_words(draw: random.Random, option: click.Option, file: str, names: li
             return [name, draw.choice(WHOLE)]
         case _ if isinstance(option.type, type(click.FLOAT)):
             return [name, draw.choice(REAL)]
-    if option.name == "driving":
-        return [name, draw.choice(FORMULAS)]
+    if option.name == "driving" and draw.random() < 0.8:
+        return [name, formula(draw)]
     if draw.random() < 0.5:
         return [
             name,
