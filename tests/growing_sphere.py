@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from hypothesis import strategies as st
-from tools.campaigns.grown.sphere import KINDS, Growing, angle_at, arc, coordinates, grown, unit
+from tools.campaigns.grown.sphere import KINDS, Growing, Vector, angle_at, arc, coordinates, grown, unit
 
-__all__ = ["KINDS", "Growing", "angle_at", "arc", "coordinates", "grown", "mechanisms", "unit"]
+__all__ = ["KINDS", "Growing", "Vector", "angle_at", "arc", "coordinates", "grown", "mechanisms", "unit"]
 
 
 def mechanisms(kinds: tuple[str, ...] = KINDS) -> st.SearchStrategy[Growing]:

@@ -20,6 +20,8 @@ def drawn(seed: int, number: int) -> tuple[Growing, list[str], np.random.Generat
     random = random_of(seed, number)
     count = int(random.integers(1, 5))
     kinds = ["RRR"] if random.random() < 0.25 else [str(random.choice(KINDS)) for _ in range(count)]
+    if set(kinds) == {"rigid point"}:
+        kinds[0] = "RRR"  # a crank alone has no unknowns
     return grown(kinds, int(random.integers(2**32)), float(random.choice(SPREADS))), kinds, random
 
 
