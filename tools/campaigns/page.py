@@ -26,7 +26,7 @@ def page(campaign: Campaign, seed: int, tally: Tally) -> str:
 def _told(campaign: Campaign, seed: int, tally: Tally) -> str:
     text = f"centrode {centrode.__version__}, seed {seed}: {tally.cases} cases"
     if tally.counts:
-        text += "; " + ", ".join(f"{what} {count}" for what, count in sorted(tally.counts.items()))
+        text += "; " + "; ".join(f"{what}: {count}" for what, count in sorted(tally.counts.items()))
     command = f"python -m tools.campaigns {campaign.name} --seed {seed}"
     return _filled(
         f"{text}.\n\nThe page is written by `{command} --cases {tally.cases}`; `--case NUMBER` instead of `--cases` "
