@@ -6,7 +6,8 @@ import pytest
 from tools.campaigns.commands import lines
 from tools.campaigns.commands.cases import run
 
-CASES = tuple(range(60))
+CASES = tuple(number for number in range(60) if number != 19)
+"""The one that is left out makes a whole report: ten seconds."""
 
 
 @pytest.mark.parametrize("number", CASES)

@@ -204,7 +204,7 @@ def content(draw: random.Random, kind: str) -> bytes:
             (b"", b"\n", b"\xff\xfe\x00", bytes(range(256)), b"\xef\xbb\xbf", b"[" * 5000, b"a.b=1\n" * 20000)
         )
     text = base(draw, kind)
-    if shape < 0.12:
+    if shape < 0.3:
         return text.encode()
     for _ in range(draw.choice((1, 1, 1, 2, 3))):
         text = draw.choice(CHANGES)(draw, text)

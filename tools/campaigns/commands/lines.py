@@ -116,7 +116,7 @@ PLACES = (
 KINDS = {"cam": ("cam",), "study": ("study",), "table": ("table",), "name": ("name",)}
 """What an argument takes, by its name; any other takes a mechanism, and where it is a description a cam as well."""
 BOTH = ("description", "described")
-LIKELY = ("driving", "repair", "steady", "instants", "full", "least")
+LIKELY = ("driving", "repair", "steady", "full", "least", "duration", "laws")
 """Options that are drawn more often: much of what the command does hangs on them."""
 SMALL = {"samples": "7", "frames": "3", "steps": "20", "duration": "1", "turns": "1"}
 """What keeps a command short that is not meant to be long."""
@@ -148,47 +148,65 @@ def takes_both(command: click.Command) -> bool:
 
 
 def words_of(draw: random.Random, command: click.Command, file: str, names: list[str]) -> list[str]:
-    """Arguments and options of a command, each option there or not; the input may stand as the output too."""
+    """Arguments and options of a command. Most lines are such as somebody may type; others take what comes."""
+    wild = draw.random() < 0.3
     words: list[str] = []
     for parameter in command.params:
         if isinstance(parameter, click.Argument):
-            words.append(file if draw.random() < 0.97 else draw.choice(WORDS))
+            words.append(draw.choice(WORDS) if wild and draw.random() < 0.1 else file)
         elif isinstance(parameter, click.Option):
-            words += option_words(draw, parameter, file, names)
-    if draw.random() < 0.02:
+            words += (
+                wild_option(draw, parameter, file, names) if wild else option(draw, parameter, file, names)
+            )
+    if wild and draw.random() < 0.1:
         words.insert(
             draw.randrange(len(words) + 1), draw.choice(("--unknown", "extra", "--help", "-h", "--lang"))
         )
     return words
 
 
-def option_words(draw: random.Random, option: click.Option, file: str, names: list[str]) -> list[str]:
+def option(draw: random.Random, option: click.Option, file: str, names: list[str]) -> list[str]:
+    """An option that may be left out, with a value that may be meant."""
+    name = option.opts[0]
+    if option.name in SMALL and draw.random() < 0.9:
+        return [name, SMALL[option.name]]
+    if option.name == "no_figures" and draw.random() < 0.9:
+        return [name]
+    often = dict.fromkeys(LIKELY, 0.3) | {"out": 0.6, "force": 0.3, "mjcf": 0.8}
+    if draw.random() >= (0.95 if option.required else often.get(option.name or "", 0.04)):
+        return []
+    if option.is_flag:
+        return [name]
+    match option.type:
+        case click.Choice():
+            return [name, str(draw.choice(list(option.type.choices)))]
+        case click.Path():
+            return [name, draw.choice(("result", "result", "result", ".", file, *PLACES))]
+        case _ if isinstance(option.type, type(click.INT)):
+            return [name, draw.choice(("2", "3", "7", "13"))]
+        case _ if isinstance(option.type, type(click.FLOAT)):
+            return [name, draw.choice(("0.5", "1", "2"))]
+    if option.name == "driving":
+        return [name, formula(draw)]
+    return [name, draw.choice((*draw.choices(names, k=3), "1", "90 deg", "0.5"))]
+
+
+def wild_option(draw: random.Random, option: click.Option, file: str, names: list[str]) -> list[str]:
     """An option with a value of its kind or of another."""
     name = option.opts[0]
-    if option.name in SMALL and draw.random() < 0.8:
-        return [name, SMALL[option.name]]
-    if option.name == "no_figures" and draw.random() < 0.85:
-        return [name]
-    if option.name in ("out", "force"):
-        if draw.random() < 0.5:
-            return []
-    elif draw.random() < (0.4 if option.name in LIKELY else 0.8):
+    if draw.random() < (0.5 if option.name in ("out", "force") else 0.8):
         return []
     if option.is_flag:
         return [name]
     if draw.random() < 0.1:
         return [name, draw.choice(WORDS)]
     match option.type:
-        case click.Choice():
-            return [name, str(draw.choice(list(option.type.choices)))]
         case click.Path():
             return [name, draw.choice((file, *PLACES))]
         case _ if isinstance(option.type, type(click.INT)):
             return [name, draw.choice(WHOLE)]
         case _ if isinstance(option.type, type(click.FLOAT)):
             return [name, draw.choice(REAL)]
-    if option.name == "driving" and draw.random() < 0.8:
-        return [name, formula(draw)]
     if draw.random() < 0.5:
         return [
             name,
