@@ -304,6 +304,7 @@ from .errors import CentrodeError as CentrodeError
 from .errors import InputError as InputError
 from .errors import NotComputedYet as NotComputedYet
 from .errors import MotionError as MotionError
+from .errors import DamageWarning as DamageWarning
 from .errors import Status as Status
 from .locale import choose_language as choose_language
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Self
 
 
 class CentrodeError(Exception):
@@ -26,6 +27,10 @@ class CentrodeError(Exception):
         self.repair = repair
         super().__init__(str(self))
 
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str, str]]:
+        """The failure as another process gets it: Exception itself would hand over the sentence alone."""
+        return type(self), (self.where, self.what, self.repair)
+
     def __str__(self) -> str:
         sentence = f"{self.where}: {self.what}" if self.where else self.what
         return f"{sentence}; {self.repair}" if self.repair else sentence
@@ -43,6 +48,10 @@ class MotionError(CentrodeError):
     """The mechanism cannot do what was asked: what could be computed stands beside the message."""
 
     exit_code = 3
+
+
+class DamageWarning(RuntimeWarning):
+    """Results kept by an earlier run are damaged; what was lost is made again."""
 
 
 class Status(IntEnum):

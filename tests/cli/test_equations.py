@@ -99,6 +99,6 @@ def test_usage_errors_and_help(centrode: Centrode) -> None:
 def test_printing_needs_no_sympy() -> None:
     done = subprocess.run(
         [sys.executable, "-c", PROBE, "equations", "six-bar-press"],
-        capture_output=True, encoding="utf-8", check=True, timeout=60,
+        capture_output=True, encoding="utf-8", check=True,
     )  # fmt: skip
     assert json.loads(done.stderr.splitlines()[-1]) == [0, False]

@@ -24,7 +24,7 @@ LABELS = {"xarray", "pandas", "scipy"}
 def imported(*arguments: str, code: int = 0) -> set[str]:
     """Packages that a command imports."""
     probe = [sys.executable, "-c", PROBE, *arguments]
-    done = subprocess.run(probe, capture_output=True, encoding="utf-8", check=True, timeout=60)
+    done = subprocess.run(probe, capture_output=True, encoding="utf-8", check=True)
     ended, modules = json.loads(done.stderr.splitlines()[-1])
     assert ended == code
     return {module.split(".")[0] for module in modules}

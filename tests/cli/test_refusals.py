@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 import pytest
@@ -266,10 +265,8 @@ def in_file(message: str) -> str:
 def test_wrong_descriptions(refused: Refused, four_bar: str, name: str) -> None:
     old, new, message = CHANGES[name]
     assert old in four_bar
-    began = time.monotonic()
     told = refused(four_bar.replace(old, new, 1))
     assert told.startswith(in_file(message))
-    assert time.monotonic() - began < 10, "a refusal is quick"
 
 
 def test_a_flat_triangle_without_a_side(refused: Refused, four_bar: str) -> None:

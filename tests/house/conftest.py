@@ -23,7 +23,6 @@ def centrode() -> Run:
             capture_output=True,
             encoding="utf-8",
             check=False,
-            timeout=60,
         )
 
     return run

@@ -22,7 +22,6 @@ def imported(*arguments: str) -> tuple[int, set[str]]:
         capture_output=True,
         encoding="utf-8",
         check=True,
-        timeout=60,
     )
     code, modules = json.loads(done.stderr.splitlines()[-1])
     return code, {module.split(".")[0] for module in modules}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -76,6 +78,14 @@ def test_every_failure_is_a_message_and_a_code(
     assert message in said
 
 
+@pytest.mark.parametrize("kind", [InputError, MotionError])
+def test_failures_cross_processes_whole(kind: type[InputError | MotionError]) -> None:
+    failure = pickle.loads(pickle.dumps(kind("press.toml", "no drive", "add one")))
+    assert type(failure) is kind
+    assert (failure.where, failure.what, failure.repair) == ("press.toml", "no drive", "add one")
+    assert str(failure) == "press.toml: no drive; add one"
+
+
 def test_a_command_may_return_its_exit_code(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -145,17 +155,106 @@ def test_a_reader_that_goes_away_is_no_failure() -> None:
         assert writer.stdout.readline() == b"x" * 80 + b"\n"
         writer.stdout.close()
         assert writer.stderr.read() == b""
-        assert writer.wait(timeout=30) == command_line.READER_GONE
+        assert writer.wait() == command_line.READER_GONE
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
+FULL = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
+SHELL = pytest.mark.skipif(sys.platform == "win32", reason="needs a shell that closes streams")
+
+
+@FULL
 def test_a_full_disk_is_told() -> None:
     with open("/dev/full", "w") as full:
         done = subprocess.run(
             [sys.executable, "-m", "centrode", "--lang", "en", "--help"],
-            stdout=full, stderr=subprocess.PIPE, encoding="utf-8", check=False, timeout=60,
+            stdout=full, stderr=subprocess.PIPE, encoding="utf-8", check=False,
         )  # fmt: skip
     assert done.returncode == 2
     assert "operating system refused" in done.stderr
     assert "Traceback" not in done.stderr
     assert "Exception ignored" not in done.stderr
+
+
+@SHELL
+@pytest.mark.parametrize(
+    ("words", "streams", "code", "told"),
+    [
+        ("examples nothing", "2>&-", 2, ""),
+        ("examples nothing", ">&- 2>&-", 2, ""),
+        ("examples", ">&-", 0, ""),
+        ("--help", ">&- 2>&-", 0, ""),
+        ("--nothing", ">&-", 2, "Usage: "),
+        pytest.param("examples nothing", "2>/dev/full", 2, "", marks=FULL),
+        pytest.param("examples", "2>/dev/full", 0, "andrews-squeezer", marks=FULL),
+        pytest.param("--nothing", "2>/dev/full", 2, "", marks=FULL),
+        pytest.param("examples", ">/dev/full 2>&1", 2, "", marks=FULL),
+        pytest.param("examples", ">/dev/full 2>&-", 2, "", marks=FULL),
+    ],
+)
+def test_streams_that_are_closed_or_full(words: str, streams: str, code: int, told: str) -> None:
+    """The exit code is that of the work, or of the output that is lost; nothing is printed about the streams."""
+    command = f'"{sys.executable}" -m centrode --lang en {words} {streams}'
+    done = subprocess.run(command, shell=True, capture_output=True, encoding="utf-8", check=False)
+    assert done.returncode == code
+    assert (done.stdout + done.stderr).startswith(told)
+    assert told or done.stdout + done.stderr == ""
+
+
+TELLING = """
+import os, sys
+from centrode.cli import main as command_line, output
+import click
+def work():
+    output.tell("a note")
+    click.echo("result")
+command_line.COMMANDS = (click.Command("work", callback=work),)
+sys.exit(command_line.main(["work"]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such pipes")
+def test_notes_that_nobody_reads_are_no_failure() -> None:
+    """The reader of stderr is gone before anything is written; the work is done all the same."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [sys.executable, "-c", TELLING], stdout=subprocess.PIPE, stderr=writer, encoding="utf-8", check=False
+    )
+    os.close(writer)
+    assert (done.returncode, done.stdout) == (0, "result\n")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such pipes")
+def test_a_reader_that_is_gone_before_the_first_line() -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run(
+        [sys.executable, "-m", "centrode", "examples"],
+        stdout=writer, stderr=subprocess.PIPE, encoding="utf-8", check=False,
+    )  # fmt: skip
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (command_line.READER_GONE, "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such pipes")
+@pytest.mark.parametrize(("words", "stream", "code"), [("", "stdout", 2), ("nothing", "stderr", 2)])
+def test_a_pipe_that_is_full_and_does_not_wait(words: str, stream: str, code: int) -> None:
+    """Nobody reads, and the pipe refuses instead of waiting: a message where one can be read, and no traceback."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    with pytest.raises(BlockingIOError):
+        while True:
+            os.write(writer, bytes(512))
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: writer}
+    # without its buffer Python loses what such a pipe refuses, and says nothing
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        [sys.executable, "-m", "centrode", "--lang", "en", "examples", *words.split()],
+        env=buffered, encoding="utf-8", check=False, **streams,
+    )  # fmt: skip
+    os.close(writer)
+    os.close(reader)
+    assert done.returncode == code
+    told = "" if stream == "stderr" else "Error: the operating system refused: "
+    assert ((done.stdout or "") + (done.stderr or "")).startswith(told)
+    assert "Traceback" not in f"{done.stderr}"

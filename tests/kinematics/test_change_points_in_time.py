@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import factorial
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from mechanisms import EPS, events, point, statuses
 Array = npt.NDArray[np.float64]
 M = JetFunctions(ARRAYS)
 
-MENDED = (2e-12, 4e-11, 2e-9)
+MENDED = tuple(16 * factorial(order) * EPS / 0.04 ** (1 + order) for order in range(3))
 """Errors next to a change point in units of the size, those of `test_change_points`."""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -42,6 +42,20 @@ class Seen:
     requests: list[str] = field(default_factory=list)
 
 
+def frames(page: Any) -> None:
+    """Wait until what a page has to do now is drawn."""
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def until(page: Any, holds: Callable[[], bool]) -> None:
+    """Wait, picture by picture, until something holds."""
+    for _ in range(10_000):
+        if holds():
+            return
+        frames(page)
+    raise AssertionError("it never came to hold")
+
+
 @contextmanager
 def opened(running: Any, file: Path, wide: int = 1280, **how: Any) -> Iterator[Seen]:
     """A file in a window, with everything that it says and asks for."""
@@ -54,6 +68,6 @@ def opened(running: Any, file: Path, wide: int = 1280, **how: Any) -> Iterator[S
     seen.page.goto(file.as_uri())
     if how.get("java_script_enabled", True):
         seen.page.evaluate("document.fonts.ready")
-        seen.page.wait_for_timeout(50)
+        frames(seen.page)
     yield seen
     context.close()

@@ -20,7 +20,7 @@ from centrode.report.html.page import FONT, HERE, html_page
 from centrode.report.moving import moving_of
 from centrode.report.moving_wheel import moving_wheel
 
-from .browser import Seen, browser, opened
+from .browser import Seen, browser, frames, opened, until
 from .made import HOSTILE, moving, report
 
 PLANE, SPHERE, WHEEL = "slider-between-cranks", "spherical-crank-rocker", "walking-wheel-four-legs"
@@ -204,14 +204,20 @@ def test_a_motion_runs_and_stops(running: Any, motions: Path) -> None:
                 for one in stage.holder.query_selector_all("[data-point].grip")
             ]
             before, begun = stage.place, [stage.point(name) for name in names]
+
+            def far(
+                stage: Stage = stage, names: Any = names, begun: Any = begun, before: float = before
+            ) -> bool:
+                moved = [stage.point(name) for name in names]
+                ways = [np.hypot(*(one - other)) for one, other in zip(begun, moved, strict=True)]
+                return stage.place > before and max(ways) > 5
+
             stage.press("play")
-            seen.page.wait_for_timeout(400)
-            moved = [stage.point(name) for name in names]
+            until(seen.page, far)
             stage.press("play")
-            assert stage.place > before
-            assert max(np.hypot(*(one - other)) for one, other in zip(begun, moved, strict=True)) > 5
+            frames(seen.page)
             still = stage.place
-            seen.page.wait_for_timeout(150)
+            frames(seen.page)
             assert stage.place == still
         silent(seen, motions)
 
@@ -270,9 +276,8 @@ def test_keys_step_and_seek(running: Any, motions: Path) -> None:
         stage.key("ArrowLeft")
         assert stage.place == last - 1  # a closed motion goes on at its other end, which is its beginning
         stage.key("Space")
-        seen.page.wait_for_timeout(150)
+        until(seen.page, lambda: stage.place != last - 1)
         stage.key("Escape")
-        assert stage.place != last - 1
         stage.press("on")
         assert stage.place == round(stage.place)
 

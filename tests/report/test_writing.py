@@ -43,7 +43,7 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path, monkeypatch: p
     def refuse(*names: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(writing.os, "replace", refuse)
+    monkeypatch.setattr("os.replace", refuse)
     with pytest.raises(KeyboardInterrupt):
         ct.write_report(REPORT, tmp_path, ("pdf",))
     assert [(file.name, file.read_bytes()) for file in tmp_path.iterdir()] == [("report.pdf", b"old")]

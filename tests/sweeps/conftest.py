@@ -57,6 +57,6 @@ def process() -> Process:
 
     def run(study: Path, store: Path, last: int = 0) -> subprocess.CompletedProcess[str]:
         arguments = [sys.executable, "-c", PROCESS, str(study), str(store), str(last)]
-        return subprocess.run(arguments, capture_output=True, encoding="utf-8", check=False, timeout=300)
+        return subprocess.run(arguments, capture_output=True, encoding="utf-8", check=False)
 
     return run

@@ -35,7 +35,6 @@ def grown(mechanisms: int, samples: int, name: str, executor: str) -> tuple[int,
         capture_output=True,
         encoding="utf-8",
         check=True,
-        timeout=300,
     )
     unit = 1 if sys.platform == "darwin" else 1024
     kilobytes, result = map(int, done.stdout.split())

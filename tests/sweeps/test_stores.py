@@ -15,8 +15,8 @@ import pytest
 import xarray as xr
 
 import centrode as ct
+from centrode.files.locks import locked
 from centrode.sweeps import limits
-from centrode.sweeps.locking import locked
 
 pytest.importorskip("zarr", reason="stores need the extra sweeps")
 
@@ -242,13 +242,14 @@ def test_two_runs_at_once_are_refused_and_a_dead_one_is_not_feared(tmp_path: Pat
         [
             sys.executable,
             "-c",
-            "import sys, time, pathlib\n"
-            "from centrode.sweeps.locking import locked\n"
+            "import sys, pathlib\n"
+            "from centrode.files.locks import locked\n"
             "with locked(pathlib.Path(sys.argv[1]), ''):\n"
             "    print('held', flush=True)\n"
-            "    time.sleep(300)\n",
+            "    sys.stdin.read()\n",
             str(store / "progress" / "lock"),
         ],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         encoding="utf-8",
     )

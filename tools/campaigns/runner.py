@@ -9,7 +9,7 @@ from typing import Any
 
 import centrode
 from centrode.cli.progress import Progress
-from centrode.sweeps.locking import locked
+from centrode.files.locks import locked
 from tools.campaigns.campaign import Campaign, Tally
 from tools.campaigns.page import page
 from tools.campaigns.record import Record

@@ -14,7 +14,8 @@ class Arrays:
     """Namespace `m` of plain values: what a formula calls when it computes.
 
     Absence is NaN and a status, so the square root of a negative number is NaN without a warning from NumPy;
-    callers hold `numpy.errstate` around whole evaluations.
+    callers hold `numpy.errstate` around whole evaluations. Complex arrays are taken for points next to the real
+    axis: every function is continued analytically from there, where a formula decides, the real part does.
     """
 
     sin = staticmethod(np.sin)
@@ -23,12 +24,9 @@ class Arrays:
     asin = staticmethod(np.arcsin)
     acos = staticmethod(np.arccos)
     atan = staticmethod(np.arctan)
-    atan2 = staticmethod(np.arctan2)
     sqrt = staticmethod(np.sqrt)
     exp = staticmethod(np.exp)
     log = staticmethod(np.log)
-    abs = staticmethod(np.abs)
-    sign = staticmethod(np.sign)
     min = staticmethod(np.minimum)
     max = staticmethod(np.maximum)
     least = staticmethod(np.fmin)
@@ -41,6 +39,25 @@ class Arrays:
     either = staticmethod(np.logical_or)
     opposite = staticmethod(np.logical_not)
     where = staticmethod(np.where)
+
+    @staticmethod
+    def atan2(y: Number, x: Number) -> Number:
+        """Angle of the vector (x, y); of a complex one that of its real part and a complex rest near zero."""
+        if not (np.iscomplexobj(y) or np.iscomplexobj(x)):
+            return np.arctan2(y, x)
+        angle = np.arctan2(np.real(y), np.real(x))
+        cosine, sine = np.cos(angle), np.sin(angle)
+        return angle + np.arctan((y * cosine - x * sine) / (x * cosine + y * sine))
+
+    @staticmethod
+    def abs(x: Number) -> Number:
+        """The number or its negative, whichever has a positive real part."""
+        return np.where(np.real(x) < 0.0, -x, x) if np.iscomplexobj(x) else np.abs(x)
+
+    @staticmethod
+    def sign(x: Number) -> Number:
+        """Sign of the real part."""
+        return np.sign(np.real(x))
 
     @staticmethod
     def is_number(x: Number) -> Number:

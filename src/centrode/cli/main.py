@@ -1,20 +1,25 @@
 """The command line: one group of commands, and how every failure ends.
 
 Exit codes: 0 done; 2 wrong input or usage; 3 the mechanism cannot do what was asked; 70 a fault of centrode;
-130 interrupted; 141 the reader of the output went away.
+130 interrupted (Ctrl-C, SIGTERM); 141 the reader of the output went away.
 """
 
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from types import FrameType
 from typing import Any
 
 import click
 
 import centrode as ct
+from centrode.cli import output
 from centrode.cli.angles import angles
 from centrode.cli.animate import animate
 from centrode.cli.balance import balance
@@ -45,6 +50,7 @@ from centrode.cli.sweep import sweep
 from centrode.cli.translation import language_option, translated, wished_language, with_language
 from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
+from centrode.files.inputs import guarded
 from centrode.locale import _, choose_language_of_process, mark
 
 COMMANDS: tuple[click.Command, ...] = (
@@ -115,18 +121,40 @@ def main(arguments: Sequence[str] | None = None) -> int:
             reconfigure(errors="replace")
     choose_language_of_process(wished_language(arguments))
     try:
-        result = _run(build_app(), list(arguments))
-        if sys.stdout is not None:
-            sys.stdout.flush()
+        with _termination_as_interruption():
+            result = _run(build_app(), list(arguments))
+            if sys.stdout is not None:
+                sys.stdout.flush()
     except BaseException as failure:
         return _ending(failure)
+    finally:
+        _drop_unwritable_output()
     return result if isinstance(result, int) else 0
+
+
+@contextmanager
+def _termination_as_interruption() -> Iterator[None]:
+    """While the block runs, SIGTERM interrupts it as Ctrl-C does, so that no draft is left."""
+    # Other threads cannot set a handler; a handler that is set, or a signal that is ignored, belongs to who runs this.
+    here = threading.current_thread() is threading.main_thread()
+    if not here or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
+        yield
+        return
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def _run(app: click.Command, arguments: list[str]) -> object:
     """What `app.main` does, less its own idea of how a program ends."""
     try:
-        with app.make_context("centrode", arguments) as context:
+        with guarded(), app.make_context("centrode", arguments) as context:
             return app.invoke(context)
     except click.exceptions.Exit as done:
         return done.exit_code
@@ -135,22 +163,22 @@ def _run(app: click.Command, arguments: list[str]) -> object:
 def _ending(failure: BaseException) -> int:
     """Say in one message how the program ends, and return its exit code."""
     if os.environ.get("CENTRODE_DEBUG") == "1":
-        traceback.print_exception(failure)
+        with suppress(OSError):
+            traceback.print_exception(failure)
     match failure:
         case click.ClickException():
-            failure.show()
+            with suppress(OSError):
+                failure.show()
             return failure.exit_code
         case CentrodeError():
             _say(str(failure))
             return failure.exit_code
         case click.Abort() | KeyboardInterrupt():
-            click.echo(_("interrupted"), err=True)
+            output.tell(_("interrupted"))
             return INTERRUPTED
         case BrokenPipeError():
-            _drop_unwritable_output()
             return READER_GONE
         case OSError():
-            _drop_unwritable_output()
             _say(_("the operating system refused: {reason}").format(reason=failure))
             return CentrodeError.exit_code
         case SystemExit():
@@ -167,10 +195,14 @@ def _ending(failure: BaseException) -> int:
 
 def _drop_unwritable_output() -> None:
     """What is left in a buffer that nothing takes must not fail once more when Python closes the stream."""
-    try:
-        sys.stdout.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    for stream in (sys.stdout, sys.stderr):
+        if stream is None:
+            continue
+        try:
+            stream.flush()
+        except OSError:
+            with suppress(OSError):  # of a stream that is no file
+                os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _say(message: str) -> None:
@@ -178,4 +210,4 @@ def _say(message: str) -> None:
     safe = "".join(
         letter if letter.isprintable() or letter == "\n" else ascii(letter)[1:-1] for letter in message
     )
-    click.echo(_("Error: {message}").format(message=safe), err=True)
+    output.tell(_("Error: {message}").format(message=safe))

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import tempfile
 import textwrap
 import unicodedata
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
+import click
+
 from centrode.cli.tables import asked_spelling, spell_tables, table_files
 from centrode.errors import InputError
+from centrode.files.drafts import draft_file, draft_folder, refusals
+from centrode.files.inputs import keep_inputs
 from centrode.locale import _, ngettext
 
 WIDTH = 100
@@ -69,6 +70,12 @@ def finished(draft: Path) -> list[str]:
     return sorted(path.name for path in draft.iterdir())
 
 
+def tell(text: str, *, nl: bool = True) -> None:
+    """Print on stderr; what nobody can read there (it is closed, or full) is no reason to fail."""
+    with suppress(OSError):
+        click.echo(text, nl=nl, err=True)
+
+
 def wrote(paths: Sequence[Path]) -> str:
     """A sentence that names the single files that were written."""
     return _("wrote {file}").format(file=", ".join(map(str, paths)))
@@ -78,19 +85,11 @@ def wrote(paths: Sequence[Path]) -> str:
 def output_folder(path: Path) -> Iterator[Path]:
     """Folder to write into; its files appear in `path` when the block ends, and not at all when it raises.
 
-    Raises InputError at once where `path` cannot be written or what writes workbooks is missing, before anything is
-    computed. Files of the same name that stand in `path` are replaced, others are left alone.
+    Raises InputError as `draft_folder` does, and at once where what writes workbooks is missing.
     """
     asked_spelling().check()
-    with _refusals(path):
-        base = _existing_part(path)
-        draft = Path(tempfile.mkdtemp(prefix=".centrode-", dir=base))
-    try:
+    with draft_folder(path) as draft:
         yield draft
-        with _refusals(path):
-            _move_files(draft, path)
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
 
 
 def write_file(path: Path, text: str, *, force: bool = False) -> None:
@@ -117,69 +116,14 @@ def output_table(path: Path, *, force: bool = False) -> Iterator[Path]:
 def output_file(path: Path, *, force: bool = False) -> Iterator[Path]:
     """File to write into; it appears at `path` when the block ends, and not at all when it raises.
 
-    Raises InputError at once where `path` cannot be written, or stands already without `force`. The draft has the
-    same ending.
+    Raises InputError as `draft_file` does, and at once where `path` exists already without `force`. What the command
+    reads is not replaced with `force` either. The draft has the same name.
     """
-    with _refusals(path):
+    with refusals(path):
+        keep_inputs(path)
         if path.is_dir():
             raise InputError(str(path), _("is a folder"), _("name a file"))
         if path.exists() and not force:
             raise InputError(str(path), _("exists already"), _("say --force to replace it"))
-        base = _existing_part(path.parent)
-        handle, name = tempfile.mkstemp(prefix=".centrode-", suffix=path.suffix, dir=base)
-        os.close(handle)
-    draft = Path(name)
-    try:
+    with draft_file(path) as draft:
         yield draft
-        with _refusals(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            _share(draft)
-            os.replace(draft, path)
-    except BaseException:
-        with suppress(OSError):
-            draft.unlink()
-        raise
-
-
-def _existing_part(path: Path) -> Path:
-    """The folder itself, or the nearest one above it that exists: drafts stand there, on the same file system."""
-    for part in (path, *path.parents):
-        if part.is_dir():
-            return part
-        if part.exists() or part.is_symlink():
-            where = "" if part == path else str(path)
-            raise InputError(where, _("{part} is not a folder").format(part=part), _("name another folder"))
-    raise InputError(str(path), _("no part of this path exists"), _("name another folder"))
-
-
-def _move_files(draft: Path, path: Path) -> None:
-    files = sorted(file.relative_to(draft) for file in draft.rglob("*") if file.is_file())
-    for file in files:
-        _existing_part((path / file).parent)
-        if (path / file).is_dir():
-            raise InputError(
-                str(path / file), _("is a folder, and a file has to go there"), _("name another folder")
-            )
-    path.mkdir(parents=True, exist_ok=True)
-    for file in files:
-        (path / file).parent.mkdir(parents=True, exist_ok=True)
-        os.replace(draft / file, path / file)
-
-
-def _share(file: Path) -> None:
-    """Give a temporary file the permissions that a file opened in the usual way has."""
-    mask = os.umask(0)
-    os.umask(mask)
-    file.chmod(0o666 & ~mask)
-
-
-@contextmanager
-def _refusals(path: Path) -> Iterator[None]:
-    """Say what the operating system refuses as an InputError about `path`."""
-    try:
-        yield
-    except OSError as refusal:
-        reason = refusal.strerror or str(refusal)
-        raise InputError(
-            str(path), _("cannot be written: {reason}").format(reason=reason), _("name another place")
-        ) from refusal

@@ -7,6 +7,8 @@ import time
 from types import TracebackType
 from typing import Self
 
+from centrode.cli.output import tell
+
 PATIENCE = 0.5
 """Seconds of work before anything is shown: short work stays silent."""
 ERASE = "\r\033[K"
@@ -27,12 +29,10 @@ class Progress:
         """Show what is being done now."""
         if self.watched and time.monotonic() - self.began >= PATIENCE:
             self.shown = True
-            sys.stderr.write(f"{ERASE}{what} {done}/{of}" if of else f"{ERASE}{what}")
-            sys.stderr.flush()
+            tell(f"{ERASE}{what} {done}/{of}" if of else f"{ERASE}{what}", nl=False)
 
     def __exit__(
         self, kind: type[BaseException] | None, failure: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self.shown:
-            sys.stderr.write(ERASE)
-            sys.stderr.flush()
+            tell(ERASE, nl=False)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
 
 import click
 
@@ -13,7 +15,7 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.progress import Progress
 from centrode.cli.tables import need_table, table_files, tables_options
-from centrode.errors import InputError, MotionError
+from centrode.errors import DamageWarning, InputError, MotionError
 from centrode.locale import _, mark
 
 if TYPE_CHECKING:
@@ -74,15 +76,40 @@ def _as_table(asked: SweepStudy, study: str, target: Path, force: bool) -> xr.Da
 
 def _as_store(asked: SweepStudy, study: str, target: Path) -> xr.Dataset:
     try:
-        data = _computed(asked, study, target)
+        with _damage_told():
+            data = _computed(asked, study, target)
     except KeyboardInterrupt:
         note = _("what is finished stays in {folder}; the same command goes on from there")
-        click.echo(note.format(folder=target), err=True)
+        output.tell(note.format(folder=target))
         raise
     found = data.attrs["mechanisms_found"]
     if found:
-        click.echo(_("{found} mechanisms were there from an earlier run").format(found=found), err=True)
+        output.tell(_("{found} mechanisms were there from an earlier run").format(found=found))
     return data
+
+
+@contextmanager
+def _damage_told() -> Iterator[None]:
+    """Say what of a store is damaged in the command's own words."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", DamageWarning)
+        show = warnings.showwarning
+
+        def tell(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
+            if issubclass(category, DamageWarning):
+                output.tell(_("note: {note}").format(note=message))
+            else:
+                show(message, category, filename, lineno, file, line)
+
+        warnings.showwarning = tell
+        yield
 
 
 def _computed(asked: SweepStudy, study: str, store: Path | None) -> xr.Dataset:

@@ -77,7 +77,7 @@ def variants(
                 )
     except KeyboardInterrupt:
         note = _("what is finished stays in {folder}; the same command goes on from there")
-        click.echo(note.format(folder=folder), err=True)
+        output.tell(note.format(folder=folder))
         raise
     rows = ct.spoken_variants(description, table, rows)
     header = (_("variant"), _("turns fully"), _("limit"), _("group"), _("status"))

@@ -6,6 +6,7 @@ the path, outwards from the initial position, and a sample takes its turn from t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -13,10 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
+from centrode.kinematics.stretches import TurnedStretch, with_quick_steps, with_quick_turns
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Side: TypeAlias = npt.NDArray[np.int8]
 Turns: TypeAlias = npt.NDArray[np.int32]
+Lanes: TypeAlias = npt.NDArray[np.intp]
 TURN = 2.0 * np.pi
 
 
@@ -25,30 +28,51 @@ class NodeTurns:
     """Where a link points at the nodes of the mesh, and the whole turns to add to its angle in (-pi, pi] there.
 
     All have shape (lanes, nodes), or (1, nodes) where the lanes agree; `below` is 1 on the right of the x axis.
+    `quick` has the stretches on which half a turn may lie between two nodes.
     """
 
     cosine: Array
     below: Side
     turns: Turns
+    quick: Sequence[TurnedStretch] = ()
 
-    def at(self, node: npt.NDArray[np.intp], cosine: Array, sine: Array) -> Turns:
-        """Turns of rotors (lanes, n) that are less than half a turn away from those at the nodes (n,)."""
+    def at(self, node: Lanes, cosine: Array, sine: Array, parameter: Array) -> Turns:
+        """Turns of rotors (lanes, n) at parameters (n,) that are less than half a turn away from those at the nodes."""
         passed = _turns_between(self.cosine[:, node], self.below[:, node], cosine, _below(sine))
-        return self.turns[:, node] + passed
+        turns: Turns = self.turns[:, node] + passed
+        if self.quick:
+            turns = np.broadcast_to(turns, np.broadcast_shapes(turns.shape, cosine.shape)).copy()
+            with_quick_turns(turns, np.arctan2(sine, cosine), parameter, None, self.turns, self.quick)
+        return turns
+
+    def at_single(self, lanes: Lanes, node: Lanes, cosine: Array, sine: Array, parameter: Array) -> Turns:
+        """The same of single mechanisms, one for each parameter: all (k,)."""
+        rows = lanes if len(self.cosine) > 1 else np.zeros_like(lanes)
+        passed = _turns_between(self.cosine[rows, node], self.below[rows, node], cosine, _below(sine))
+        turns: Turns = self.turns[rows, node] + passed
+        with_quick_turns(turns, np.arctan2(sine, cosine), parameter, lanes, self.turns, self.quick)
+        return turns
 
 
-def node_turns(rotor: tuple[object, object], initial: float, start: int, nodes: int) -> NodeTurns:
+def node_turns(
+    rotor: tuple[object, object],
+    initial: float,
+    start: int,
+    nodes: int,
+    quick: Sequence[TurnedStretch] = (),
+) -> NodeTurns:
     """Turns of an angle on a mesh of so many nodes; `initial` [rad] is its value near the node `start`."""
     cosine, sine = (_on_mesh(x, nodes) for x in rotor)
     cosine, sine = _bridged(cosine, sine, start)
     below = _below(sine)
     turns = np.zeros(cosine.shape, dtype=np.int32)
     steps = _turns_between(cosine[:, :-1], below[:, :-1], cosine[:, 1:], below[:, 1:])
+    with_quick_steps(steps, quick)
     if steps.any():
         np.cumsum(steps, axis=1, out=turns[:, 1:])
     first = np.arctan2(sine[:, start], cosine[:, start])
     turns += (np.round((initial - first) / TURN).astype(np.int32) - turns[:, start])[:, None]
-    return NodeTurns(cosine, below, turns)
+    return NodeTurns(cosine, below, turns, quick)
 
 
 def _below(sine: Array) -> Side:
@@ -93,11 +117,10 @@ def _bridged(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
     return np.where(somewhere, cosine, 1.0), np.where(somewhere, sine, 0.0)
 
 
-def angle_and_rates(rotor: Array, nodes: NodeTurns, nearest: npt.NDArray[np.intp], angle: Array) -> None:
-    """Fill in `angle` (3, lanes, n), angle and its first two derivatives, from a rotor (3, 2, lanes, n)."""
+def angle_and_rates(rotor: Array, turns: Turns, angle: Array) -> None:
+    """Fill in `angle` (3, ...), angle and its first two derivatives, from a rotor (3, 2, ...) and its turns."""
     cosine, sine = rotor[0]
     angle[0] = np.arctan2(sine, cosine)
-    turns = nodes.at(nearest, cosine, sine)
     if turns.any():
         angle[0] += TURN * turns
     for order in (1, 2):

@@ -31,6 +31,7 @@ from centrode.kinematics.mesh import (
     sign_changes,
 )
 from centrode.kinematics.paths import JETS
+from centrode.kinematics.quick_turns import QuickTurns
 from centrode.kinematics.roots import bracketed_roots
 from centrode.structure.groups import Aim, Meet
 from centrode.structure.positions import Positions
@@ -197,7 +198,8 @@ class _Counting(Rough):
 
     def continued(self, group: int, key: str, angle: Number) -> Number:
         branches, mesh = self.scan.branches, self.scan.mesh
-        branches.turns[key] = counted(angle, mesh, branches.angles.get(key, 0.0), branches.initial)
+        quick = QuickTurns(self.scan.continuation, mesh, group).in_plan(group, key)
+        branches.turns[key] = counted(angle, mesh, branches.angles.get(key, 0.0), branches.initial, quick)
         return super().continued(group, key, angle)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:

@@ -14,6 +14,7 @@ from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.events import Scan
 from centrode.kinematics.layout import Layout, layout_of, positions_from
 from centrode.kinematics.mesh import mesh_of
+from centrode.kinematics.quick_turns import QuickTurns
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
 from centrode.kinematics.sampling import ORDERS, Samples, sample, settle
@@ -50,7 +51,9 @@ class Places:
         """Search the path between the initial position and all values of the parameter."""
         continuation = start_of(ready, kinematics, lanes)
         mesh = mesh_of(kinematics.path, parameter)
-        return cls(continuation, Course(ready, kinematics.numbers, Scan(continuation, mesh).run(), mesh))
+        on_mesh = Scan(continuation, mesh).run()
+        quick = QuickTurns(continuation, mesh, len(kinematics.structure.groups))
+        return cls(continuation, Course(ready, kinematics.numbers, on_mesh, mesh, quick))
 
     @property
     def mesh(self) -> Array:

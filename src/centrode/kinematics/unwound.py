@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from functools import partial
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -12,12 +14,14 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.angles import NodeTurns, angle_and_rates, node_turns
 from centrode.kinematics.layout import rotor_of_angle, slide_of
 from centrode.kinematics.pace import nearest_node
+from centrode.kinematics.quick_turns import QuickTurns
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.sampling import Samples
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
 TURN = 2.0 * np.pi
 
 
@@ -29,15 +33,24 @@ class Course:
     numbers: Dimensions
     on_mesh: Positions
     mesh: Array
+    quick: QuickTurns
 
-    def turns(self, rotor: tuple[object, object], initial: float) -> NodeTurns:
+    def turns(
+        self, rotor: Callable[[Dimensions, Positions], tuple[Number, Number]], initial: float
+    ) -> NodeTurns:
         """Turns along the mesh of what a rotor shows; `initial` [rad] is its angle in the initial position."""
         start = int(np.argmin(np.abs(self.mesh - self.ready.kinematics.path.initial)))
-        return node_turns(rotor, initial, start, len(self.mesh))
+        quick = self.quick.measured(lambda numbers, at: _angle_of(rotor(numbers, at)))
+        return node_turns(rotor(self.numbers, self.on_mesh), initial, start, len(self.mesh), quick)
 
     def nearest(self, parameter: Array) -> npt.NDArray[np.intp]:
         """The node nearest to each parameter."""
         return nearest_node(self.mesh, parameter)
+
+
+def _angle_of(rotor: tuple[Number, Number]) -> Number:
+    cosine, sine = rotor
+    return np.arctan2(sine, cosine)
 
 
 def fill_angles(course: Course, samples: Samples, parameter: Array) -> None:
@@ -46,9 +59,9 @@ def fill_angles(course: Course, samples: Samples, parameter: Array) -> None:
     for k, link in enumerate(samples.layout.angles):
         if link in samples.followed:
             continue
-        rotor = rotor_of_angle(ARRAYS, course.numbers, course.on_mesh, link)
-        nodes = course.turns(rotor, course.ready.assembled.angles[link])
-        angle_and_rates(samples.columns[:, samples.layout.rotor(link)], nodes, nearest, samples.angles[:, k])
+        nodes = course.turns(partial(_rotor, link), course.ready.assembled.angles[link])
+        rotor = samples.columns[:, samples.layout.rotor(link)]
+        angle_and_rates(rotor, nodes.at(nearest, rotor[0, 0], rotor[0, 1], parameter), samples.angles[:, k])
 
 
 def fill_slides(course: Course, samples: Samples, parameter: Array) -> None:
@@ -58,11 +71,22 @@ def fill_slides(course: Course, samples: Samples, parameter: Array) -> None:
         period = space.period(ARRAYS, course.numbers.curve(guide))
         if period is None:
             continue
-        angle = slide_of(ARRAYS, course.numbers, course.on_mesh, guide, point) * (TURN / period)
-        nodes = course.turns((np.cos(angle), np.sin(angle)), _initial(course, guide, point))
+        nodes = course.turns(partial(_rotor_of_slide, guide, point), _initial(course, guide, point))
         slide = samples.columns[0, layout.first_slide + k]
         angle = slide * (TURN / period)
-        slide += period * nodes.at(course.nearest(parameter), np.cos(angle), np.sin(angle))
+        slide += period * nodes.at(course.nearest(parameter), np.cos(angle), np.sin(angle), parameter)
+
+
+def _rotor(link: str, numbers: Dimensions, at: Positions) -> tuple[Number, Number]:
+    """Cosine and sine of a link's angle."""
+    return rotor_of_angle(ARRAYS, numbers, at, link)
+
+
+def _rotor_of_slide(guide: str, point: str, numbers: Dimensions, at: Positions) -> tuple[Number, Number]:
+    """Cosine and sine of the angle about a guide's pole."""
+    period: Number = numbers.space.period(ARRAYS, numbers.curve(guide))
+    angle = slide_of(ARRAYS, numbers, at, guide, point) * (TURN / period)
+    return np.cos(angle), np.sin(angle)
 
 
 def _initial(course: Course, guide: str, point: str) -> float:

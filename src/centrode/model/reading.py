@@ -6,6 +6,7 @@ import stat
 from pathlib import Path
 
 from centrode.errors import InputError
+from centrode.files.inputs import note
 from centrode.locale import _
 from centrode.model import limits
 from centrode.model.problems import shown
@@ -28,6 +29,7 @@ def read_file(path: Path) -> str:
         if status.st_size <= limits.FILE_SIZE:
             with path.open("rb") as stream:
                 content = stream.read(limits.FILE_SIZE + 1)
+            note(path, status)
         if status.st_size > limits.FILE_SIZE or len(content) > limits.FILE_SIZE:
             what = _("the file has {size} bytes, at most {most} are allowed")
             raise InputError(where, what.format(size=status.st_size, most=limits.FILE_SIZE))

@@ -5,9 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import multiprocessing
-import os
 import signal
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -15,6 +13,9 @@ from pathlib import Path
 from typing import TypeAlias
 
 from centrode.errors import InputError
+from centrode.files.drafts import draft_folder, refusals, remove_file
+from centrode.files.inputs import Input, carry_on, keep_inputs, noted
+from centrode.files.locks import locked
 from centrode.locale import _
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
@@ -22,7 +23,6 @@ from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.present.variant_tasks import Task, WritesMore, finished, run
 from centrode.study.variants.computing import VariantRow
 from centrode.study.variants.tables import Table, read_variants
-from centrode.sweeps.locking import locked
 
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -63,7 +63,8 @@ def write_variants(
     Raises
     ------
     InputError
-        The table is wrong, the folder cannot be written, another run writes into it, or a process was ended.
+        The table is wrong, the folder cannot be written, a file that was read would be replaced, another run
+        writes into it, or a process was ended.
     """
     _check_jobs(jobs)
     folder = Path(folder)
@@ -74,26 +75,21 @@ def write_variants(
         Task(text, variant, folder / f"variant-{variant.name}", figures, more, spelling)
         for variant in read_variants(topology, table)
     ]
-    try:
+    keep_inputs(folder / SUMMARY)
+    with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with locked(folder / LOCK, str(folder)):
             rows = _all(tasks, jobs, progress)
             _write_summary(rows, folder, spelling)
-    except OSError as refusal:
-        reason = refusal.strerror or str(refusal)
-        what = _("cannot be written: {reason}").format(reason=reason)
-        raise InputError(str(folder), what, _("name another place")) from refusal
     return tuple(rows)
 
 
 def _write_summary(rows: Sequence[VariantRow], folder: Path, spelling: TableSpelling) -> None:
     """The summary as it is to be spelled, each of its files whole or not at all."""
-    with tempfile.TemporaryDirectory(prefix=".summary-", dir=folder) as draft:
-        (Path(draft) / SUMMARY).write_text(summary_text(rows), encoding="utf-8", newline="\n")
-        spelling.spell(Path(draft))
-        (folder / SUMMARY).with_suffix(".xlsx").unlink(missing_ok=True)  # of an earlier run
-        for file in sorted(Path(draft).iterdir()):
-            os.replace(file, folder / file.name)
+    with draft_folder(folder) as draft:
+        (draft / SUMMARY).write_text(summary_text(rows), encoding="utf-8", newline="\n")
+        spelling.spell(draft)
+        remove_file((folder / SUMMARY).with_suffix(".xlsx"))  # of an earlier run
 
 
 def _check_jobs(jobs: object) -> None:
@@ -118,7 +114,8 @@ def _all(tasks: Sequence[Task], jobs: int, progress: Progress | None) -> list[Va
 def _several(tasks: Sequence[Task], jobs: int) -> Iterator[VariantRow]:
     """Rows as processes finish them; interrupted, those that run are finished and the others left."""
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(min(jobs, len(tasks)), mp_context=context, initializer=_deaf)
+    size = min(jobs, len(tasks))
+    pool = ProcessPoolExecutor(size, mp_context=context, initializer=_prepare, initargs=(noted(),))
     with pool:
         futures: list[Future[VariantRow]] = [pool.submit(run, task) for task in tasks]
         try:
@@ -133,9 +130,10 @@ def _several(tasks: Sequence[Task], jobs: int) -> Iterator[VariantRow]:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _deaf() -> None:
-    """Let the parent decide what an interruption means."""
+def _prepare(read: Sequence[Input]) -> None:
+    """Let the parent decide what an interruption means, and keep what it has read."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    carry_on(read)
 
 
 def summary_text(rows: Sequence[VariantRow]) -> str:

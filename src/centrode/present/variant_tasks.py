@@ -9,8 +9,6 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
-import os
-import shutil
 import traceback
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -18,13 +16,14 @@ from typing import Any, Protocol
 
 import lazy_loader
 
+from centrode.files.drafts import clear_folder, remove_file, replace_file, write_whole
+from centrode.files.inputs import keep_inputs
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.present.integration_tables import write_integration_csv
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.present.tables import write_motion_csv
 from centrode.study.variants.computing import FAULT, STEPS, VariantResults, VariantRow, computed
 from centrode.study.variants.tables import Variant
-from centrode.sweeps.store import write_whole
 from centrode.version import __version__
 
 # Matplotlib is an extra, and slow to import: only where figures are asked for.
@@ -91,7 +90,7 @@ def run(task: Task) -> VariantRow:
     """Compute one variant and write its folder; a fault of the program is told in its row, and tried again later."""
     task.folder.mkdir(parents=True, exist_ok=True)
     draft = task.folder / ".draft"
-    shutil.rmtree(draft, ignore_errors=True)
+    clear_folder(draft)
     draft.mkdir()
     try:
         results = computed(parse_mechanism(task.topology), task.variant)
@@ -108,18 +107,22 @@ def run(task: Task) -> VariantRow:
         _exchange(task, draft, results.row)
         return results.row
     finally:
-        shutil.rmtree(draft, ignore_errors=True)
+        clear_folder(draft)
 
 
 def _exchange(task: Task, draft: Path, row: VariantRow) -> None:
-    """Put new files into the place of those of an earlier run; a marker without a digest stands while that goes on."""
+    """Put new files into the place of those of an earlier run; a marker without a digest stands while that goes on.
+
+    Raises InputError before anything is touched where one of them is a file that was read.
+    """
     names = sorted(file.name for file in draft.iterdir())
     before = [str(name) for name in _marked(task).get("files", []) if Path(str(name)).name == str(name)]
+    keep_inputs(*(task.folder / name for name in (*before, *names, MARKER)))
     write_whole(task.folder / MARKER, {"digest": "", "files": sorted({*before, *names})})
     for name in before:
-        (task.folder / name).unlink(missing_ok=True)
+        remove_file(task.folder / name)
     for name in names:
-        os.replace(draft / name, task.folder / name)
+        replace_file(draft / name, task.folder / name)
     write_whole(task.folder / MARKER, {"digest": task.digest, "row": row.as_dict(), "files": names})
 
 
@@ -132,7 +135,8 @@ def _write(results: VariantResults, folder: Path, *, figures: bool) -> None:
     (folder / "mechanism.toml").write_text(mechanism_text(mechanism), encoding="utf-8", newline="\n")
     write_motion_csv(study.motion, folder / "motion.csv", mechanism.display, points)
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
-    _replace(folder / "summary.json", json.dumps(scalars, indent=2, allow_nan=False) + "\n")
+    text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
+    (folder / "summary.json").write_text(text, encoding="utf-8", newline="\n")
     if integration is not None:
         write_integration_csv(integration, folder / "integration.csv", mechanism.display, points)
     if figures:
@@ -140,10 +144,3 @@ def _write(results: VariantResults, folder: Path, *, figures: bool) -> None:
         if integration is not None:
             drawn |= _integrations().integration_figures(mechanism, integration, study.motion)
         _saving().save_figures(drawn, folder)
-
-
-def _replace(file: Path, text: str) -> None:
-    """Write a file whole or not at all."""
-    draft = file.with_name(f".{file.name}.draft")
-    draft.write_text(text, encoding="utf-8", newline="\n")
-    os.replace(draft, file)

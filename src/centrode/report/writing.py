@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import functools
-import os
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 
 import lazy_loader
 
 from centrode.errors import InputError
+from centrode.files.drafts import draft_folder, refusals
 from centrode.locale import _, speaking
 from centrode.model.problems import nearest, shown
 from centrode.report.blocks import Report
@@ -68,14 +66,11 @@ def write_report(
                 said(f"{name}.{kind}")
             documents[f"{name}.{kind}"] = document(report, kind)
     folder = Path(folder)
-    try:
+    with refusals(folder):
         folder.mkdir(parents=True, exist_ok=True)
+    with draft_folder(folder) as draft:
         for file, content in documents.items():
-            _write_whole(folder / file, content)
-    except OSError as refusal:
-        reason = refusal.strerror or str(refusal)
-        what = _("cannot be written: {reason}").format(reason=reason)
-        raise InputError(str(folder), what, _("name another place")) from refusal
+            (draft / file).write_bytes(content)
     return [folder / file for file in documents]
 
 
@@ -106,19 +101,3 @@ def document(report: Report, kind: str) -> bytes:
         if library == "centrode":
             raise
         raise lacking(library) from missing
-
-
-def _write_whole(file: Path, content: bytes) -> None:
-    """Write a file so that it is there whole or not at all, with the permissions of any new file."""
-    handle, draft = tempfile.mkstemp(prefix=".centrode-", dir=file.parent)
-    try:
-        with open(handle, "wb") as stream:
-            stream.write(content)
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(draft, 0o666 & ~mask)
-        os.replace(draft, file)
-    except BaseException:
-        with suppress(OSError):
-            os.unlink(draft)
-        raise

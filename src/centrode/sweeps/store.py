@@ -1,17 +1,20 @@
 """Results of a sweep in a folder (zarr), block by block: a run that was killed goes on where it was.
 
-A block's numbers are written first, then its marker, by a rename that happens or does not. What has no marker is
-computed again. Beside the zarr arrays stands the group `progress` with the lock, the study and the markers.
+A block's numbers are written first, then its mark, by a rename that happens or does not. What has no mark, or differs
+from what its mark says, is computed again. Beside the zarr arrays stands the group `progress` with the lock, the study
+and the marks.
+
+Nothing in a folder is trusted for being there: metadata have to be those that this sweep has, chunks have their size
+(they are not compressed, so nothing can unpack to more), small files are read up to a bound.
 """
 
 from __future__ import annotations
 
 import functools
+import hashlib
 import importlib.util
 import json
-import os
 import re
-import shutil
 import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -22,13 +25,17 @@ import lazy_loader
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.errors import InputError
-from centrode.locale import _
+from centrode.errors import DamageWarning, InputError
+from centrode.files.drafts import clear_drafts, clear_folder, draft_folder, refusals, remove_file, write_whole
+from centrode.files.inputs import keep_inputs_below
+from centrode.files.locks import locked
+from centrode.locale import _, ngettext
+from centrode.sweeps import limits
 from centrode.sweeps.arrays import Task
 from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import described
 from centrode.sweeps.executors import bare
-from centrode.sweeps.locking import locked
+from centrode.sweeps.marks import GREATEST, Marks, read_bounded, read_small
 from centrode.sweeps.results import Frame
 from centrode.sweeps.streams import Columns
 from centrode.sweeps.tallies import Tally
@@ -36,13 +43,16 @@ from centrode.sweeps.tallies import Tally
 AnyArray: TypeAlias = npt.NDArray[Any]
 
 PROGRESS, LOCK, STUDY, DONE = "progress", "lock", "study.json", "done"
+METADATA = "zarr.json"
 FORMAT = 3
-DRAFT = re.compile(r"zarr\.[\w.]*partial")
-"""Name under which zarr writes metadata before it renames them."""
-TOGETHER = 1000
-"""Markers in one folder."""
+DRAFT = re.compile(r"(?:.*\.)?[0-9a-f]{32}\.partial|zarr\.[\w.]*partial")
+"""Name under which zarr writes a file before it renames it."""
+NAMED = 5
+"""Damaged blocks that a warning names at most."""
 
 _zarr = functools.partial(lazy_loader.load, "zarr")  # an extra, and slower to import than NumPy
+_codecs = functools.partial(lazy_loader.load, "zarr.codecs")
+_storage = functools.partial(lazy_loader.load, "zarr.storage")
 
 
 class Store:
@@ -51,16 +61,35 @@ class Store:
     def __init__(self, path: Path, frame: Frame, blocks: Blocks) -> None:
         self.frame = frame
         self.blocks = blocks
-        self.markers = path / PROGRESS / DONE
+        self.marks = Marks(path / PROGRESS / DONE, path, frame.asked.columns, blocks)
         root = _zarr().open_group(str(path), mode="r+", zarr_format=FORMAT)
         self.arrays = {column.name: root[column.name] for column in frame.asked.columns}
-        self.tally = Tally()
-        self.done: set[int] = set()
         self._room = Columns()
         self._roomy = 0
-        for block, tally in _marked(self.markers):
-            self.done.add(block)
-            self.tally.add(tally)
+        done, damaged = self.marks.read()
+        self.tally = Tally()
+        for block in sorted(done):
+            self.tally.add(done[block])
+        self.done = set(done)
+        if damaged:
+            warnings.warn(f"{path}: {self._told(damaged)}", DamageWarning, stacklevel=5)
+
+    def _told(self, damaged: list[int]) -> str:
+        """A sentence that names damaged blocks."""
+        named = []
+        for block in damaged[:NAMED]:
+            first, stop = self.blocks.mechanisms(block)
+            named.append(_("{block} (mechanisms {first} to {last})").format(
+                block=block, first=first, last=stop - 1
+            ))  # fmt: skip
+        if len(damaged) > NAMED:
+            named.append(_("and {count} more").format(count=len(damaged) - NAMED))
+        what = ngettext(
+            "{n} block is damaged and is computed again: {blocks}",
+            "{n} blocks are damaged and are computed again: {blocks}",
+            len(damaged),
+        )
+        return what.format(n=len(damaged), blocks=", ".join(named))
 
     def has(self, block: int) -> bool:
         return block in self.done
@@ -74,70 +103,51 @@ class Store:
     def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
         region = self.blocks.region(block)
         extent = tuple(along.stop - along.start for along in region)
+        self.marks.remove_chunks(block)
         for column in self.frame.asked.columns:
             values = results[column.name].reshape(extent + column.shape)
             self.arrays[column.name][(*region, *[slice(None)] * len(column.shape))] = values
-        folder = self.markers / str(block // TOGETHER)
-        folder.mkdir(parents=True, exist_ok=True)
-        write_whole(folder / f"{block}.json", tally.as_dict())
+        self.marks.write(block, tally)
         self.done.add(block)
         self.tally.add(tally)
-
-
-def write_whole(file: Path, told: Mapping[str, Any]) -> None:
-    """Write a small file of JSON so that it is there whole or not at all."""
-    draft = file.with_suffix(".draft")
-    with draft.open("w", encoding="utf-8") as stream:
-        json.dump(told, stream)
-        stream.flush()
-        os.fsync(stream.fileno())
-    os.replace(draft, file)
-
-
-def _marked(markers: Path) -> Iterator[tuple[int, Tally]]:
-    """Blocks that are done; a marker that cannot be read counts for nothing."""
-    for file in markers.glob("*/*.json"):
-        try:
-            yield int(file.stem), Tally.from_dict(json.loads(file.read_text(encoding="utf-8")))
-        except (ValueError, KeyError, TypeError):
-            continue
 
 
 @contextmanager
 def opened(path: Path, frame: Frame, blocks: Blocks, task: Task) -> Iterator[Store]:
     """The store of a sweep, made or found; nobody else writes into it while the block runs.
 
-    Raises InputError: zarr is not installed, the folder holds something else or another sweep, another run writes
-    into it, the operating system refuses.
+    Blocks that are damaged are named in a DamageWarning, and are not done. Raises InputError: zarr is not installed,
+    the folder holds something else, another sweep or a file that was read, another run writes into it, the operating
+    system refuses.
     """
     if importlib.util.find_spec("zarr") is None:
         what = _("a store needs zarr, which is not installed")
         raise InputError(str(path), what, _('install it with pip install "centrode[sweeps]"'))
-    try:
+    with refusals(path):
         _refuse_other_folders(path)
+        keep_inputs_below(path)
         (path / PROGRESS).mkdir(parents=True, exist_ok=True)
-    except OSError as refusal:
-        reason = refusal.strerror or str(refusal)
-        what = _("cannot be written: {reason}").format(reason=reason)
-        raise InputError(str(path), what, _("name another place")) from refusal
     with locked(path / PROGRESS / LOCK, str(path)):
-        study = _study(frame, task)
-        found = _found(path)
-        if found is None:
-            _make(path, frame, blocks)
-            write_whole(path / PROGRESS / STUDY, {"study": study, "blocks": [blocks.axis, blocks.step]})
-        else:
-            _refuse_other_studies(path, found, study)
-            blocks = Blocks(frame.design.shape, *found["blocks"])
+        with refusals(path):
+            study = _study(frame, task)
+            found = _found(path)
+            if found is None:
+                _make(path, frame, blocks, study)
+            else:
+                _refuse_other_studies(path, found, study)
+                blocks = _blocks_of(found, path, frame)
+                _refuse_damaged_files(path, _empty_store(frame, blocks), found["files"])
+                _remove_drafts(path)
         yield Store(path, frame, blocks)
 
 
 def read(path: Path, frame: Frame) -> xr.Dataset:
-    """The result in a store; numbers are read when they are asked for."""
-    data = xr.open_zarr(str(path), chunks=None)
+    """The result in a store; numbers are read when they are used, coordinates are those of the sweep."""
+    coordinates = frame.empty.coords
+    data = xr.open_zarr(str(path), chunks=None, drop_variables=list(map(str, coordinates)))
     # a folder has no order of its own
     return xr.Dataset(
-        {column.name: data[column.name] for column in frame.asked.columns}, data.coords, data.attrs
+        {column.name: data[column.name] for column in frame.asked.columns}, coordinates, data.attrs
     )
 
 
@@ -157,13 +167,38 @@ def _found(path: Path) -> dict[str, Any] | None:
     file = path / PROGRESS / STUDY
     if not file.exists():
         return None
+    told = read_small(file) or {}
     try:
-        told = json.loads(file.read_text(encoding="utf-8"))
-        axis, step = told["blocks"]
-        return {"study": dict(told["study"]), "blocks": (int(axis), int(step))}
+        return {"study": dict(told["study"]), "blocks": told["blocks"], "files": dict(told.get("files", {}))}
     except (ValueError, KeyError, TypeError):
-        damaged = _("{file} in it is damaged").format(file=f"{PROGRESS}/{STUDY}")
-        raise InputError(str(path), damaged, _("delete the folder, or name another place")) from None
+        raise _damaged(path) from None
+
+
+def _blocks_of(found: Mapping[str, Any], path: Path, frame: Frame) -> Blocks:
+    """The blocks that a store says it has; InputError where there cannot be such."""
+    try:
+        axis, step = map(int, found["blocks"])
+    except (ValueError, TypeError, OverflowError):
+        raise _damaged(path) from None
+    shape = frame.design.shape
+    if not (0 <= axis < len(shape) and 1 <= step <= shape[axis]):
+        raise _damaged(path)
+    blocks = Blocks(shape, axis, step)
+    if _too_great(blocks, frame):
+        raise _damaged(path)
+    return blocks
+
+
+def _damaged(path: Path, name: str = f"{PROGRESS}/{STUDY}") -> InputError:
+    what = _("{file} in it is damaged").format(file=name)
+    return InputError(str(path), what, _("delete the folder, or name another place"))
+
+
+def _too_great(blocks: Blocks, frame: Frame) -> bool:
+    """Whether a block would take more memory than those that a sweep makes."""
+    _first, stop = blocks.mechanisms(0)
+    each = max(1, sum(column.bytes for column in frame.asked.columns))
+    return stop > max(1, limits.BLOCK_BYTES // each)
 
 
 def _study(frame: Frame, task: Task) -> dict[str, Any]:
@@ -190,30 +225,82 @@ def _refuse_other_studies(path: Path, found: Mapping[str, Any], study: Mapping[s
     raise InputError(str(path), what, _("name another place, or delete it"))
 
 
-def _make(path: Path, frame: Frame, blocks: Blocks) -> None:
-    """Make the arrays, without numbers; remains of a making that was cut short are taken away first."""
-    columns = frame.asked.columns
-    ours = {"zarr.json", PROGRESS, *map(str, frame.empty.coords), *(column.name for column in columns)}
+def _make(path: Path, frame: Frame, blocks: Blocks, study: Mapping[str, Any]) -> None:
+    """Make the arrays, without numbers, and keep what they are of; what is left of a making cut short is removed."""
+    _clear(path, frame)
+    files = _empty_store(frame, blocks)
+    with draft_folder(path) as draft:
+        for name, content in files.items():
+            (draft / name).parent.mkdir(parents=True, exist_ok=True)
+            (draft / name).write_bytes(content)
+    checksums = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+    told = {"study": study, "blocks": [blocks.axis, blocks.step], "files": checksums}
+    write_whole(path / PROGRESS / STUDY, told)
+
+
+def _clear(path: Path, frame: Frame) -> None:
+    """Remove what is left of a making that was cut short; InputError where there is anything else."""
+    clear_drafts(path)
+    names = {column.name for column in frame.asked.columns}
+    ours = {METADATA, PROGRESS, *map(str, frame.empty.coords), *names}
     remains = [entry for entry in path.iterdir() if entry.name != PROGRESS]
     if any(entry.name not in ours and not DRAFT.fullmatch(entry.name) for entry in remains):
         raise InputError(str(path), _("the folder holds something else"), _("name another place"))
-    for entry in remains:
-        shutil.rmtree(entry) if entry.is_dir() else entry.unlink()
-    (path / PROGRESS / "zarr.json").unlink(missing_ok=True)
-    root = _zarr().open_group(str(path), mode="a", zarr_format=FORMAT)
+    for entry in (*remains, path / PROGRESS / METADATA, path / PROGRESS / DONE):
+        if entry.is_dir() and not entry.is_symlink():
+            clear_folder(entry)
+        else:
+            remove_file(entry)
+
+
+def _remove_drafts(path: Path) -> None:
+    """Remove what zarr was writing in a run that was killed."""
+    for draft in path.rglob("*.partial"):
+        if DRAFT.fullmatch(draft.name):
+            remove_file(draft)
+
+
+def _refuse_damaged_files(path: Path, files: Mapping[str, bytes], checksums: Mapping[str, Any]) -> None:
+    """InputError where metadata or labels are not those that the store was made with."""
+    for name, content in files.items():
+        if not _as_made(path / name, content, checksums.get(name)):
+            raise _damaged(path, name)
+
+
+def _as_made(file: Path, content: bytes, checksum: object) -> bool:
+    """Whether a file holds what a making writes: metadata of the same meaning, labels as they were written."""
+    found = read_bounded(file, 2 * len(content) + GREATEST)
+    if found is None or found == content:
+        return found is not None
+    if file.name != METADATA:
+        # on another machine coordinates may differ in their last bits
+        return hashlib.sha256(found).hexdigest() == checksum
+    try:
+        return bool(json.loads(found) == json.loads(content))
+    except (ValueError, RecursionError):
+        return False
+
+
+def _empty_store(frame: Frame, blocks: Blocks) -> dict[str, bytes]:
+    """The files of the store before there are results: metadata, coordinates."""
+    files: dict[str, Any] = {}
+    memory = _storage().MemoryStore(files)
+    root = _zarr().open_group(memory, mode="a", zarr_format=FORMAT)
     root.create_group(PROGRESS)
-    frame.empty.to_zarr(str(path), mode="a", zarr_format=FORMAT, consolidated=False)
-    for column in columns:
+    frame.empty.to_zarr(memory, mode="a", zarr_format=FORMAT, consolidated=False)
+    for column in frame.asked.columns:
         root.create_array(
             column.name,
             shape=frame.design.shape + column.shape,
             chunks=tuple(max(1, extent) for extent in blocks.chunk + column.shape),
             dtype=column.kind,
+            compressors=_codecs().Crc32cCodec(),  # any reader tells a damaged chunk by it
             fill_value=column.empty,
             dimension_names=frame.design.dimensions + column.dimensions,
             attributes=dict(column.attributes),
         )
     with warnings.catch_warnings():
-        # the metadata in one place, for readers; zarr warns that this is new, and of the lock that is none of its own
+        # the metadata in one place, for readers; zarr warns that this is new
         warnings.simplefilter("ignore")
-        _zarr().consolidate_metadata(str(path), zarr_format=FORMAT)
+        _zarr().consolidate_metadata(memory, zarr_format=FORMAT)
+    return {name: content.to_bytes() for name, content in files.items()}

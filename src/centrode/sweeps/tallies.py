@@ -57,16 +57,29 @@ class Tally:
         }
 
     @classmethod
-    def from_dict(cls, told: Mapping[str, Any]) -> Tally:
-        """The tally of a marker; KeyError or TypeError where it is none."""
+    def from_dict(cls, told: Mapping[str, Any], components: Mapping[str, int]) -> Tally:
+        """The tally of a mark; `components` says how many each column has.
+
+        Raises KeyError, TypeError, ValueError or OverflowError where it is none.
+        """
         worst = told["worst_residual"]
+        extremes = {name: [_ends(pair) for pair in found] for name, found in told["extremes"].items()}
+        if any(components.get(name) != len(found) for name, found in extremes.items()):
+            raise ValueError("extremes of other columns")
         return cls(
             int(told["mechanisms"]),
             int(told["whole"]),
             int(told["none"]),
             math.nan if worst is None else float(worst),
-            dict(told["extremes"]),
+            extremes,
         )
+
+
+def _ends(pair: Sequence[float] | None) -> list[float] | None:
+    if pair is None:
+        return None
+    least, greatest = pair
+    return [float(least), float(greatest)]
 
 
 def _wider(one: Sequence[float] | None, other: Sequence[float] | None) -> list[float] | None:

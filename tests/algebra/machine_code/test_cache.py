@@ -133,6 +133,99 @@ def test_an_entry_of_somebody_else_is_not_taken(
     assert len(compiled) == 2
 
 
+def forged(entry: Path) -> None:
+    """Other code under the name of an entry, with a checksum computed for it."""
+    payload = b"native code of somebody else"
+    entry.write_bytes(cache.MARK + cache._digest(entry.stem, payload) + payload)
+
+
+def in_a_folder_for_a_group(folder: Path, _entry: Path) -> None:
+    folder.chmod(0o770)
+
+
+def in_a_folder_for_everybody(folder: Path, _entry: Path) -> None:
+    folder.chmod(0o1777)
+
+
+def in_a_file_for_a_group(_folder: Path, entry: Path) -> None:
+    entry.chmod(0o660)
+
+
+def in_a_file_for_everybody(_folder: Path, entry: Path) -> None:
+    entry.chmod(0o606)
+
+
+def in_a_folder_that_anybody_may_rename(folder: Path, _entry: Path) -> None:
+    folder.parent.chmod(0o777)
+
+
+def behind_a_linked_entry(folder: Path, entry: Path) -> None:
+    entry.rename(folder.parent / "elsewhere")
+    entry.symlink_to(folder.parent / "elsewhere")
+
+
+def behind_a_linked_folder(folder: Path, _entry: Path) -> None:
+    folder.rename(folder.parent / "elsewhere")
+    folder.symlink_to(folder.parent / "elsewhere")
+    (folder.parent / "elsewhere").chmod(0o777)
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="rights are no bits here")
+@pytest.mark.parametrize(
+    "open_to_others",
+    [
+        in_a_folder_for_a_group,
+        in_a_folder_for_everybody,
+        in_a_file_for_a_group,
+        in_a_file_for_everybody,
+        in_a_folder_that_anybody_may_rename,
+        behind_a_linked_entry,
+        behind_a_linked_folder,
+    ],
+)
+def test_what_others_may_write_is_not_run(
+    own_cache: Path, compiled: list[str], open_to_others: Callable[[Path, Path], None]
+) -> None:
+    kernels.kernel_of(SCAN)
+    (entry,) = entries(own_cache)
+    forged(entry)
+    assert cache.read(entry.stem) == b"native code of somebody else"  # the checksum is right
+    open_to_others(own_cache, entry)
+    assert cache.read(entry.stem) is None
+    kernels.forget()
+    assert works()
+    assert len(compiled) == 2
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="rights are no bits here")
+def test_a_private_folder_behind_a_link_is_used(own_cache: Path, compiled: list[str]) -> None:
+    kernels.kernel_of(SCAN)
+    own_cache.rename(own_cache.parent / "elsewhere")
+    own_cache.symlink_to("elsewhere")
+    kernels.forget()
+    assert works()
+    assert len(compiled) == 1
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="rights are no bits here")
+def test_nothing_is_kept_where_others_may_write(own_cache: Path) -> None:
+    own_cache.mkdir()
+    own_cache.chmod(0o777)
+    assert works()
+    assert entries(own_cache) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_a_pipe_in_the_place_of_an_entry_is_not_waited_for(own_cache: Path, compiled: list[str]) -> None:
+    kernels.kernel_of(SCAN)
+    (entry,) = entries(own_cache)
+    entry.unlink()
+    os.mkfifo(entry, 0o600)
+    kernels.forget()
+    assert works()
+    assert len(compiled) == 2
+
+
 def test_a_folder_in_the_place_of_an_entry(own_cache: Path, compiled: list[str]) -> None:
     kernels.kernel_of(SCAN)
     (entry,) = entries(own_cache)

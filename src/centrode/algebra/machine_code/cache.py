@@ -1,12 +1,18 @@
-"""Compiled kernels on disk: a saving, never a need. Whatever is wrong with an entry, it is as if it were not there."""
+"""Compiled kernels on disk: a saving, never a need. Whatever is wrong with an entry, it is as if it were not there.
+
+An entry is run as native code, and its checksum keeps errors out, not people: anybody can compute it. So an entry
+counts only where nobody but the user can have written it.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import os
+import stat
 import sys
 import tempfile
 from pathlib import Path
+from typing import IO
 
 FOLDER = "CENTRODE_CACHE"
 """Environment variable that names another folder; if it is empty, nothing is kept on disk."""
@@ -48,9 +54,7 @@ def read(name: str) -> bytes | None:
     if place is None:
         return None
     try:
-        with (place / f"{name}{SUFFIX}").open("rb") as file:
-            if not _is_own(os.fstat(file.fileno())):
-                return None
+        with _opened(place, f"{name}{SUFFIX}") as file:
             content = file.read(GREATEST + 1)
     except OSError:
         return None
@@ -66,6 +70,8 @@ def write(name: str, payload: bytes) -> None:
         return
     try:
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if not _is_private_folder(place):
+            return
         handle, temporary = tempfile.mkstemp(dir=place)
         try:
             with os.fdopen(handle, "wb") as file:
@@ -82,9 +88,42 @@ def _digest(name: str, payload: bytes) -> bytes:
     return hashlib.sha256(name.encode() + payload).digest()
 
 
-def _is_own(found: os.stat_result) -> bool:
-    """Whether a file is the user's own: code that someone else put there is not run."""
-    return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
+def _opened(place: Path, entry: str) -> IO[bytes]:
+    """An entry that is open to be read; PermissionError where somebody else may have written it.
+
+    The folder is opened first and the entry in it, so that neither can be exchanged between looking and reading.
+    """
+    if sys.platform == "win32":  # rights are lists there, not bits: the folder of a user's own is trusted
+        return (place / entry).open("rb")
+    inside = os.open(place, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        if not _is_private(os.fstat(inside)) or _is_exchangeable(place):
+            raise PermissionError(f"others may write into {place}")
+        handle = os.open(entry, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=inside)
+    finally:
+        os.close(inside)
+    file = os.fdopen(handle, "rb")
+    found = os.fstat(handle)
+    if stat.S_ISREG(found.st_mode) and _is_private(found):
+        return file
+    file.close()
+    raise PermissionError(f"others may write {entry}")
+
+
+def _is_private_folder(place: Path) -> bool:
+    """Whether nobody but the user can put entries into a folder."""
+    return sys.platform == "win32" or (_is_private(place.stat()) and not _is_exchangeable(place))
+
+
+def _is_private(found: os.stat_result) -> bool:
+    """Whether a file or folder is the user's own, and neither a group nor others may write to it."""
+    return found.st_uid == os.geteuid() and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+
+
+def _is_exchangeable(place: Path) -> bool:
+    """Whether a folder stands, links followed, in one where anybody may rename what is not theirs."""
+    modes = [folder.stat().st_mode for folder in place.resolve().parents]
+    return any(mode & stat.S_IWOTH and not mode & stat.S_ISVTX for mode in modes)
 
 
 def _leave_the_newest(place: Path) -> None:

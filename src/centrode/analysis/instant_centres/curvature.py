@@ -133,7 +133,6 @@ def jet_positions(prepared: Ready, span: Span) -> Positions:
     """Positions with three derivatives by the path's parameter, (1, samples) each, on the branch of the motion."""
     fitted = fit_for(prepared, span)
     continuation = start_of(fitted, fitted.kinematics)
-    continuation.order = ORDER
     Scan(continuation, mesh_of(fitted.kinematics.path, span.parameter)).run()
     along = span.parameter[None, :]
     with np.errstate(all="ignore"):

@@ -81,6 +81,27 @@ def close(
     return Judged(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))
 
 
+def follow(
+    around: Surroundings, tracks: Tracks, at: Positions, parameter: Array, lanes: Lanes, steps: int
+) -> None:
+    """Add the group's points and links along ways of complex parameters, NaN from where Newton's method fails.
+
+    The ways stand one after the other, of so many steps each, and begin with a real parameter.
+    """
+    group = around.equations
+    known = flattened(needed(group, at), parameter.shape)
+    system = System(group, around.kinematics.taken(lanes).numbers, known, len(parameter))
+    first = np.arange(0, len(parameter), steps)
+    state: Any = tracks.foretell(parameter[first].real, lanes[first]).state + 0j
+    state = system.taken(first).righted(state)
+    states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
+    for k in range(steps):
+        found = newton(system.taken(first + k), state)
+        state = np.where(found.found[:, None], found.state, np.nan)
+        states[first + k] = state
+    shaped(system.at(ARRAYS, known, states), group, parameter.shape, at)
+
+
 def _lifted(system: System, m: Namespace, known: Positions, state: Array, linear: Linear | None) -> Positions:
     """Converged states over the algebra of the known positions."""
     if linear is None:

@@ -158,7 +158,10 @@ class Linear:
 
     def _matrix(self) -> Array:
         free = self.pattern.free
-        matrix = np.zeros((self.places, free, free))
+        parts = [x for k in self.pattern.kept for row in self.rows[k].values() for x in row]
+        matrix = np.zeros(
+            (self.places, free, free), dtype=np.result_type(np.float64, *map(np.asarray, parts))
+        )
         for i, (k, unit) in enumerate(zip(self.pattern.kept, self.units, strict=True)):
             for entity, slopes in self.rows[k].items():
                 for j, shift in self.tangents.get(entity, {}).items():
@@ -200,10 +203,10 @@ class Linear:
 def solved(matrix: Array, right: Array) -> Array:
     """Solution (k, n, m) of the equations at every place; NaN where the matrix is singular."""
     try:
-        return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
+        return np.asarray(np.linalg.solve(matrix, right))
     except np.linalg.LinAlgError:
         sign, _size = np.linalg.slogdet(matrix)
-        found = np.full(right.shape, np.nan)
+        found = np.full(right.shape, np.nan, dtype=np.result_type(matrix, right))
         found[sign != 0.0] = np.linalg.solve(matrix[sign != 0.0], right[sign != 0.0])
         return found
 

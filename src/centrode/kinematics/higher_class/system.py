@@ -167,7 +167,9 @@ class System:
 
     def stacked(self, values: Sequence[Number]) -> Array:
         """Numbers as an array (k, numbers)."""
-        found = np.empty((len(values), self.places))
+        found = np.empty(
+            (len(values), self.places), dtype=np.result_type(np.float64, *map(np.asarray, values))
+        )
         for row, value in zip(found, values, strict=True):
             row[:] = value
         return found.T
@@ -231,7 +233,7 @@ def total(columns: Array) -> Array:
 
 def times(matrix: Array, vector: Array) -> Array:
     """Product at every place, added up in one order whatever the number of places."""
-    total = np.zeros(vector.shape)
+    total = np.zeros(vector.shape, dtype=np.result_type(matrix, vector))
     for j in range(vector.shape[1]):
         total += matrix[:, :, j] * vector[:, j : j + 1]
     return total

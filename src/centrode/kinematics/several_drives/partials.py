@@ -2,7 +2,7 @@
 
 Along a direction the jets of the closed forms give exact first and second derivatives. Mixed terms follow by
 polarisation, D_ij = (D(e_i + e_j) - D(e_i) - D(e_j))/2 with D the second derivative along a direction, which is
-exact up to rounding. Next to change points nothing is interpolated: there the motion is smooth along its own path
+exact up to rounding. Next to change points there are no power series: there the motion is smooth along its own path
 only, while partial derivatives of the group, the second ones at least, grow without bound as towards a limit.
 """
 
@@ -85,7 +85,7 @@ def _found(solved: Solved) -> Continuation:
 
 
 class _Straight(Judging):
-    """Judges as for a motion, but interpolates nothing."""
+    """Judges as for a motion, without power series."""
 
     def after(self, group: int, at: Positions) -> None:
         for total, found in zip((self.opened, self.zero), self._judged.pop(group, ()), strict=False):

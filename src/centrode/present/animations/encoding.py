@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import importlib
-import os
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from centrode.errors import InputError
+from centrode.files.drafts import draft_file
 from centrode.locale import _
 from centrode.present.animations.palette import Palette
 from centrode.present.animations.stage import Pixels
@@ -88,7 +88,7 @@ def write_gif(
 
     images = shown()
     first = next(images)
-    with appearing(path) as draft:
+    with draft_file(path) as draft:
         first.save(
             draft,
             format="GIF",
@@ -106,7 +106,7 @@ def write_mp4(
     """Write frames as an MP4 (H.264); its sides have to be even numbers of pixels."""
     need_video()
     high, wide = next(pictures).shape
-    with appearing(path) as draft:
+    with draft_file(path) as draft:
         size = ["-s", f"{wide}x{high}", "-r", f"{fps:.9g}", "-i", "-"]
         command = [_ffmpeg().get_ffmpeg_exe(), *INPUT, *size, *OUTPUT, str(draft)]
         with tempfile.TemporaryFile() as told, _running(command, told) as sink:
@@ -132,20 +132,3 @@ def _running(command: Sequence[str], told: IO[bytes]) -> Iterator[IO[bytes]]:
         told.seek(0)
         reason = told.read(300).decode("utf-8", "replace").strip()
         raise InputError("", _("ffmpeg refused: {reason}").format(reason=reason), _("write a .gif instead"))
-
-
-@contextmanager
-def appearing(path: Path) -> Iterator[Path]:
-    """A file to write that takes the place of `path` when the block ends, and is gone where it raises."""
-    handle, name = tempfile.mkstemp(prefix=".centrode-", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
-    try:
-        yield Path(name)
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)
-        os.replace(name, path)
-    except BaseException:
-        with suppress(OSError):
-            os.unlink(name)
-        raise

@@ -2,7 +2,7 @@
 
 The bits are those of `solve`. Signs take the change points as numbers of the mechanism; a sample is open where
 a radicand lies below zero by more than rounding. What is left to the arrays are the samples that hang on
-rounding and those that are interpolated: they are computed one by one, and put into their places (`patches`).
+rounding and those on power series: they are computed one by one, and put into their places (`patches`).
 """
 
 from __future__ import annotations
@@ -154,7 +154,7 @@ class Eventful:
         for k, link in enumerate(plan.turning):
             known[link] = nodes = search.turns(link, self.ready.assembled.angles[link])
             angle, sine = found["angles"][0, :, :, layout.angles.index(link)], found[SINES][:, :, k]
-            turns = nodes.at(nearest, angle, sine)
+            turns = nodes.at(nearest, angle, sine, self.span.parameter)
             np.arctan2(sine, angle, out=angle)
             if turns.any():
                 angle += TURN * turns

@@ -92,13 +92,11 @@ class Patches:
     def _fill_angles(self, samples: Samples, lanes: Lanes, parameter: Array) -> None:
         nearest = nearest_node(self.mesh, parameter)
         for link, nodes in self.turns.items():
-            known = (nodes.cosine, nodes.below, nodes.turns)
-            at_nodes = NodeTurns(*(x[lanes if len(x) > 1 else 0, nearest][:, None] for x in known))
-            rotor, angle = (
-                samples.columns[:, self.plan.layout.rotor(link)],
-                self.plan.layout.angles.index(link),
-            )
-            angle_and_rates(rotor, at_nodes, np.zeros(1, dtype=np.intp), samples.angles[:, angle])
+            rotor = samples.columns[:, self.plan.layout.rotor(link)]
+            cosine, sine = rotor[0, :, :, 0]
+            turns = nodes.at_single(lanes, nearest, cosine, sine, parameter)
+            angle = self.plan.layout.angles.index(link)
+            angle_and_rates(rotor, turns[:, None], samples.angles[:, angle])
         for angle, link in enumerate(self.plan.layout.angles):
             if link not in self.turns and link not in samples.followed:
                 samples.angles[:, angle] = 0.0 * samples.columns[:, self.plan.layout.rotor(link).start]

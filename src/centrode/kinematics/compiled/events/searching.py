@@ -1,15 +1,15 @@
 """The search for events on a mesh that machine code has filled: what is found, and its bits, are those of `events`.
 
 All radicands are computed at once with constant signs. Where a group has change points, those of the groups
-behind it are computed again with its signs, and at the nodes next to its change points, which the arrays
-interpolate, by the arrays.
+behind it are computed again with its signs, and at the nodes next to its change points, which power
+series give, by the arrays.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -26,6 +26,9 @@ from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.events import Scan
 from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.mending import inside
+from centrode.kinematics.quick_turns import QuickTurns
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -39,6 +42,11 @@ def of_mesh(plan: Traced) -> dict[str, Nodes]:
     found = {f"radicand {group}": _pair(x) for group, x in plan.radicands.items()}
     found |= {f"divisor {group}": _pair(x) for group, x in plan.divisors.items() if isinstance(x, Jet)}
     return found | {f"rotor {link}": boxed(rotor) for link, rotor in plan.turning.items()}
+
+
+def _angle_of(link: str, numbers: Dimensions, at: Positions) -> Any:
+    cosine, sine = rotor_of_angle(ARRAYS, numbers, at, link)
+    return np.arctan2(sine, cosine)
 
 
 def _pair(number: Any) -> Nodes:
@@ -80,7 +88,13 @@ class Search:
         if len(self._mended[0]):
             cosine[self._mended], sine[self._mended] = self._rotors_mended[link]
         start = int(np.argmin(np.abs(self.mesh - self.continuation.branches.initial)))
-        return node_turns((cosine, sine), initial, start, len(self.mesh))
+        quick = self._quick.measured(partial(_angle_of, link))
+        return node_turns((cosine, sine), initial, start, len(self.mesh), quick)
+
+    @cached_property
+    def _quick(self) -> QuickTurns:
+        groups = self.continuation.kinematics.structure.groups
+        return QuickTurns(self.continuation, self.mesh, len(groups))
 
     def _write(self) -> None:
         _plan, writer = self.writers(self._counts)
@@ -100,7 +114,7 @@ class Search:
         return True
 
     def _with_patches(self, scan: Scan, group: int, pair: Array) -> Jet:
-        """Value and slope of a radicand or divisor, those of the arrays where a group before it is interpolated."""
+        """Value and slope of a radicand or divisor, those of the arrays where a series gives a group before it."""
         lanes, nodes = self._near_change_points(range(group))
         if len(lanes):
             guard = scan.guard(group, lanes, self.mesh[nodes], 1)
@@ -123,7 +137,7 @@ class Search:
 
     @cached_property
     def _rotors_mended(self) -> dict[str, tuple[Any, Any]]:
-        """Rotors where any group is interpolated, as the arrays have them."""
+        """Rotors where a series gives any group, as the arrays have them."""
         lanes, nodes = self._mended
         parameter = self.mesh[nodes]
         kinematics = self.continuation.kinematics.taken(lanes)

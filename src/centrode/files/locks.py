@@ -1,4 +1,4 @@
-"""A lock on a folder that one process holds; when the process ends, however it ends, the lock is free."""
+"""A lock on a file that one process holds; when the process ends, however it ends, the lock is free."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from centrode.errors import InputError
 from centrode.locale import _
@@ -25,18 +26,34 @@ def locked(file: Path, what: str) -> Iterator[None]:
     not hold: it belongs to the open file, not to the file's being there.
     """
     try:
-        stream = file.open("a+b")
+        stream = taken(file)
     except OSError as refusal:
         raise _refused(what, refusal) from refusal
+    if stream is None:
+        busy = _("another run is writing into it")
+        raise InputError(what, busy, _("wait until it ends, or name another place"))
     with stream:
-        try:
-            _take(stream.fileno())
-        except (BlockingIOError, PermissionError) as refusal:
-            busy = _("another run is writing into it")
-            raise InputError(what, busy, _("wait until it ends, or name another place")) from refusal
-        except OSError as refusal:
-            raise _refused(what, refusal) from refusal
         yield
+
+
+def taken(file: Path) -> IO[bytes] | None:
+    """The open file with its lock, made where it is missing; None where another process holds it or took it away.
+
+    Raises OSError where the file cannot be opened, or the file system cannot lock.
+    """
+    stream = file.open("a+b")
+    try:
+        _take(stream.fileno())
+        # Between opening and locking, the process that held the lock may have removed the file.
+        if os.path.samestat(os.fstat(stream.fileno()), file.stat()):
+            return stream
+    except (BlockingIOError, PermissionError, FileNotFoundError):
+        pass
+    except BaseException:
+        stream.close()
+        raise
+    stream.close()
+    return None
 
 
 def _refused(what: str, refusal: OSError) -> InputError:
