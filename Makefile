@@ -15,7 +15,7 @@ FOR_TESTS := $(VENV)/.stamp-dev
 
 .DELETE_ON_ERROR:
 .PHONY: help demo test format lint types contracts catalogue-check reference-check docs tests tests-without-extras catalogues reference \
-	benchmarks clean
+	campaigns benchmarks clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-22s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -62,12 +62,15 @@ catalogues: $(FOR_TESTS) ## take new sentences into the catalogues and compile t
 reference: $(FOR_TESTS) ## make the pages of the documentation that are made from the program
 	$(BIN)/python -m tools.reference
 
+campaigns: $(FOR_TESTS) ## random cases against independent oracles, as far as CAMPAIGNS says; goes on where it was
+	$(BIN)/python -m tools.campaigns $(CAMPAIGNS)
+
 benchmarks: $(FOR_TESTS) ## ratios against peers and against the machine
 	$(PIP) install --editable '.[dev,benchmarks]'
 	$(BIN)/python -m benchmarks
 
 clean: ## remove everything that make made
-	rm -rf $(VENV) demo-output docs/_build build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) demo-output campaigns-output docs/_build build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	find src tests tools benchmarks docs -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(BASE):

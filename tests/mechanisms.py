@@ -12,6 +12,10 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
+from tools.campaigns.columns import EPS as EPS
+from tools.campaigns.columns import link as link
+from tools.campaigns.columns import point as point
+from tools.campaigns.columns import slide as slide
 
 import centrode as ct
 from centrode.algebra.jets import Jet
@@ -24,7 +28,6 @@ from centrode.structure.dimensions import Dimensions
 Array: TypeAlias = npt.NDArray[np.float64]
 Parts: TypeAlias = dict[str, Any]
 
-EPS = 2.0**-52
 WORDS_MIRRORED = {"left": "right", "right": "left", "ahead": "ahead", "behind": "behind"}
 
 
@@ -73,8 +76,8 @@ def moved(
     frame = new.get("frame", {}).get("points", {})
     for name, at in frame.items():
         frame[name] = fixed(at)
-    for link in new["links"].values():
-        _move_link(link, local, sense, scale, turn)
+    for body in new["links"].values():
+        _move_link(body, local, sense, scale, turn)
     for guide in new.get("guides", []):
         on_frame = guide.get("on", "frame") == "frame"
         if not isinstance(guide["through"], str):
@@ -128,22 +131,6 @@ def _move_link(link: Parts, local: Any, sense: float, scale: float, turn: float)
 
 def _angle(direction: float | list[float]) -> float:
     return math.atan2(direction[1], direction[0]) if isinstance(direction, list) else direction
-
-
-def point(data: xr.Dataset, name: str, variable: str = "position") -> Array:
-    """Places (or velocities, ...) of a point as complex numbers x + i y."""
-    xy = data[variable].sel(point=name).to_numpy()
-    return np.asarray(xy[..., 0] + 1j * xy[..., 1])
-
-
-def link(data: xr.Dataset, name: str, variable: str = "angle") -> Array:
-    """Angles (or angular velocities, ...) of a link."""
-    return np.asarray(data[variable].sel(link=name).to_numpy())
-
-
-def slide(data: xr.Dataset, name: str, variable: str = "slide") -> Array:
-    """Displacements (or their rates) along a guide."""
-    return np.asarray(data[variable].sel(guide=name).to_numpy())
 
 
 def statuses(data: xr.Dataset) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
+from tools.campaigns.registry import CAMPAIGNS as CAMPAIGNS_BY_NAME
 from tools.validation import cams, kinematics, literature, machines
 from tools.validation.rows import Row, Source
 
@@ -12,6 +13,17 @@ HEAD = """# Validation
 Every number that a source prints, beside what centrode computes; the page is made by running it (`make reference`),
 and compared with the program at every `make test`. A number agrees when it rounds to the printed one. Where a source
 is wrong, an example repeats its slip and says so, and the right value stands beside it: see [errata](errata.md).
+"""
+CAMPAIGNS = """## Random cases
+
+Campaigns compare many random cases with oracles that share no code with the program. `make campaigns` runs all of
+them, `make campaigns CAMPAIGNS="gaps --minutes 5"` one for some minutes; a run that was cut short goes on where it
+was. Each writes its page:
+
+{pages}
+
+`python -m tools.campaigns NAME --case NUMBER` runs one case and shows it in full. The suite runs a fixed sample of
+each.
 """
 WIDTH = 120
 SOURCES = (
@@ -41,7 +53,13 @@ def page() -> str:
         sum(row.agrees for row in one.rows) + sum(column.agreeing for column in one.columns) for one in found
     )
     counted = f"{agreeing} of {total} printed numbers agree.\n"
-    return "\n".join([HEAD, counted, *(_section(one) for one in found)])
+    return "\n".join([HEAD, counted, *(_section(one) for one in found), _campaigns()])
+
+
+def _campaigns() -> str:
+    """Where the pages of campaigns stand."""
+    pages = [f"- [{one.title}](validation/{name}.md)" for name, one in CAMPAIGNS_BY_NAME.items()]
+    return CAMPAIGNS.format(pages="\n".join(pages))
 
 
 def _section(source: Source) -> str:

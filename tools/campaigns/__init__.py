@@ -1,0 +1,1 @@
+"""Campaigns: long runs of random cases, each compared with an oracle that shares no code with the program."""

@@ -1,0 +1,1 @@
+"""Random planar chains against a plain solver of their closure equations."""

@@ -1,0 +1,1 @@
+"""Chains that do not close over an interval of the drive much narrower than a cell of the mesh."""

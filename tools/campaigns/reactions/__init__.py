@@ -1,0 +1,1 @@
+"""Reactions of random mechanisms under random loads, against the equations of Newton and Euler put together anew."""

@@ -1,0 +1,27 @@
+"""All campaigns by name: a new one is a module and a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from tools.campaigns.campaign import Campaign
+from tools.campaigns.cams import cases as cams
+from tools.campaigns.chains import cases as chains
+from tools.campaigns.change_points import cases as change_points
+from tools.campaigns.commands import cases as commands
+from tools.campaigns.gaps import cases as gaps
+from tools.campaigns.reactions import cases as reactions
+from tools.campaigns.spheres import cases as spheres
+
+CAMPAIGNS: Mapping[str, Campaign] = {
+    one.name: one
+    for one in (
+        chains.CAMPAIGN,
+        change_points.CAMPAIGN,
+        gaps.CAMPAIGN,
+        spheres.CAMPAIGN,
+        cams.CAMPAIGN,
+        reactions.CAMPAIGN,
+        commands.CAMPAIGN,
+    )
+}

@@ -1,0 +1,1 @@
+"""Random spherical chains against their closure equations in vectors."""
