@@ -154,6 +154,15 @@ def without_sign(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array, Arr
     return pieces.lane[first], pieces.centre[first], pieces.centre[last], np.sign(pieces.value[first])
 
 
+def unsettled(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array, Array]:
+    """Lanes and stretches between neighbours of the same sign of which one is not known, and the sign."""
+    first, last = _neighbours(pieces, slack)
+    open_ = (last == first + 1) & ~(pieces.known[first] & pieces.known[last])
+    open_ &= np.sign(pieces.value[first]) == np.sign(pieces.value[last])
+    first, last = first[open_], last[open_]
+    return pieces.lane[first], pieces.centre[first], pieces.centre[last], np.sign(pieces.value[first])
+
+
 def _neighbours(pieces: Pieces, slack: float) -> tuple[Lanes, Lanes]:
     """Pairs of cells with a sign that abut, or that only cells without one lie between."""
     apart = np.diff(pieces.centre) - pieces.half[1:] - pieces.half[:-1]

@@ -27,6 +27,7 @@ from centrode.kinematics.cells import (
     parts_of,
     straight,
     towards,
+    unsettled,
     without_sign,
 )
 from centrode.kinematics.guards import Guards
@@ -42,6 +43,8 @@ Found: TypeAlias = tuple[Lanes, Array]
 NOWHERE: Found = np.zeros(0, dtype=np.intp), np.zeros(0)
 DOUBTFUL = 1e-8
 """Values below this fraction of the greatest one are compared with their rounding error."""
+QUICK = 4.0
+"""Circles of series below this many half widths of cells: about their change points a group turns fast."""
 SLACK = 8.0
 """How many times the finest half width cells of a chain may be apart: what lies between is one place."""
 
@@ -57,9 +60,13 @@ class _Places:
 
 @dataclass(frozen=True)
 class _Stops(_Places):
-    """Where groups before stop; `walls` are those that nothing passes."""
+    """Where groups before stop, or turn fast.
+
+    Nothing passes `walls`; where places are `blind`, nodes beside them foretell nothing.
+    """
 
     walls: Mask
+    blind: Mask
 
 
 @dataclass(frozen=True)
@@ -134,23 +141,39 @@ class Zeros:
         return nearest_node(self.mesh, at)
 
     def _stops(self, group: int) -> _Stops:
-        """Where groups before this one stop; where signs do not flip, also where they meet their other assembly."""
+        """Where groups before this one stop; where signs do not flip, also where they meet their other assembly.
+
+        And change points about which a group before turns fast: most happens next to them.
+        """
         kinds = ("limit",) if self.branches.smooth else ("limit", "change point")
         found = [e for e in self.branches.events if e.group < group and e.kind in kinds]
-        found = [e for e in found if self.mesh[0] <= e.at <= self.mesh[-1]]
-        at = np.array([e.at for e in found], dtype=np.float64)
-        return _Stops(
-            np.array([e.lane for e in found], dtype=np.intp),
-            at,
-            self._nodes_at(at),
-            np.array([e.kind == "limit" for e in found], dtype=bool),
+        quick = [self._quick(before) for before in range(group)]
+        lanes = np.concatenate(
+            [np.array([e.lane for e in found], dtype=np.intp), *(each[0] for each in quick)]
         )
+        at = np.concatenate([np.array([e.at for e in found], dtype=np.float64), *(each[1] for each in quick)])
+        walls, blind = np.zeros(len(at), dtype=bool), np.zeros(len(at), dtype=bool)
+        walls[: len(found)] = [e.kind == "limit" for e in found]
+        blind[: len(found)] = True
+        inside = (self.mesh[0] <= at) & (at <= self.mesh[-1])
+        at = at[inside]
+        return _Stops(lanes[inside], at, self._nodes_at(at), walls[inside], blind[inside])
+
+    def _quick(self, group: int) -> Found:
+        """The change points of a group about which it turns fast."""
+        windows = self.guards.continuation.windows_of(group)
+        if windows is None:
+            return NOWHERE
+        half = np.broadcast_to(self.half, self.mesh.shape)[self._nodes_at(windows.centre)]
+        quick = windows.radius < QUICK * half
+        return windows.lane[quick], windows.centre[quick]
 
     def _looked_into(self, group: int, value: Array, slope: Array, rough: Mask, stops: _Stops) -> _Minima:
         """The least sizes between nodes, where cells are not known and no group before this one stops."""
         sign = np.sign(value)
         looked = rough[:, :-1] | rough[:, 1:]
-        looked[stops.lane, np.searchsorted(self.mesh, stops.at) - 1] = False
+        blind = stops.blind
+        looked[stops.lane[blind], np.searchsorted(self.mesh, stops.at[blind]) - 1] = False
         looked &= sign[:, :-1] == sign[:, 1:]
         lanes, cells = low_minima(self.mesh, sign * value, sign * slope, looked)
         at = self.guards.minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
@@ -206,8 +229,15 @@ class Zeros:
         return Pieces.joined(replace(pieces, value=value), cores, walls).sorted()
 
     def _unforeseen(self, group: int, pieces: Pieces, minima: _Minima) -> _Minima:
-        """The least sizes between cells of one sign that have zeros between them, where no node foretold one."""
-        lanes, low, high, sign = without_sign(pieces, SLACK * self._finest)
+        """The least sizes between cells of one sign, where no node foretold one.
+
+        They are looked for where zeros lie between two cells, and where a cell was not divided until it was known.
+        """
+        slack = SLACK * self._finest
+        lanes, low, high, sign = (
+            np.concatenate(both)
+            for both in zip(without_sign(pieces, slack), unsettled(pieces, slack), strict=True)
+        )
         foretold = np.zeros(len(lanes), dtype=bool)
         for k in range(len(lanes)):
             near = minima.at[minima.lane == lanes[k]]
