@@ -217,7 +217,10 @@ class Zeros:
 
     def _signed(self, group: int, pieces: Pieces, stops: _Stops, minima: _Minima, greatest: Array) -> Pieces:
         """Cells in the order of the path, with the least sizes as cells of their own; zero where a sign is rounding."""
-        faint = np.abs(pieces.value) <= DOUBTFUL * greatest[pieces.lane]
+        size = np.where(np.isfinite(pieces.value), np.abs(pieces.value), 0.0)
+        most = greatest.copy()  # where a group before turns fast, the nodes may have seen little of it
+        np.maximum.at(most, pieces.lane, size)
+        faint = np.abs(pieces.value) <= DOUBTFUL * most[pieces.lane]
         doubtful = np.nonzero(~pieces.nodes & (~pieces.known | faint))[0]
         value = pieces.value.copy()
         if len(doubtful):
