@@ -24,7 +24,8 @@ from centrode.dynamics.burden import Burden
 from centrode.dynamics.inertia import share
 from centrode.dynamics.simulation.course import STATES, Course, Ending
 from centrode.dynamics.simulation.driving import Driving
-from centrode.dynamics.simulation.fixed import course_of
+from centrode.dynamics.simulation.field import Field
+from centrode.dynamics.simulation.fixed import course_of, next_state
 from centrode.dynamics.simulation.rows import Rows
 from centrode.dynamics.simulation.sorts import SORTS, sorted_efforts
 from centrode.dynamics.states import Moving
@@ -68,14 +69,17 @@ class Compiled:
         outputs = run([[step]], inputs, start[:, None], steps=None if self.scan.inputs else steps).outputs
         return np.concatenate([start[:, None], outputs[:, :, 0]], axis=1)
 
-    def course(self, value: float, rate: float, duration: float, steps: int) -> Course:
+    def course(self, field: Field, value: float, rate: float, duration: float, steps: int) -> Course:
         """The course of so many steps, up to where the motion ends."""
         states = self.states(value, rate, duration, steps)
         lost = ~np.isfinite(states).all(axis=0)
         ended: Ending = "duration"
         if lost.any():
-            states, ended = states[:, : int(np.argmax(lost))], "limit"
-        course = course_of(states, duration / steps, ended, 4 * steps)
+            done = int(np.argmax(lost)) - 1
+            step = duration / steps
+            next_state(field, done * step, states[:, done], step)  # says which formula has no value
+            states, ended = states[:, : done + 1], "limit"
+        course = course_of(field, states, duration / steps, ended, 4 * steps)
         course.executor = self.executor
         return course
 

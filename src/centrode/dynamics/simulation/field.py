@@ -6,6 +6,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import isnan
 from typing import TypeAlias
 
 import numpy as np
@@ -27,6 +28,8 @@ from centrode.dynamics.simulation.rows import (
 from centrode.dynamics.simulation.sorts import FRICTION, OTHER, SORTS, STORED, of_time
 from centrode.dynamics.simulation.tracks import Tracks
 from centrode.dynamics.steady_motion.quadrature import NODES
+from centrode.errors import MotionError
+from centrode.locale import _
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -144,6 +147,11 @@ class Field:
 
     def forces(self, leg: Leg, t: float, value: float, rate: float) -> Forces:
         """What acts at an instant; NaN where a formula has no value."""
+        t, value, rate = (
+            float(t),
+            float(value),
+            float(rate),
+        )  # a plain number divided by zero is an error, no infinity
         rows = leg.rows(value)
         first = FORWARDS if leg.sense > 0.0 else BACKWARDS
         moments = dict(zip(SORTS, rows[first : first + len(SORTS)].tolist(), strict=True))
@@ -173,4 +181,19 @@ class Field:
         behind = self.forces(self.leg(value, -1.0), t, value, -CREEP).acceleration(0.0)
         if ahead > 0.0 and not (behind < 0.0 and self.driving.sense < 0.0):
             return 1.0
-        return -1.0 if behind < 0.0 else 0.0
+        if behind < 0.0:
+            return -1.0
+        if isnan(ahead) or isnan(behind):
+            raise without_value(t, value)
+        return 0.0
+
+
+def without_value(t: float, value: float) -> MotionError:
+    """Drive or loads have no finite value somewhere."""
+    return MotionError(
+        "[simulation]",
+        _("drive or loads have no finite value at t = {time:.6g} s, drive at {value:.6g}").format(
+            time=t, value=value
+        ),
+        _("correct their formulas"),
+    )

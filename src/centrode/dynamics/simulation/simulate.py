@@ -109,7 +109,7 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
             if executor != "auto":
                 raise InputError("executor", _(reason.reason), _('use executor = "auto"')) from None
         else:
-            return scan.course(setting.start, setting.rate, settings.duration, settings.steps)
+            return scan.course(field, setting.start, setting.rate, settings.duration, settings.steps)
     return fixed_steps(field, setting.start, setting.rate, settings.duration, settings.steps, progress)
 
 
