@@ -133,3 +133,17 @@ def _tell_ending(mechanism: str, found: xarray.Dataset) -> None:
     if ended == "limit":
         what = _("it stops at a limit after {time:.6g} s").format(time=float(found["time"].to_numpy()[-1]))
         raise MotionError(mechanism, what, _("ask for a shorter time, or change drive or dimensions"))
+    if ended == "change point":
+        what = _(
+            "its path ends at the change point at {value:.9g} {unit}, after {time:.6g} s: "
+            "the assembly is kept, and from there on it would be another motion"
+        ).format(
+            value=float(found["occasion_value"].to_numpy()[-1]),
+            unit=found["occasion_value"].attrs["units"],
+            time=float(found["occasion_time"].to_numpy()[-1]),
+        )
+        raise MotionError(
+            mechanism,
+            what,
+            _('choose continuation = "smooth" in [assembly], which runs on, or a shorter time'),
+        )

@@ -90,7 +90,8 @@ class Leg:
         edges = self.edges
         panel = min(max(bisect_right(edges, inside) - 1, 0), len(edges) - 2)
         low, high = edges[panel], edges[panel + 1]
-        share = (2.0 * inside - low - high) / (high - low)
+        # a stretch that begins where the motion ends is empty
+        share = (2.0 * inside - low - high) / (high - low) if high > low else 0.0
         found: Array = self.powers[panel] @ share**_ORDERS
         return found if self.grown is None else found + self.grown
 

@@ -36,7 +36,7 @@ def fixed_steps(
         for k in range(steps):
             y = next_state(field, k * step, y, step)
             if not np.isfinite(y).all():
-                ended = "limit"
+                ended = field.tracks.ending(float(found[VALUE, done]))
                 break
             done = k + 1
             found[:, done] = y
@@ -52,10 +52,10 @@ def fixed_steps(
 def course_of(field: Field, found: States, step: float, ended: Ending, evaluations: int) -> Course:
     """States (STATES, steps + 1) at even times as a course; between two steps an interpolant of the same order."""
     count = found.shape[1] - 1
-    if ended == "limit" and count == 0:
+    if ended in ("limit", "change point") and count == 0:
         raise MotionError(
             "[simulation]",
-            _("the first step leads beyond a limit"),
+            _("the first step leads beyond a limit or a change point"),
             _("ask for more steps, or another start"),
         )
 
@@ -64,7 +64,10 @@ def course_of(field: Field, found: States, step: float, ended: Ending, evaluatio
         inside[VALUE] = min(max(y[VALUE], field.tracks.low), field.tracks.high)
         return _rates(field, t, inside)
 
-    occasions = [Occasion("limit", count * step, float(found[VALUE, -1]))] if ended == "limit" else []
+    occasions = []
+    if ended in ("limit", "change point"):
+        last = float(found[VALUE, -1])
+        occasions = [Occasion(ended, count * step, last if ended == "limit" else field.tracks.end(last))]
     piece = Piece(0.0, count * step, Interpolant(found, step, slopes), 1.0)
     return Course([piece], occasions, ended, evaluations, "runge-kutta-4")
 

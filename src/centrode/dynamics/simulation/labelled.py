@@ -29,6 +29,7 @@ from centrode.kinematics.dataset import (
 )
 from centrode.kinematics.solve import Solved, solve
 from centrode.kinematics.spans import Span
+from centrode.model.files import mechanism_text
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -139,6 +140,7 @@ def _facts(setting: Setting, course: Course, curves: dict[str, Array]) -> dict[s
         "evaluations": course.evaluations,
         "driving": setting.settings.law,
         "speed_at_start": setting.settings.speed,
+        "mechanism": mechanism_text(setting.mechanism),
         "worst_energy_residual": float(np.nanmax(np.abs(curves["energy_residual"]), initial=0.0)),
         "representation_error": setting.field.tracks.error,
     }

@@ -29,6 +29,7 @@ class Setting:
 
     Attributes
     ----------
+    mechanism : as described
     settings : Simulation
     rows : Rows
     driving : Driving
@@ -36,6 +37,7 @@ class Setting:
     rate : its derivative by time
     """
 
+    mechanism: Mechanism
     settings: Simulation
     rows: Rows
     driving: Driving
@@ -44,7 +46,7 @@ class Setting:
 
     @property
     def prepared(self) -> Ready:
-        """The mechanism with its plan."""
+        """The mechanism with its plan; one that keeps its assembly is prepared as one that passes change points."""
         return self.rows.reducer.ready
 
     @cached_property
@@ -82,7 +84,7 @@ class Setting:
         """Refuse a start at a dead point, or where the mechanism does not get to."""
         tracks.stretch(tracks.place(self.start, self.rate * self.rows.sense >= 0.0)[0])
         known = self.rows.state(np.array([self.start]))[1][0]
-        if known and tracks.low < self.start < tracks.high:
+        if known and (tracks.low < self.start < tracks.high or tracks.is_change_point(self.start)):
             return
         near = (
             min(abs(self.start - end) for end in (tracks.low, tracks.high)) <= 2.0 * NEAR_LIMIT * tracks.unit
@@ -124,9 +126,13 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
         raise InputError("[simulation] turns", _("the drive does not turn"), _("give duration"))
     if settings.motor is not None and mechanism.drives[0].kind != "angle":
         raise InputError("[simulation] motor", _("the drive does not turn"), _("give driving, a force"))
-    reducer = Reducer(ready(mechanism), Burden.of(mechanism))
+    # up to the next change point both continuations are one motion, and the smooth one keeps its digits there
+    kept = mechanism.assembly.continuation == "keep"
+    passing = mechanism.assembly.model_copy(update={"continuation": "smooth"})
+    smooth = mechanism.model_copy(update={"assembly": passing}) if kept else mechanism
+    reducer = Reducer(ready(smooth), Burden.of(smooth))
     shafts = () if mechanism.machine is None else mechanism.machine.shafts
-    rows = Rows(reducer, sum(shaft.inertia * shaft.ratio**2 for shaft in shafts))
+    rows = Rows(reducer, sum(shaft.inertia * shaft.ratio**2 for shaft in shafts), kept)
     if not reducer.burden.masses and not rows.added:
         raise InputError(
             "[links]", _("no link has a mass: nothing carries the motion"), _("give links a mass")
@@ -134,4 +140,4 @@ def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Sett
     path = reducer.ready.kinematics.path
     driving = Driving.of(settings, path.forward)
     start = path.initial if settings.start is None else settings.start
-    return Setting(settings, rows, driving, start, path.forward * settings.speed)
+    return Setting(mechanism, settings, rows, driving, start, path.forward * settings.speed)

@@ -84,6 +84,16 @@ def course_of(setting: Setting, executor: Executor = "auto", progress: Tell | No
         course = stepper.run(setting.start, setting.rate)
     else:
         course = _by_fixed_steps(setting, executor, progress)
+    if course.ended == "change point" and not course.pieces:
+        raise MotionError(
+            "[simulation]",
+            _("it starts at the change point at {value:.9g}, where its path ends").format(
+                value=setting.start
+            ),
+            _(
+                'start elsewhere, let it move away from there, or choose continuation = "smooth" in [assembly]'
+            ),
+        )
     if not course.last > course.first:
         raise MotionError(
             "[simulation]",

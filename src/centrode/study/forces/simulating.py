@@ -96,6 +96,7 @@ def _ended(mechanism: Mechanism, found: xarray.Dataset) -> str:
         "duration": _("after {time:.6g} s"),
         "turns": _("after the turns asked for, in {time:.6g} s"),
         "limit": _("at a limit of the mechanism, after {time:.6g} s"),
+        "change point": _("at a change point, where its path ends, after {time:.6g} s"),
         "standstill": _("it stands still; {time:.6g} s are shown"),
         "interrupted": _("interrupted at {time:.6g} s"),
     }[found.attrs["ended"]].format(time=time)
@@ -135,6 +136,7 @@ def _occasion_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
         "sticks": _("it sticks"),
         "breaks_loose": _("it breaks loose"),
         "limit": _("it comes to a limit"),
+        "change_point": _("it comes to a change point"),
         "standstill": _("it comes to a standstill"),
     }
     names = str(found["occasion_kind"].attrs["flag_meanings"]).split()
