@@ -108,3 +108,21 @@ def test_wrong_input(centrode: Centrode, folder: Path, arguments: list[str], sai
     assert said in done.err
     assert "Traceback" not in done.err
     assert [path.name for path in folder.iterdir()] == ["disc.toml"]
+
+
+@pytest.mark.parametrize("gravity", ["", "gravity = [0, -9.81]\n"])
+@pytest.mark.parametrize("steps", [[], ["--scheme", "runge-kutta-4"]])
+def test_a_conservative_machine_has_no_steady_regime(
+    centrode: Centrode, folder: Path, gravity: str, steps: list[str]
+) -> None:
+    """Any speed comes back: 8 rad/s as well as 9 rad/s, so there is none that it runs up to."""
+    text = (
+        CRANK_ROCKER.replace("CRANK", "3.0").replace("LOADS", "").replace("gravity = [0, -9.81]\n", gravity)
+    )
+    (folder / "free.toml").write_text(text, encoding="utf-8")
+    for speed in ("8", "9"):
+        done = centrode("simulate", "free.toml", "--speed", speed, "--duration", "4 s", *steps)
+        assert done.code == 0, done
+        assert "steady regime" not in done.out
+        assert done.rows["periodic motion"].startswith("1 turn of the drive, ")
+        assert done.rows["stability"] == "any speed comes back: it runs up to none"

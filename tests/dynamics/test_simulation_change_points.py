@@ -84,7 +84,9 @@ def test_the_path_ends_at_the_change_point(moment: float, place: float, scheme: 
     assert float(found.occasion_value[0]) == pytest.approx(place, abs=1e-9)
     time = math.sqrt(2 * INERTIA * abs(place - 0.5) / abs(moment))
     assert [float(found.time[-1]), float(found.occasion_time[0])] == pytest.approx([time, time], rel=1e-9)
-    assert found.inertia.values == pytest.approx(INERTIA, rel=1e-10)  # first derivatives beside a change point
+    assert found.inertia.values == pytest.approx(
+        INERTIA, rel=1e-10
+    )  # first derivatives beside a change point
     assert found.angle.sel(link="AB").values == pytest.approx(0.0, abs=1e-9)
     assert 'continuation = "keep"' in found.attrs["mechanism"]
 
@@ -99,7 +101,9 @@ def test_fixed_steps_end_there_too() -> None:
 
 def test_a_start_at_a_change_point() -> None:
     """One at the start lies behind it: forwards it runs to the next, backwards there is no path."""
-    text = ct.mechanism_text(parallelogram(angle=0.0)).replace("[assembly]", '[assembly]\nsides = { B = "left" }')
+    text = ct.mechanism_text(parallelogram(angle=0.0)).replace(
+        "[assembly]", '[assembly]\nsides = { B = "left" }'
+    )
     mechanism = ct.parse_mechanism(text)
     found = ct.simulate(mechanism, ct.Simulation(speed=1, duration=20))
     assert found.attrs["ended"] == "change point"

@@ -13,7 +13,7 @@ from centrode.dynamics.reducer import Reducer
 from centrode.dynamics.simulation.driving import Driving
 from centrode.dynamics.simulation.field import Field
 from centrode.dynamics.simulation.rows import Rows
-from centrode.dynamics.simulation.sorts import of_time
+from centrode.dynamics.simulation.sorts import STORED, of_time
 from centrode.dynamics.simulation.tracks import NEAR_LIMIT, Tracks
 from centrode.dynamics.simulation.watching import Until
 from centrode.errors import InputError
@@ -55,6 +55,12 @@ class Setting:
         field = Field(Tracks(self.rows), self.driving)
         self._check_start(field.tracks)
         return field
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether nothing drives it but weights and springs, and nothing takes energy."""
+        undriven = not self.driving.formula.used and self.driving.at(0.0, 0.0, 0.0) == 0.0
+        return undriven and all(one.sort == STORED for one in self.rows.efforts)
 
     @property
     def until(self) -> Until:
