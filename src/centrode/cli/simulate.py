@@ -12,6 +12,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option, written_option
+from centrode.cli.expected import announce_samples, announce_turns
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.errors import CentrodeError, InputError, MotionError
@@ -48,6 +49,8 @@ def simulate(
     names: list[str] = []
     with about(mechanism):
         settings = _settings(description, changes | {"samples": samples})
+        announce_samples(description, settings.samples)
+        announce_turns(_turns(description, settings))
         if out is None:
             with Progress() as progress:
                 found = _simulated(description, settings, progress, motion=motion)
@@ -81,6 +84,16 @@ def _settings(description: ct.Mechanism, changes: dict[str, Any]) -> ct.Simulati
             "[simulation]", _("it is missing"), _('say --driving "20 - 2*v" and --duration "10 s"')
         )
     return ct.Simulation.for_drives(description.drives, **known | given)
+
+
+def _turns(description: ct.Mechanism, settings: ct.Simulation) -> float:
+    """Turns of the drive at the speed of the start, up to where they end."""
+    if description.drives[0].kind != "angle":
+        return 0.0
+    ends = [settings.turns] if settings.turns is not None else []
+    if settings.duration is not None:
+        ends.append(abs(settings.speed) * settings.duration / tau)
+    return min(ends, default=0.0)
 
 
 def _simulated(

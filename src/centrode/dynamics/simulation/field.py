@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isnan
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -30,8 +30,10 @@ from centrode.dynamics.simulation.tracks import Tracks
 from centrode.dynamics.steady_motion.quadrature import NODES
 from centrode.errors import MotionError
 from centrode.locale import _
+from centrode.model.simulations import MOST_TURNS
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
 
 NAN = float("nan")
 CREEP = 1e-200
@@ -43,16 +45,21 @@ _ORDERS = np.arange(NODES)
 
 @dataclass(frozen=True)
 class Forces:
-    """At one instant: inertia, its slope, moments by sort, that of the drive; all by the drive's value."""
+    """At one instant or at many: inertia, its slope, moments by sort, that of the drive; all by the drive's value."""
 
-    inertia: float
-    slope: float
-    stored: float
-    friction: float
-    other: float
-    driving: float
+    inertia: Number
+    slope: Number
+    stored: Number
+    friction: Number
+    other: Number
+    driving: Number
 
-    def acceleration(self, rate: float) -> float:
+    @property
+    def row(self) -> tuple[Number, ...]:
+        """All of them, in this order."""
+        return self.inertia, self.slope, self.stored, self.friction, self.other, self.driving
+
+    def acceleration(self, rate: Number) -> Number:
         """Second derivative of the drive's value by time."""
         moment = self.stored + self.friction + self.other + self.driving
         return (moment - 0.5 * self.slope * rate * rate) / self.inertia
@@ -114,6 +121,10 @@ class Field:
     def of_time(self) -> bool:
         """Whether anything depends on time."""
         return self.driving.of_time or of_time(self.tracks.rows.efforts)
+
+    def is_too_far(self, value: float, start: float) -> bool:
+        """Whether a value lies more turns from the start than one simulation makes."""
+        return not abs(value - start) <= MOST_TURNS * self.tracks.length * (1.0 + 1e-12)
 
     def leg(self, value: float, sense: float) -> Leg:
         """The leg on which a value lies for a motion in one sense; at a jump the one that lies ahead."""
@@ -187,6 +198,15 @@ class Field:
         if isnan(ahead) or isnan(behind):
             raise without_value(t, value)
         return 0.0
+
+
+def too_far(t: float) -> MotionError:
+    """More turns than one simulation makes."""
+    return MotionError(
+        "[simulation]",
+        _("it has made more than {most} turns at t = {time:.6g} s").format(most=MOST_TURNS, time=t),
+        _("give a shorter duration, or a drive that does not run away; of fixed steps take more"),
+    )
 
 
 def without_value(t: float, value: float) -> MotionError:

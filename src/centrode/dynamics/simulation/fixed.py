@@ -8,7 +8,7 @@ import numpy as np
 
 from centrode.dynamics.simulation.course import STATES, VALUE, Course, Ending, Occasion, Piece
 from centrode.dynamics.simulation.course import Array as States
-from centrode.dynamics.simulation.field import Field, without_value
+from centrode.dynamics.simulation.field import Field, too_far, without_value
 from centrode.dynamics.simulation.interpolation import Interpolant
 from centrode.errors import MotionError
 from centrode.locale import _
@@ -38,6 +38,8 @@ def fixed_steps(
             if not np.isfinite(y).all():
                 ended = field.tracks.ending(float(found[VALUE, done]))
                 break
+            if field.is_too_far(float(y[VALUE]), value):
+                raise too_far((k + 1) * step)
             done = k + 1
             found[:, done] = y
             if tell is not None and done % TOLD == 0:

@@ -20,7 +20,7 @@ from centrode.errors import InputError
 from centrode.kinematics.ready import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.model.simulations import Simulation
+from centrode.model.simulations import MOST_TURNS, Simulation
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,7 @@ class Setting:
                 _("nothing says how long it runs"),
                 _("give duration, such as 10 s, or turns of the drive"),
             )
+        self._check_turns()
         way = None if settings.turns is None else settings.turns * tau * self._unit
         time = inf if settings.duration is None else settings.duration
         if time == inf and (self.driving.of_time or of_time(self.rows.efforts)):
@@ -81,6 +82,25 @@ class Setting:
                 _("give duration too"),
             )
         return Until(time, way)
+
+    @property
+    def turns_at_start(self) -> float | None:
+        """Turns that the speed at the start makes in the duration; None without one."""
+        duration = self.settings.duration
+        return None if duration is None else abs(self.rate) * duration / (tau * self._unit)
+
+    def _check_turns(self) -> None:
+        """Refuse what at its speed at the start would be too long, before anything is integrated."""
+        turns = self.turns_at_start
+        if self.settings.turns is None and turns is not None and turns > MOST_TURNS:
+            raise InputError(
+                "[simulation]",
+                _(
+                    "at its speed at the start it makes {turns:.3g} turns in {time:.6g} s, "
+                    "and at most {most} are integrated"
+                ).format(turns=turns, time=self.settings.duration, most=MOST_TURNS),
+                _("give a shorter duration, or turns, after which it ends"),
+            )
 
     @property
     def _unit(self) -> float:

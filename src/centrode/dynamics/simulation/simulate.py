@@ -20,6 +20,8 @@ from centrode.dynamics.simulation.setting import Setting, setting_of
 from centrode.dynamics.simulation.stepping import Stepper
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.compiled.deciding import Untraceable
+from centrode.kinematics.layout import layout_of
+from centrode.kinematics.solve import check_size
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulations import Simulation
@@ -72,6 +74,8 @@ def simulate(
             _("use one of {known}").format(known=", ".join(get_args(Executor))),
         )
     setting = setting_of(mechanism, settings)
+    count = setting.settings.samples if at is None else np.size(at)
+    check_size(layout_of(setting.prepared.kinematics), 1, count)
     course = course_of(setting, executor, progress)
     return simulation_dataset(setting, course, _times(setting, course, at), motion=motion)
 

@@ -11,13 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.simulation.course import VALUE, Course
-from centrode.dynamics.simulation.field import Field, Forces, Leg, without_value
+from centrode.dynamics.simulation.field import Field, Forces, Leg, too_far, without_value
 from centrode.errors import MotionError
 from centrode.locale import _
 
 State: TypeAlias = npt.NDArray[np.float64]
 
-MOST_STEPS = 300_000
+MOST_STEPS = 150_000
+"""Steps of one simulation: some two minutes, and 200 MB of their interpolants."""
 EDGE = 3.0
 """Step times damping rate from which a step counts as held back by stability."""
 ASIDE = 1e-6
@@ -74,6 +75,8 @@ class Watch:
                     _('choose scheme = "stiff", or a greater tolerance'),
                 )
             )
+        if self.field.is_too_far(value, self.start):
+            raise too_far(solver.t)
         if self.steps > self.most:
             raise MotionError(
                 "[simulation]",
@@ -95,7 +98,7 @@ class Watch:
 
         def slowed(speed: float) -> float:
             forces: Forces = self.field.forces(leg, solver.t, value, speed)
-            return forces.acceleration(speed)
+            return float(forces.acceleration(speed))
 
         damping = abs(slowed(more) - slowed(rate)) / (more - rate)
         held = damping * (solver.step_size or 0.0) > EDGE
