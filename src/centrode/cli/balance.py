@@ -18,7 +18,7 @@ from centrode.cli.arguments import (
     samples_option,
     written_option,
 )
-from centrode.cli.expected import announce_samples
+from centrode.cli.expected import announce_size
 from centrode.cli.pairs import pairs
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
@@ -105,7 +105,7 @@ def balance(
 ) -> None:
     """Print counterweights and what they do; write the balanced description and pictures where asked."""
     description = ct.load(mechanism)
-    announce_samples(description, samples)
+    announce_size(description, samples)
     names: list[str] = []
     asked = _asked(given)
     if out is None:

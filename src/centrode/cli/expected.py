@@ -12,16 +12,21 @@ TOLD_FROM = 200_000_000
 BYTES = 300
 """Memory of a coordinate at a sample: its derivatives, forces, and tables on the way to their files."""
 
+MANY_LINKS = 60
+"""Links from which a run is announced: matrices grow with their square, and so do pictures and reports."""
 MANY_TURNS = 200
 """Turns of a simulation from which it is announced."""
 STEPS = 40
 """Adaptive steps that a turn of a linkage takes at the usual tolerance."""
 
 
-def announce_samples(description: ct.Mechanism, samples: int | None) -> None:
-    """Tell how much memory many samples will take; what would take too much is refused where it is computed."""
+def announce_size(description: ct.Mechanism, samples: int | None) -> None:
+    """Tell what many links and samples will take; what would take too much is refused where it is computed."""
     count = samples if isinstance(samples, int) else description.study.samples or 0
     coordinates = 3 * len(description.links) + 2 * len(description.moving_points)
+    if len(description.links) >= MANY_LINKS:
+        told = _("{count} links: this may take minutes")
+        click.echo(told.format(count=len(description.links)), err=True)
     size = BYTES * coordinates * count
     if size >= TOLD_FROM:
         told = _("{count} samples: this may take {size:.2g} GB of memory")

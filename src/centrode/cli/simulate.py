@@ -12,7 +12,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option, written_option
-from centrode.cli.expected import announce_samples, announce_turns
+from centrode.cli.expected import announce_size, announce_turns
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.errors import CentrodeError, InputError, MotionError
@@ -49,7 +49,7 @@ def simulate(
     names: list[str] = []
     with about(mechanism):
         settings = _settings(description, changes | {"samples": samples})
-        announce_samples(description, settings.samples)
+        announce_size(description, settings.samples)
         announce_turns(_turns(description, settings))
         if out is None:
             with Progress() as progress:
