@@ -12,6 +12,8 @@ TOLD_FROM = 200_000_000
 BYTES = 300
 """Memory of a coordinate at a sample: its derivatives, forces, and tables on the way to their files."""
 
+OF_A_CAM = 4
+"""What counts as its coordinates: a sample of a cam takes some 1 kB."""
 MANY_LINKS = 60
 """Links from which a run is announced: matrices grow with their square, and so do pictures and reports."""
 MANY_TURNS = 200
@@ -27,6 +29,11 @@ def announce_size(description: ct.Mechanism, samples: int | None) -> None:
     if len(description.links) >= MANY_LINKS:
         told = _("{count} links: this may take minutes")
         click.echo(told.format(count=len(description.links)), err=True)
+    announce_samples(count, coordinates)
+
+
+def announce_samples(count: int, coordinates: int = OF_A_CAM) -> None:
+    """Tell how much memory so many samples of so many coordinates may take."""
     size = BYTES * coordinates * count
     if size >= TOLD_FROM:
         told = _("{count} samples: this may take {size:.2g} GB of memory")
