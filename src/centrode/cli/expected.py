@@ -6,6 +6,7 @@ import click
 
 import centrode as ct
 from centrode.locale import _
+from centrode.model import limits
 
 TOLD_FROM = 200_000_000
 """Bytes of memory from which a run is announced."""
@@ -35,7 +36,7 @@ def announce_size(description: ct.Mechanism, samples: int | None) -> None:
 def announce_samples(count: int, coordinates: int = OF_A_CAM) -> None:
     """Tell how much memory so many samples of so many coordinates may take."""
     size = BYTES * coordinates * count
-    if size >= TOLD_FROM:
+    if size >= TOLD_FROM and count <= limits.SAMPLES:  # more are refused at once
         told = _("{count} samples: this may take {size:.2g} GB of memory")
         click.echo(told.format(count=count, size=size / 1e9), err=True)
 
