@@ -12,7 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.text import SCALARS, compile_formula
+from centrode.algebra.vocabulary import FUNCTIONS, TWO_ARGUMENTS
 from centrode.errors import InputError
 
 MPMATH = SimpleNamespace(
@@ -108,6 +110,10 @@ def test_random_formulas_agree_with_python(text: str) -> None:
         ("x**0.3", "an exponent is an integer or a half"),
         ("x**101", "at most 100"),
         ("x**(1/0)", "an exponent is a fixed number"),
+        ("x + 1/(2 - 2)", "no finite value, at character 5"),
+        ("sin(exp(1000)*x)", "no finite value, at character 5"),
+        ("max(x, log(-1), 3)", "no finite value, at character 8"),
+        ("0**-1", "no finite value, at character 1"),
         ("1e999", "too large"),
         ("9" * 400, "too large"),
         ("x.real", "only arithmetic"),
@@ -152,3 +158,19 @@ def test_any_text_is_a_formula_or_an_input_error(text: str) -> None:
         warnings.simplefilter("error")
         with contextlib.suppress(InputError):
             compile_formula(text, ("t",), "")
+
+
+@pytest.mark.parametrize("name", sorted(FUNCTIONS))
+def test_plain_numbers_and_arrays_agree(name: str) -> None:
+    """Every function of one number is that of arrays, NumPy's own numbers and what has no value included."""
+    values = [-2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, math.nan]
+    pairs = [(x, y) for x in values for y in (values if name in TWO_ARGUMENTS else [0.0])]
+    for x, y in pairs:
+        given = (x, y) if name in TWO_ARGUMENTS else (x,)
+        with np.errstate(all="ignore"):
+            expected = float(getattr(ARRAYS, name)(*given))
+        if not math.isfinite(expected) and not any(map(math.isnan, given)):
+            continue  # plain functions raise there
+        for kind in (float, np.float64):
+            found = getattr(SCALARS, name)(*map(kind, given))
+            assert float(found) == pytest.approx(expected, rel=2.0**-50, nan_ok=True)

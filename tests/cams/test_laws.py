@@ -119,7 +119,7 @@ REFUSED: list[tuple[str, dict[str, object], str]] = [
     ("10+9*phi", {"start": -1.5}, "the curvature is not positive from -63.662 deg on"),
     ("-3", {}, "the curvature is not positive at the start (-3 1/m)"),
     ("0", {}, "the curvature is not positive at the start (0 1/m)"),
-    ("1/0", {}, "the curvature is not a finite number at 0 deg"),
+    ("1/phi", {}, "the curvature is not a finite number at 0 deg"),
     ("log(phi-1)", {}, "the curvature is not a finite number at 0 deg"),
     ("10+sqrt(phi)", {}, "the path has no Taylor series at 0 deg"),
     ("10+sqrt(abs(phi-0.3))", {}, "the path has no Taylor series at 17.18"),

@@ -306,7 +306,7 @@ def test_a_group_of_higher_class_without_initial_angles(refused: Refused) -> Non
 
 def test_hundreds_of_links(refused: Refused, four_bar: str) -> None:
     links = "".join(f'[links.L{i}]\npoints = ["O", "P{i}"]\nlength = 1\n' for i in range(500))
-    assert refused(four_bar + links) == "press.toml, links: at most 500 entries are allowed, got 503"
+    assert refused(four_bar + links) == "press.toml, links: at most 200 entries are allowed, got 503"
 
 
 def test_several_problems_are_told_together(refused: Refused, four_bar: str) -> None:

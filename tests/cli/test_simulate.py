@@ -108,3 +108,52 @@ def test_wrong_input(centrode: Centrode, folder: Path, arguments: list[str], sai
     assert said in done.err
     assert "Traceback" not in done.err
     assert [path.name for path in folder.iterdir()] == ["disc.toml"]
+
+
+@pytest.mark.parametrize("gravity", ["", "gravity = [0, -9.81]\n"])
+@pytest.mark.parametrize("steps", [[], ["--scheme", "runge-kutta-4"]])
+def test_a_conservative_machine_has_no_steady_regime(
+    centrode: Centrode, folder: Path, gravity: str, steps: list[str]
+) -> None:
+    """Any speed comes back: 8 rad/s as well as 9 rad/s, so there is none that it runs up to."""
+    text = (
+        CRANK_ROCKER.replace("CRANK", "3.0").replace("LOADS", "").replace("gravity = [0, -9.81]\n", gravity)
+    )
+    (folder / "free.toml").write_text(text, encoding="utf-8")
+    for speed in ("8", "9"):
+        done = centrode("simulate", "free.toml", "--speed", speed, "--duration", "4 s", *steps)
+        assert done.code == 0, done
+        assert "steady regime" not in done.out
+        assert done.rows["periodic motion"].startswith("1 turn of the drive, ")
+        assert done.rows["stability"] == "any speed comes back: it runs up to none"
+
+
+def test_long_ones_are_announced(centrode: Centrode, folder: Path) -> None:
+    (folder / "disc.toml").write_text(DISC, encoding="utf-8")
+    done = centrode("simulate", "disc.toml", "--speed", "300 turn/s", "--duration", "1 s", "--driving", "0")
+    assert done.code == 0, done
+    assert done.err.startswith("about 300 turns of the drive at the speed of the start")
+
+
+def test_a_kept_assembly_ends_at_the_change_point(centrode: Centrode, folder: Path) -> None:
+    text = ct.mechanism_text(ct.example("parallelogram")).replace("[links.OA]", "[links.OA]\ninertia = 1")
+    start = text.index("[assembly]") if "[assembly]" in text else None
+    kept = 'continuation = "keep"'
+    text = (
+        text + f"\n[assembly]\n{kept}\n"
+        if start is None
+        else text.replace("[assembly]", f"[assembly]\n{kept}")
+    )
+    (folder / "kept.toml").write_text(text, encoding="utf-8")
+    done = centrode("simulate", "kept.toml", "--speed", "1", "--driving", "0", "--duration", "9 s")
+    assert done.code == 3, done
+    assert "its path ends at the change point at 3.14159265 rad, after " in done.err
+    assert "it comes to a change point" in done.rows
+
+
+def test_many_samples_are_announced(centrode: Centrode) -> None:
+    """More than fit into memory: announced, refused, and nothing computed."""
+    done = centrode("angles", "six-bar-press", "--samples", 900_000)
+    assert done.code == 2, done
+    assert done.err.startswith("900000 samples: this may take ")
+    assert "positions would take" in done.err

@@ -304,8 +304,28 @@ def test_motors() -> None:
 def test_a_regime_that_any_speed_is() -> None:
     """Without loads and drive every speed comes back."""
     regime = ct.steady_regime(rotor(), ct.Simulation(speed=5))
-    assert regime.multiplier == pytest.approx(1.0, abs=1e-5)
+    assert regime.multiplier == 1.0
+    assert regime.indifferent
     assert regime.fluctuation == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("bottom", [12.0, 7.4872])
+def test_a_pendulum_that_turns_over_has_no_regime_of_its_own(bottom: float) -> None:
+    """It turns in 2 k K(k) / w at any speed; barely over the top (7.48713 rad/s) deviations grow by rounding alone."""
+    length = 0.7
+    regime = ct.steady_regime(pendulum(), ct.Simulation(speed=math.sqrt(bottom**2 - 2 * 9.81 / length)))
+    w = math.sqrt(9.81 / length)
+    k = 2 * w / bottom
+    assert regime.indifferent
+    assert regime.greatest_speed == pytest.approx(bottom, rel=1e-8)
+    assert regime.time == pytest.approx(2 * k * scipy.special.ellipk(k * k) / w, rel=1e-5)
+
+
+def test_a_moment_that_balances_the_loads_at_any_speed() -> None:
+    """Not conservative, and yet any speed comes back: 3 N m against a load of 3 N m."""
+    load = '[[loads]]\nkind = "torque"\nlink = "OA"\nvalue = -3\n'
+    assert ct.steady_regime(rotor(load), ct.Simulation(driving="3", speed=5)).indifferent
+    assert not ct.steady_regime(ct.example("six-bar-press-run-up")).indifferent
 
 
 @pytest.mark.parametrize("seed", range(5))

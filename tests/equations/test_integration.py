@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 import pytest
 
+import centrode as ct
 from centrode.equations import integration
 from centrode.equations.integration import LOST, adaptive_steps, determinant, fixed_steps
 from centrode.errors import InputError
@@ -131,3 +134,11 @@ def test_too_many_steps_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(integration, "MOST_STEPS", 10)
     with pytest.raises(InputError, match="more than 10 steps"):
         adaptive_steps(TURNING, turn(4), 1e-10)
+
+
+@pytest.mark.parametrize("stop", [95.0, 150.0])
+def test_towards_infinity_the_integration_ends_soon(stop: float) -> None:
+    """A slide driven by a slotted lever goes as the tangent: to infinity at 90 degrees, in a few steps a decade."""
+    found = ct.integrate(ct.example("tangent-mechanism"), "adaptive", stop=math.radians(stop))
+    assert found.attrs["stop_time"] == pytest.approx(math.pi / 2, abs=1e-9)
+    assert found.attrs["steps_taken"] < 300

@@ -225,7 +225,7 @@ def test_first_problems_of_a_file_are_told_together(complaint: Complaint) -> Non
 
 
 def test_too_many_links_are_refused(complaint: Complaint) -> None:
-    assert "at most 500 entries" in complaint("\n".join(f"[links.L{i}]\nlength = 1" for i in range(501)))
+    assert "at most 200 entries" in complaint("\n".join(f"[links.L{i}]\nlength = 1" for i in range(501)))
 
 
 def test_missing_file_folder_pipe_and_binary(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -59,7 +59,8 @@ def compile_formula(
     ------
     InputError
         At `where`, naming the character of the text: not a formula, a name or a function that is not
-        known, more than 1000 characters, or more than 50 operations inside each other.
+        known, numbers without a finite value, more than 1000 characters, or more than 50 operations inside each
+        other.
     """
     if len(text) > TEXT_LENGTH:
         what = _("a formula has at most {most} characters, got {count}").format(
@@ -80,7 +81,9 @@ class _Reader:
         self.used: set[str] = set()
 
     def formula(self) -> TextFormula:
-        body = self.node(self.source.tree(), 0)
+        tree = self.source.tree()
+        body = self.node(tree, 0)
+        self.refuse_numbers_without_value(tree)
         return TextFormula(self.source.text, self.variables, frozenset(self.used), body)
 
     def node(self, node: ast.expr, depth: int) -> Node:
@@ -105,6 +108,34 @@ class _Reader:
             case ast.Call():
                 return self.call(node, depth)
         raise self.at(node, _("only arithmetic is allowed here"), _("use + - * / ** and the known functions"))
+
+    def refuse_numbers_without_value(self, node: ast.expr) -> None:
+        """Refuse parts of numbers alone that have no finite value, such as 1/0: they have none over any algebra."""
+        for part in self.parts_of_numbers(node):
+            try:
+                value = float(self.node(part, 0)(SCALARS, {}))
+            except (ArithmeticError, ValueError):
+                value = math.nan
+            if not math.isfinite(value):
+                what = _("a part of the formula has no finite value")
+                raise self.at(part, what, _("correct its numbers"))
+
+    def parts_of_numbers(self, tree: ast.expr) -> Iterator[ast.expr]:
+        """The largest parts without variables and functions over samples; no recursion, as sums are long."""
+        varied: set[ast.AST] = set()
+        for node in reversed(list(ast.walk(tree))):
+            named = isinstance(node, ast.Name) and (node.id in self.variables or node.id in self.folds)
+            if named or any(child in varied for child in ast.iter_child_nodes(node)):
+                varied.add(node)
+        left: list[ast.expr] = [tree]
+        while left:
+            node = left.pop()
+            if node not in varied:
+                yield node
+                continue
+            callee = node.func if isinstance(node, ast.Call) else None
+            inner = ast.iter_child_nodes(node)
+            left += [one for one in inner if isinstance(one, ast.expr) and one is not callee]
 
     def literal(self, node: ast.Constant) -> float:
         value = node.value

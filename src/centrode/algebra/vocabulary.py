@@ -22,11 +22,25 @@ DERIVED: dict[str, Callable[[Any, Number], Number]] = {
     "atan": lambda m, x: m.atan2(x, 1.0),
 }
 
+
+def _sign(x: float) -> float:
+    # floats: NumPy's numbers compare to truth values that cannot be subtracted
+    return x if math.isnan(x) else float(x > 0.0) - float(x < 0.0)
+
+
+def _least(x: float, y: float) -> float:
+    return math.nan if math.isnan(x) or math.isnan(y) else min(x, y)
+
+
+def _greatest(x: float, y: float) -> float:
+    return math.nan if math.isnan(x) or math.isnan(y) else max(x, y)
+
+
 SCALARS = SimpleNamespace(
     **{name: getattr(math, name) for name in FUNCTIONS if hasattr(math, name)},
     abs=abs,
-    min=min,
-    max=max,
-    sign=lambda x: float((x > 0) - (x < 0)),
+    min=_least,
+    max=_greatest,
+    sign=_sign,
 )
 """The functions on plain Python numbers."""

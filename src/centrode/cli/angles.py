@@ -16,6 +16,7 @@ from centrode.cli.arguments import (
     results_option,
     samples_option,
 )
+from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.locale import _, mark
@@ -31,6 +32,7 @@ from centrode.locale import _, mark
 def angles(mechanism: str, samples: int | None, dark: bool, out: Path | None, no_figures: bool) -> None:
     """Compute, write and draw."""
     description = ct.load(mechanism)
+    announce_size(description, samples)
     folder = output.folder_of(out, mechanism, "angles")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))

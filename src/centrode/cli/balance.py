@@ -18,6 +18,7 @@ from centrode.cli.arguments import (
     samples_option,
     written_option,
 )
+from centrode.cli.expected import announce_size
 from centrode.cli.pairs import pairs
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
@@ -104,6 +105,7 @@ def balance(
 ) -> None:
     """Print counterweights and what they do; write the balanced description and pictures where asked."""
     description = ct.load(mechanism)
+    announce_size(description, samples)
     names: list[str] = []
     asked = _asked(given)
     if out is None:

@@ -14,6 +14,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
+from centrode.cli.expected import announce_samples
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.errors import InputError, MotionError
@@ -66,6 +67,7 @@ def cam(
     names: list[str] = []
     _check_options(description, {"--terms": terms is not None, "--groove": groove}, {"--laws": laws})
     _check_animation(description, out, animate)
+    announce_samples(samples or 0)
     with about(cam), Progress() as progress:
         progress.say(_("solving"))
         if out is None:

@@ -19,6 +19,7 @@ from centrode.cli.arguments import (
     start_option,
     stop_option,
 )
+from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
 from centrode.cli.reached import is_moving, tell_absent, tell_no_centre
 from centrode.cli.tables import tables_options
@@ -71,6 +72,7 @@ def centrodes(
 ) -> None:
     """Compute and write both curves, and the curvature where asked."""
     description = ct.load(mechanism)
+    announce_size(description, samples)
     folder = output.folder_of(out, mechanism, "centrodes")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))

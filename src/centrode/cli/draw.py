@@ -11,6 +11,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, samples_option, start_option, stop_option
+from centrode.cli.expected import announce_size
 from centrode.cli.reached import is_placed, tell_no_centre
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
@@ -65,6 +66,7 @@ def draw(
         what = _("{ending} is no kind of file for drawings").format(ending=f'"{out.suffix}"')
         raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
     description = ct.load(mechanism)
+    announce_size(description, samples)
     place = ct.initial_place(description) if instant is None else ct.range_value(description, instant, "--at")
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")

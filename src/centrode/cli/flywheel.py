@@ -12,6 +12,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option
+from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.locale import _, mark
@@ -51,6 +52,7 @@ def flywheel(
 ) -> None:
     """Print energies, inertia and sizes; write the steady motion where asked."""
     description = ct.load(mechanism)
+    announce_size(description, samples)
     kind, way = cast("Mean", mean), cast("Method", method)
     names: list[str] = []
     with about(mechanism):

@@ -18,6 +18,7 @@ from centrode.cli.arguments import (
     stop_option,
     written_option,
 )
+from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.errors import InputError, MotionError, Status
@@ -64,6 +65,7 @@ def reactions(
 ) -> None:
     """Print extremes or instants, write tables where asked; exit code 3 if samples are not reached."""
     description = ct.load(mechanism)
+    announce_size(description, samples)
     _check(instants, samples, start, stop)
     places = [ct.range_value(description, text, "--at") for text in instants] or None
     first = None if start is None else ct.range_value(description, start, "--from")

@@ -18,6 +18,7 @@ from centrode.cli.arguments import (
     stop_option,
     written_option,
 )
+from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.errors import MotionError, Status
@@ -47,6 +48,7 @@ def reduce(
 ) -> None:
     """Print the parts of the reduction and write them where asked; exit code 3 if the mechanism locks in the range."""
     description = ct.load(mechanism)
+    announce_size(description, samples)
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")
     names: list[str] = []

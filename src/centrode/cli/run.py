@@ -19,6 +19,7 @@ from centrode.cli.arguments import (
     start_option,
     stop_option,
 )
+from centrode.cli.expected import announce_size
 from centrode.cli.flywheel import write as write_machine
 from centrode.cli.progress import Progress
 from centrode.cli.reactions import write as write_reactions
@@ -50,6 +51,7 @@ def run(
 ) -> None:
     """Compute and write; exit code 3 if the mechanism locks in the range asked for (the rest is written)."""
     description = ct.load(mechanism)
+    announce_size(description, samples)
     folder = output.folder_of(out, mechanism, "result")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))

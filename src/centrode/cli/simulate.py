@@ -12,6 +12,7 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option, written_option
+from centrode.cli.expected import announce_size, announce_turns
 from centrode.cli.progress import Progress
 from centrode.cli.tables import tables_options
 from centrode.errors import CentrodeError, InputError, MotionError
@@ -48,6 +49,8 @@ def simulate(
     names: list[str] = []
     with about(mechanism):
         settings = _settings(description, changes | {"samples": samples})
+        announce_size(description, settings.samples)
+        announce_turns(_turns(description, settings))
         if out is None:
             with Progress() as progress:
                 found = _simulated(description, settings, progress, motion=motion)
@@ -81,6 +84,16 @@ def _settings(description: ct.Mechanism, changes: dict[str, Any]) -> ct.Simulati
             "[simulation]", _("it is missing"), _('say --driving "20 - 2*v" and --duration "10 s"')
         )
     return ct.Simulation.for_drives(description.drives, **known | given)
+
+
+def _turns(description: ct.Mechanism, settings: ct.Simulation) -> float:
+    """Turns of the drive at the speed of the start, up to where they end."""
+    if description.drives[0].kind != "angle":
+        return 0.0
+    ends = [settings.turns] if settings.turns is not None else []
+    if settings.duration is not None:
+        ends.append(abs(settings.speed) * settings.duration / tau)
+    return min(ends, default=0.0)
 
 
 def _simulated(
@@ -133,3 +146,17 @@ def _tell_ending(mechanism: str, found: xarray.Dataset) -> None:
     if ended == "limit":
         what = _("it stops at a limit after {time:.6g} s").format(time=float(found["time"].to_numpy()[-1]))
         raise MotionError(mechanism, what, _("ask for a shorter time, or change drive or dimensions"))
+    if ended == "change point":
+        what = _(
+            "its path ends at the change point at {value:.9g} {unit}, after {time:.6g} s: "
+            "the assembly is kept, and from there on it would be another motion"
+        ).format(
+            value=float(found["occasion_value"].to_numpy()[-1]),
+            unit=found["occasion_value"].attrs["units"],
+            time=float(found["occasion_time"].to_numpy()[-1]),
+        )
+        raise MotionError(
+            mechanism,
+            what,
+            _('choose continuation = "smooth" in [assembly], which runs on, or a shorter time'),
+        )

@@ -25,6 +25,10 @@ FINE = 1e-10
 """Tolerance of the adaptive method with which a fixed step is judged."""
 MOST_STEPS = 20_000
 """Adaptive steps after which an integration is refused."""
+FAR = 1e6
+"""Change of an unknown, in its own measure, beyond which it goes to infinity: steps would become ever smaller there."""
+NEAR_POLE = 1e-3
+"""Part of the range within which a pole is expected from there."""
 LONGEST = 1 / 24
 """Longest adaptive step as a part of the range: a determinant that is zero twice in one step would not be seen."""
 NUDGE = 1e-6
@@ -156,6 +160,8 @@ def _followed(equations: Equations, times: Array, tolerance: float) -> _Followed
         for steps in range(1, MOST_STEPS + 1):
             if solver.step() is not None or not np.isfinite(solver.y).all():
                 return _Followed(state, float(solver.t), steps)
+            if (np.abs(solver.y - initial) > FAR * equations.sizes).any():
+                return _Followed(state, _pole(equations, first, initial, solver), steps)
             course = solver.dense_output()
             crosses = sign * determinant(equations, solver.t, solver.y) < 0
             stop = _crossing(equations, course) if crosses else None
@@ -175,6 +181,15 @@ def _fill(state: Array, times: Array, course: Any, stop: float) -> None:
     inside = (forward * times > forward * course.t_old) & (forward * times <= forward * stop)
     if inside.any():
         state[inside] = course(times[inside]).T
+
+
+def _pole(equations: Equations, first: float, initial: Array, solver: Any) -> float:
+    """Where an unknown that is very great goes to infinity: near a simple pole y/y' is what is left."""
+    moved = solver.y - initial
+    most = int(np.argmax(np.abs(moved) / equations.sizes))
+    left = float(moved[most] / equations.rates(solver.t, solver.y)[most])
+    # where it runs away otherwise than to a pole nearby, it has run away here
+    return float(solver.t) + (left if abs(left) <= NEAR_POLE * abs(solver.t_bound - first) else 0.0)
 
 
 def _crossing(equations: Equations, course: Any) -> float:

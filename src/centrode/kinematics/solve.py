@@ -33,7 +33,9 @@ Progress: TypeAlias = Callable[[int, int], None]
 CHUNK = 100_000
 """Mechanisms of a batch are solved together as long as mechanisms times samples stay below this."""
 GREATEST_RESULT = 10_000_000
-"""Coordinates in one result, samples and mechanisms together: with derivatives and labels some 2 GB."""
+"""Coordinates in one result, samples and mechanisms together: with derivatives and labels some 1 GB."""
+BYTES = 100
+"""Memory of a coordinate at a sample, with its derivatives, its labels and what is needed on the way."""
 DEFAULT_SAMPLES = 361
 """One a degree over a turn, both ends included."""
 SEARCH = 4.0
@@ -132,13 +134,20 @@ def lanes_at_once(kinematics: Kinematics, span: Span) -> int:
     return max(1, CHUNK // max(len(span.parameter), len(mesh_of(kinematics.path, span.parameter))))
 
 
+def size_of(layout: Layout, lanes: int, samples: int) -> int:
+    """Memory [bytes] that a result takes, on the way to it as well."""
+    return BYTES * lanes * samples * max(layout.width, 1)
+
+
 def check_size(layout: Layout, lanes: int, samples: int) -> None:
     """Refuse a result that would not fit into the memory of an ordinary machine."""
     most = GREATEST_RESULT // max(layout.width, 1)
     if lanes * samples > most:
         raise InputError(
             _("samples"),
-            _("{asked} positions were asked for").format(asked=lanes * samples),
+            _("{asked} positions would take {size:.3g} GB of memory").format(
+                asked=lanes * samples, size=size_of(layout, lanes, samples) / 1e9
+            ),
             _("ask for at most {most} at once, samples times mechanisms").format(most=most),
         )
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 FILE_SIZE = 1_000_000
 """Bytes of a description or of a drive's table."""
 
-LINKS = 500
+LINKS = 200
+"""Structure and systems of equations grow with their square and more: a check takes seconds here, a run a minute."""
 POINTS = 2000
 GUIDES = 500
 DRIVES = 100

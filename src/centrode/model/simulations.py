@@ -23,10 +23,12 @@ DRIVING_LAW_VARIABLES = ("t", "q", "v")
 
 Scheme = Literal["adaptive", "stiff", "runge-kutta-4"]
 SCHEMES = ("adaptive", "stiff", "runge-kutta-4")
-MOST_STEPS = 10_000_000
+MOST_STEPS = 1_000_000
+"""Fixed steps: with some 400 bytes each about 0.5 GB."""
 DEFAULT_STEPS, DEFAULT_SAMPLES, DEFAULT_TOLERANCE = 1000, 1001, 1e-9
 LEAST_TOLERANCE, GREATEST_TOLERANCE = 1e-13, 1e-2
-MOST_TURNS = 1e6
+MOST_TURNS = 5000
+"""Turns of the drive in one simulation: on each the integration takes dozens of steps, and events are looked for."""
 
 
 def _law(value: object) -> str:

@@ -64,6 +64,10 @@ VARIABLES = (
 )
 
 
+BLOCK = 10_000
+"""Rows of a table that are turned into text at once."""
+
+
 def motion_table(
     dataset: xarray.Dataset, display: Display | None = None, points: Sequence[str] | None = None
 ) -> tuple[list[str], list[list[float] | list[str]]]:
@@ -138,11 +142,15 @@ def write_motion_csv(
 
     Parameters are those of `motion_table`. A number that does not exist is an empty field.
     """
-    headers, columns = motion_table(dataset, display, points)
     with Path(path).open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(headers)
-        writer.writerows(map(field, row) for row in zip(*columns, strict=True))
+        # as Python's own numbers a table takes many times the memory of the dataset
+        for first in range(0, max(dataset.sizes["sample"], 1), BLOCK):
+            block = dataset.isel(sample=slice(first, first + BLOCK))
+            headers, columns = motion_table(block, display, points)
+            if first == 0:
+                writer.writerow(headers)
+            writer.writerows(map(field, row) for row in zip(*columns, strict=True))
 
 
 def field(value: float | str) -> str:

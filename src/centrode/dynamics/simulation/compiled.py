@@ -22,9 +22,10 @@ from centrode.algebra.scans import Scan
 from centrode.dynamics.batches import state_of_nodes
 from centrode.dynamics.burden import Burden
 from centrode.dynamics.inertia import share
-from centrode.dynamics.simulation.course import STATES, Course, Ending
+from centrode.dynamics.simulation.course import STATES, VALUE, Course, Ending
 from centrode.dynamics.simulation.driving import Driving
-from centrode.dynamics.simulation.fixed import course_of
+from centrode.dynamics.simulation.field import Field, too_far
+from centrode.dynamics.simulation.fixed import course_of, next_state
 from centrode.dynamics.simulation.rows import Rows
 from centrode.dynamics.simulation.sorts import SORTS, sorted_efforts
 from centrode.dynamics.states import Moving
@@ -34,6 +35,7 @@ from centrode.kinematics.compiled.turns import centre_of, winding_of
 from centrode.kinematics.compiled.variables import PARAMETER, RATE, TIME, varied_of
 from centrode.kinematics.spans import Span
 from centrode.locale import mark
+from centrode.model.simulations import MOST_TURNS
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -68,14 +70,20 @@ class Compiled:
         outputs = run([[step]], inputs, start[:, None], steps=None if self.scan.inputs else steps).outputs
         return np.concatenate([start[:, None], outputs[:, :, 0]], axis=1)
 
-    def course(self, value: float, rate: float, duration: float, steps: int) -> Course:
+    def course(self, field: Field, value: float, rate: float, duration: float, steps: int) -> Course:
         """The course of so many steps, up to where the motion ends."""
         states = self.states(value, rate, duration, steps)
+        far = np.flatnonzero(np.abs(states[VALUE] - value) > MOST_TURNS * field.tracks.length)
+        if len(far):
+            raise too_far(duration / steps * int(far[0]))
         lost = ~np.isfinite(states).all(axis=0)
         ended: Ending = "duration"
         if lost.any():
-            states, ended = states[:, : int(np.argmax(lost))], "limit"
-        course = course_of(states, duration / steps, ended, 4 * steps)
+            done = int(np.argmax(lost)) - 1
+            step = duration / steps
+            next_state(field, done * step, states[:, done], step)  # says which formula has no value
+            states, ended = states[:, : done + 1], "limit"
+        course = course_of(field, states, duration / steps, ended, 4 * steps)
         course.executor = self.executor
         return course
 

@@ -16,9 +16,9 @@ VALUE, RATE, OF_DRIVE, OF_FRICTION, OF_OTHERS = range(5)
 STATES = 5
 """The drive's value and rate, and the works of drive, friction and other loads from the start."""
 
-Ending = Literal["duration", "turns", "limit", "standstill", "interrupted"]
-OCCASIONS = ("turns back", "sticks", "breaks loose", "limit", "standstill")
-"""What may happen besides: a change of sense, rest held by friction, its end, and two ways to end."""
+Ending = Literal["duration", "turns", "limit", "standstill", "interrupted", "change point"]
+OCCASIONS = ("turns back", "sticks", "breaks loose", "limit", "standstill", "change point")
+"""What may happen besides: a change of sense, rest held by friction, its end, and three ways to end."""
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ class Driving:
     @classmethod
     def of(cls, settings: Simulation, sense: float) -> Driving:
         """The drive that a simulation asks for."""
-        return cls(compile_formula(settings.law, DRIVING_LAW_VARIABLES, "[simulation] driving"), sense)
+        return cls(compile_formula(settings.law, DRIVING_LAW_VARIABLES, "[simulation] driving"), float(sense))
 
     @property
     def of_time(self) -> bool:
@@ -41,6 +41,6 @@ class Driving:
     def at(self, t: float, q: float, rate: float) -> float:
         """The same of plain numbers; NaN where the formula has no value."""
         try:
-            return float(self.over(SCALARS, t, q, rate))
+            return float(self.over(SCALARS, float(t), float(q), float(rate)))
         except (ArithmeticError, ValueError):
             return NAN

@@ -6,7 +6,8 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeAlias
+from math import isnan
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -27,8 +28,12 @@ from centrode.dynamics.simulation.rows import (
 from centrode.dynamics.simulation.sorts import FRICTION, OTHER, SORTS, STORED, of_time
 from centrode.dynamics.simulation.tracks import Tracks
 from centrode.dynamics.steady_motion.quadrature import NODES
+from centrode.errors import MotionError
+from centrode.locale import _
+from centrode.model.simulations import MOST_TURNS
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
 
 NAN = float("nan")
 CREEP = 1e-200
@@ -40,16 +45,21 @@ _ORDERS = np.arange(NODES)
 
 @dataclass(frozen=True)
 class Forces:
-    """At one instant: inertia, its slope, moments by sort, that of the drive; all by the drive's value."""
+    """At one instant or at many: inertia, its slope, moments by sort, that of the drive; all by the drive's value."""
 
-    inertia: float
-    slope: float
-    stored: float
-    friction: float
-    other: float
-    driving: float
+    inertia: Number
+    slope: Number
+    stored: Number
+    friction: Number
+    other: Number
+    driving: Number
 
-    def acceleration(self, rate: float) -> float:
+    @property
+    def row(self) -> tuple[Number, ...]:
+        """All of them, in this order."""
+        return self.inertia, self.slope, self.stored, self.friction, self.other, self.driving
+
+    def acceleration(self, rate: Number) -> Number:
         """Second derivative of the drive's value by time."""
         moment = self.stored + self.friction + self.other + self.driving
         return (moment - 0.5 * self.slope * rate * rate) / self.inertia
@@ -87,7 +97,8 @@ class Leg:
         edges = self.edges
         panel = min(max(bisect_right(edges, inside) - 1, 0), len(edges) - 2)
         low, high = edges[panel], edges[panel + 1]
-        share = (2.0 * inside - low - high) / (high - low)
+        # a stretch that begins where the motion ends is empty
+        share = (2.0 * inside - low - high) / (high - low) if high > low else 0.0
         found: Array = self.powers[panel] @ share**_ORDERS
         return found if self.grown is None else found + self.grown
 
@@ -110,6 +121,10 @@ class Field:
     def of_time(self) -> bool:
         """Whether anything depends on time."""
         return self.driving.of_time or of_time(self.tracks.rows.efforts)
+
+    def is_too_far(self, value: float, start: float) -> bool:
+        """Whether a value lies more turns from the start than one simulation makes."""
+        return not abs(value - start) <= MOST_TURNS * self.tracks.length * (1.0 + 1e-12)
 
     def leg(self, value: float, sense: float) -> Leg:
         """The leg on which a value lies for a motion in one sense; at a jump the one that lies ahead."""
@@ -144,6 +159,11 @@ class Field:
 
     def forces(self, leg: Leg, t: float, value: float, rate: float) -> Forces:
         """What acts at an instant; NaN where a formula has no value."""
+        t, value, rate = (
+            float(t),
+            float(value),
+            float(rate),
+        )  # a plain number divided by zero is an error, no infinity
         rows = leg.rows(value)
         first = FORWARDS if leg.sense > 0.0 else BACKWARDS
         moments = dict(zip(SORTS, rows[first : first + len(SORTS)].tolist(), strict=True))
@@ -173,4 +193,28 @@ class Field:
         behind = self.forces(self.leg(value, -1.0), t, value, -CREEP).acceleration(0.0)
         if ahead > 0.0 and not (behind < 0.0 and self.driving.sense < 0.0):
             return 1.0
-        return -1.0 if behind < 0.0 else 0.0
+        if behind < 0.0:
+            return -1.0
+        if isnan(ahead) or isnan(behind):
+            raise without_value(t, value)
+        return 0.0
+
+
+def too_far(t: float) -> MotionError:
+    """More turns than one simulation makes."""
+    return MotionError(
+        "[simulation]",
+        _("it has made more than {most} turns at t = {time:.6g} s").format(most=MOST_TURNS, time=t),
+        _("give a shorter duration, or a drive that does not run away; of fixed steps take more"),
+    )
+
+
+def without_value(t: float, value: float) -> MotionError:
+    """Drive or loads have no finite value somewhere."""
+    return MotionError(
+        "[simulation]",
+        _("drive or loads have no finite value at t = {time:.6g} s, drive at {value:.6g}").format(
+            time=t, value=value
+        ),
+        _("correct their formulas"),
+    )

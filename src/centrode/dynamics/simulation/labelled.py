@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TypeAlias
 
 import numpy as np
@@ -29,6 +30,7 @@ from centrode.kinematics.dataset import (
 )
 from centrode.kinematics.solve import Solved, solve
 from centrode.kinematics.spans import Span
+from centrode.model.files import mechanism_text
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -38,12 +40,7 @@ def simulation_dataset(setting: Setting, course: Course, times: Array, *, motion
     states, senses = course.at(times)
     forces = _forces(setting, times, states, senses)
     moving = senses != 0.0
-    acceleration = np.array(
-        [
-            one.acceleration(rate) if on else 0.0
-            for one, rate, on in zip(forces, states[RATE], moving, strict=True)
-        ]
-    )
+    acceleration = np.where(moving, forces.acceleration(states[RATE]), 0.0)
     solved = solve(setting.prepared, Span(times, states[VALUE], states[RATE], acceleration))
     unit = units_of_drives(solved)[0]
     curves = _curves(setting, states, forces, acceleration, moving)
@@ -61,27 +58,25 @@ def _coordinates(solved: Solved) -> dict[str, object]:
     return {name: known[name] for name in ("time", "drive_value", "drive")}
 
 
-def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> list[Forces]:
+def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> Forces:
     """What acts at every instant; at rest as if it were about to go on in the sense of the drive."""
-    field, found = setting.field, []
-    for t, value, rate, sense in zip(times, states[VALUE], states[RATE], senses, strict=True):
+    field, found = setting.field, np.empty((len(times), len(fields(Forces))))
+    rows = zip(times, states[VALUE], states[RATE], senses, strict=True)
+    for k, (t, value, rate, sense) in enumerate(rows):
         way = (1.0 if rate > 0.0 else -1.0) if rate else sense or setting.rows.sense
         leg = field.leg_at(float(value), way)
-        found.append(field.forces(leg, float(t), float(value), float(rate) or way * CREEP))
-    return found
+        found[k] = field.forces(leg, float(t), float(value), float(rate) or way * CREEP).row
+    return Forces(*found.T)
 
 
 def _curves(
-    setting: Setting, states: Array, forces: list[Forces], acceleration: Array, moving: npt.NDArray[np.bool_]
+    setting: Setting, states: Array, forces: Forces, acceleration: Array, moving: npt.NDArray[np.bool_]
 ) -> dict[str, Array]:
     """Everything over time by the names of the vocabulary; moments, speeds and works in the sense of the drive."""
     sense = setting.rows.sense
     rate = states[RATE]
-    inertia = np.array([one.inertia for one in forces])
-    parts = {
-        name: np.array([getattr(one, name) for one in forces]) for name in ("stored", "friction", "other")
-    }
-    driving = np.array([one.driving for one in forces])
+    inertia, driving = forces.inertia, forces.driving
+    parts = {name: getattr(forces, name) for name in ("stored", "friction", "other")}
     # friction that holds is what is needed to hold
     parts["friction"] = np.where(moving, parts["friction"], -(driving + parts["stored"] + parts["other"]))
     loads = parts["stored"] + parts["friction"] + parts["other"]
@@ -139,6 +134,7 @@ def _facts(setting: Setting, course: Course, curves: dict[str, Array]) -> dict[s
         "evaluations": course.evaluations,
         "driving": setting.settings.law,
         "speed_at_start": setting.settings.speed,
+        "mechanism": mechanism_text(setting.mechanism),
         "worst_energy_residual": float(np.nanmax(np.abs(curves["energy_residual"]), initial=0.0)),
         "representation_error": setting.field.tracks.error,
     }

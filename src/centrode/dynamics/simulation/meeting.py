@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.optimize
 
-from centrode.dynamics.simulation.course import VALUE
+from centrode.dynamics.simulation.course import RATE, VALUE
 from centrode.dynamics.simulation.field import Field
 
 State: TypeAlias = npt.NDArray[np.float64]
@@ -41,7 +41,10 @@ def first_event(
     """The first time in a step at which the value leaves its range or the rate (where a sense counts) its sense."""
     found: list[tuple[float, int, float]] = []
     y = solver.y
-    targets = [(VALUE, high)] if y[VALUE] >= high else [(VALUE, low)] if y[VALUE] <= low else []
+    # at an end of its range a value that does not move outwards has not left it: from rest it may stay there for long
+    above = y[VALUE] > high or (y[VALUE] == high and y[RATE] > 0.0)
+    below = y[VALUE] < low or (y[VALUE] == low and y[RATE] < 0.0)
+    targets = [(VALUE, high)] if above else [(VALUE, low)] if below else []
     if sense and y[1] * sense <= 0.0:
         targets.append((1, 0.0))
     for component, target in targets:

@@ -19,6 +19,8 @@ from centrode.model.simulations import Simulation
 
 NEUTRAL = 1e-5
 """A multiplier as near to 1 says that any speed comes back, but for the rounding of its differences."""
+INDIFFERENT = 1e-4
+"""The same of a regime that is found: nothing tells its speed from another."""
 PARTS = 2000
 
 
@@ -65,6 +67,11 @@ class Regime:
     multiplier: float
     maps: int
 
+    @property
+    def indifferent(self) -> bool:
+        """Whether any speed would come back, as of a conservative machine: nothing runs up to this one."""
+        return abs(self.multiplier - 1.0) < INDIFFERENT
+
 
 def steady_regime(mechanism: Mechanism, settings: Simulation | None = None) -> Regime:
     """The steady regime that a machine runs up to from the start of its simulation.
@@ -84,6 +91,9 @@ def regime_of(setting: Setting) -> Regime:
     period = period_of(setting)
     maps = ReturnMap(setting, period)
     speed = maps.run_in()
+    if setting.is_conservative:
+        # with the place the energy comes back, and with it any speed
+        return _regime(setting, maps.course(speed), speed, 1.0, maps)
     found = fixed_point(maps, speed)
     course = maps.course(found)
     slightly = found * (1.0 + 1e-5)

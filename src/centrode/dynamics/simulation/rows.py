@@ -44,10 +44,13 @@ class Rows:
     reducer : Reducer
     added : float [kg m^2]
         Inertia of what turns with the drive at a constant ratio.
+    ends_at_change_points : bool
+        Whether the motion goes no farther than to the change points next to the initial position.
     """
 
     reducer: Reducer
     added: float
+    ends_at_change_points: bool = False
 
     @cached_property
     def efforts(self) -> tuple[Sorted, ...]:

@@ -20,6 +20,8 @@ from centrode.dynamics.simulation.setting import Setting, setting_of
 from centrode.dynamics.simulation.stepping import Stepper
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.compiled.deciding import Untraceable
+from centrode.kinematics.layout import layout_of
+from centrode.kinematics.solve import check_size
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulations import Simulation
@@ -72,6 +74,8 @@ def simulate(
             _("use one of {known}").format(known=", ".join(get_args(Executor))),
         )
     setting = setting_of(mechanism, settings)
+    count = setting.settings.samples if at is None else np.size(at)
+    check_size(layout_of(setting.prepared.kinematics), 1, count)
     course = course_of(setting, executor, progress)
     return simulation_dataset(setting, course, _times(setting, course, at), motion=motion)
 
@@ -84,6 +88,16 @@ def course_of(setting: Setting, executor: Executor = "auto", progress: Tell | No
         course = stepper.run(setting.start, setting.rate)
     else:
         course = _by_fixed_steps(setting, executor, progress)
+    if course.ended == "change point" and not course.pieces:
+        raise MotionError(
+            "[simulation]",
+            _("it starts at the change point at {value:.9g}, where its path ends").format(
+                value=setting.start
+            ),
+            _(
+                'start elsewhere, let it move away from there, or choose continuation = "smooth" in [assembly]'
+            ),
+        )
     if not course.last > course.first:
         raise MotionError(
             "[simulation]",
@@ -109,7 +123,7 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
             if executor != "auto":
                 raise InputError("executor", _(reason.reason), _('use executor = "auto"')) from None
         else:
-            return scan.course(setting.start, setting.rate, settings.duration, settings.steps)
+            return scan.course(field, setting.start, setting.rate, settings.duration, settings.steps)
     return fixed_steps(field, setting.start, setting.rate, settings.duration, settings.steps, progress)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -10,12 +11,15 @@ import numpy.typing as npt
 import scipy.integrate
 
 from centrode.dynamics.simulation.course import VALUE
-from centrode.dynamics.simulation.field import CREEP, Field, Leg
+from centrode.dynamics.simulation.field import CREEP, Field, Leg, without_value
 from centrode.dynamics.simulation.rows import INERTIA
-from centrode.dynamics.simulation.watching import Watch, without_value
+from centrode.dynamics.simulation.watching import Watch
 
 Array: TypeAlias = npt.NDArray[np.float64]
 State: TypeAlias = Array
+
+SLOWEST = 1e-9
+"""Part of a radian or a unit of length that the slowest drive of interest passes in the whole run."""
 
 
 class Solvers:
@@ -23,7 +27,8 @@ class Solvers:
 
     def __init__(self, field: Field, watch: Watch, end: float, tolerance: float) -> None:
         self.field, self.watch, self.end, self.tolerance = field, watch, end, tolerance
-        self.fastest = 0.0
+        # what would go no farther than this from beginning to end is rounding
+        self.fastest = SLOWEST * field.tracks.unit / end if isfinite(end) else 0.0
 
     def rates(self, leg: Leg, begun: State) -> Callable[[float, State], State]:
         """Derivatives of the states on a leg; value and works count from its beginning."""

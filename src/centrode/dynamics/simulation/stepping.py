@@ -90,8 +90,9 @@ class Stepper:
             self.sense = sense
             leg = self.field.leg(float(state[VALUE]), sense)
             if self._at_limit(float(state[VALUE]), sense):
-                self._note("limit", t, state)
-                return "limit"
+                ending = self.field.tracks.ending(float(state[VALUE]))
+                self._note(ending, t, state)
+                return ending
             t, state = self._pass(leg, t, state)
 
     def _at_limit(self, value: float, sense: float) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, floor, inf, isfinite, tau
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,8 @@ from numpy.polynomial import legendre
 
 from centrode.dynamics.simulation.rows import COORDINATE, EACH, FORMULAS, INERTIA, SLOPE, Rows
 from centrode.dynamics.steady_motion.quadrature import NODES, resolved
-from centrode.errors import InputError
+from centrode.errors import InputError, MotionError
+from centrode.kinematics.branches import AT_THE_START
 from centrode.locale import _
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -88,6 +89,7 @@ class Tracks:
         self.error = 0.0
         self._stretches: dict[int, Stretch] = {}
         self._grown = np.zeros(rows.count)
+        self._change_points: set[float] = set()
         self.period = self._repeats() if path.driven[0].drive.kind == "angle" else 0.0
 
     def stretch(self, number: int) -> Stretch:
@@ -106,6 +108,18 @@ class Tracks:
         periods, inside = divmod(number, round(self.period / self.length))
         return inside, periods
 
+    def is_change_point(self, value: float) -> bool:
+        """Whether the motion ends at a change point there."""
+        return any(abs(value - at) <= AT_THE_START * self.unit for at in self._change_points)
+
+    def ending(self, value: float) -> Literal["limit", "change point"]:
+        """What ends the motion at the end that is nearer to a value."""
+        return "change point" if self.is_change_point(self.end(value)) else "limit"
+
+    def end(self, value: float) -> float:
+        """The end of the motion that is nearer to a value."""
+        return self.low if abs(value - self.low) <= abs(value - self.high) else self.high
+
     def grown(self, periods: int) -> Array:
         """What rows have grown by after so many periods: coordinates that run on with the drive."""
         return periods * self._grown
@@ -115,7 +129,7 @@ class Tracks:
         turns = np.arange(MOST_PERIOD + 1)
         values = (self.first + PROBES + tau * turns[:, None]).reshape(-1)
         low, high = self.rows.reducer.reach(self.first, float(values[-1]))
-        if isfinite(low) or isfinite(high):
+        if isfinite(low) or isfinite(high) or self._ends(self.first, float(values[-1])) != (-inf, inf):
             return 0.0
         rows = self.rows.at(values).reshape(self.rows.count, len(turns), -1)
         if not np.isfinite(rows).all():
@@ -136,7 +150,11 @@ class Tracks:
         self._look_for_limits(low, high)
         low, high = max(low, self.low), min(high, self.high)
         if not low < high:
-            return Stretch(np.array([low, low]), np.zeros((1, self.rows.count, NODES)), np.empty(0))
+            # empty: what holds at the end of the motion, from which forces may still lead back
+            end = min(max(low, self.low), self.high)
+            powers = np.zeros((1, self.rows.count, NODES))
+            powers[0, :, 0] = self.rows.at(np.array([end]))[:, 0]
+            return Stretch(np.array([end, end]), powers, np.empty(0))
         even = np.linspace(low, high, PANELS + 1)
         jumps = self.rows.jumps(low, high, even)
         near = np.min(np.abs(even[1:-1, None] - jumps), axis=1, initial=inf) if len(jumps) else inf
@@ -167,7 +185,16 @@ class Tracks:
         return panels.edges, np.ascontiguousarray(powers)
 
     def _check_inertia(self, places: Array, inertia: Array) -> None:
-        """Refuse, with an InputError, a place at which nothing carries the motion."""
+        """Refuse a place at which nothing carries the motion (InputError), or at which there is none (MotionError)."""
+        lacking = np.flatnonzero(~np.isfinite(inertia))
+        if len(lacking):
+            raise MotionError(
+                "[simulation]",
+                _("the motion has no derivatives where the drive is at {value:.6g}").format(
+                    value=float(places[lacking[0]])
+                ),
+                _("start elsewhere, or change the dimensions"),
+            )
         greatest = float(np.max(inertia))
         inner = inertia[1:-1]
         dips = 1 + np.flatnonzero((inner <= inertia[:-2]) & (inner <= inertia[2:]) & (inner < LOW * greatest))
@@ -197,10 +224,30 @@ class Tracks:
         reach = self.rows.reducer.reach(low, high)
         margin = NEAR_LIMIT * self.unit
         self.low, self.high = max(self.low, reach[0] + margin), min(self.high, reach[1] - margin)
+        below, above = self._ends(low, high)
+        if below > self.low:
+            self.low = below
+            self._change_points.add(below)
+        if above < self.high:
+            self.high = above
+            self._change_points.add(above)
         some = np.linspace(max(low, self.low), min(high, self.high), 2 * PANELS + 1)
         missing = some[~self.rows.state(some)[1]]
         self.low = max([self.low, *missing[missing < self.first]])
         self.high = min([self.high, *missing[missing >= self.first]])
+
+    def _ends(self, low: float, high: float) -> tuple[float, float]:
+        """Nearest change points below and above the initial value, where they end the motion; infinite without any."""
+        below, above = -inf, inf
+        if not self.rows.ends_at_change_points:
+            return below, above
+        # one at the initial value itself lies behind it
+        first = self.first + self.rows.sense * AT_THE_START * self.unit
+        for event in self.rows.reducer.events(min(low, self.first), max(high, self.first)):
+            if event.kind == "change point":
+                below = max(below, event.at) if event.at <= first else below
+                above = min(above, event.at) if event.at > first else above
+        return below, above
 
     def _check(self, edges: Array, powers: Array) -> None:
         """Measure by how much the series miss the reduction between their nodes."""

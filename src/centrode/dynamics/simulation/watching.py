@@ -4,21 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import copysign
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from centrode.dynamics.simulation.course import VALUE, Course
-from centrode.dynamics.simulation.field import Field, Forces, Leg
+from centrode.dynamics.simulation.field import Field, Forces, Leg, too_far, without_value
 from centrode.errors import MotionError
 from centrode.locale import _
 
 State: TypeAlias = npt.NDArray[np.float64]
 
-MOST_STEPS = 300_000
+MOST_STEPS = 150_000
+"""Steps of one simulation: some two minutes, and 200 MB of their interpolants."""
 EDGE = 3.0
 """Step times damping rate from which a step counts as held back by stability."""
+ASIDE = 1e-6
+"""Change of the rate, as a share of it, from which the damping rate is taken."""
+LEAST_RATE = 1e-280
+"""Rate below which a share of it would be no number."""
 HELD_BACK = 15
 """Steps so held back after which the stiff scheme takes over."""
 
@@ -69,6 +75,8 @@ class Watch:
                     _('choose scheme = "stiff", or a greater tolerance'),
                 )
             )
+        if self.field.is_too_far(value, self.start):
+            raise too_far(solver.t)
         if self.steps > self.most:
             raise MotionError(
                 "[simulation]",
@@ -85,11 +93,12 @@ class Watch:
     def _watch(self, leg: Leg, solver: Any, value: float) -> None:
         """Change to the stiff scheme where damping holds the steps back."""
         rate = float(solver.y[1])
-        more = rate + 1e-6 * (abs(rate) or 1.0)
+        # away from zero: beyond it friction would be another one
+        more = rate + copysign(ASIDE * max(abs(rate), float(solver.atol[1]), LEAST_RATE), rate or leg.sense)
 
         def slowed(speed: float) -> float:
             forces: Forces = self.field.forces(leg, solver.t, value, speed)
-            return forces.acceleration(speed)
+            return float(forces.acceleration(speed))
 
         damping = abs(slowed(more) - slowed(rate)) / (more - rate)
         held = damping * (solver.step_size or 0.0) > EDGE
@@ -97,14 +106,3 @@ class Watch:
         if self.held_back >= HELD_BACK:
             self.stiff = True
             self.course.scheme = "adaptive, then stiff"
-
-
-def without_value(t: float, value: float) -> MotionError:
-    """Drive or loads have no finite value somewhere."""
-    return MotionError(
-        "[simulation]",
-        _("drive or loads have no finite value at t = {time:.6g} s, drive at {value:.6g}").format(
-            time=t, value=value
-        ),
-        _("correct their formulas"),
-    )

@@ -45,7 +45,10 @@ def simulation_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
 
 
 def regime_rows(mechanism: Mechanism, regime: Regime) -> Rows:
-    """The steady regime: period, speeds and where they lie, fluctuation, how fast deviations die away."""
+    """The steady regime: period, speeds and where they lie, fluctuation, how fast deviations die away.
+
+    Where any speed would come back, as of a conservative machine, it is a periodic motion and no steady regime.
+    """
     turns = ngettext("{n} turn of the drive", "{n} turns of the drive", regime.turns).format(n=regime.turns)
     where = _("{speed:.6g} rad/s with the drive at {value}")
     least = where.format(
@@ -57,10 +60,15 @@ def regime_rows(mechanism: Mechanism, regime: Regime) -> Rows:
     dies = _("{share:.3g} of a deviation is left after a period").format(share=regime.multiplier)
     if abs(regime.multiplier) < NOTHING:
         dies = _("nothing of a deviation is left after a period")
-    if regime.multiplier > 1.0 - 1e-4:
+    if regime.multiplier > 1.0:
         dies = _("a deviation of the speed does not die away")
+    if regime.indifferent:
+        dies = _("any speed comes back: it runs up to none")
     return [
-        (_("steady regime"), _("{turns}, {time:.6g} s").format(turns=turns, time=regime.time)),
+        (
+            _("periodic motion") if regime.indifferent else _("steady regime"),
+            _("{turns}, {time:.6g} s").format(turns=turns, time=regime.time),
+        ),
         (_("least speed"), least),
         (_("greatest speed"), most),
         (_("mean speed"), _("{speed:.6g} rad/s (turns over time)").format(speed=regime.mean_speed)),
@@ -96,6 +104,7 @@ def _ended(mechanism: Mechanism, found: xarray.Dataset) -> str:
         "duration": _("after {time:.6g} s"),
         "turns": _("after the turns asked for, in {time:.6g} s"),
         "limit": _("at a limit of the mechanism, after {time:.6g} s"),
+        "change point": _("at a change point, where its path ends, after {time:.6g} s"),
         "standstill": _("it stands still; {time:.6g} s are shown"),
         "interrupted": _("interrupted at {time:.6g} s"),
     }[found.attrs["ended"]].format(time=time)
@@ -135,6 +144,7 @@ def _occasion_rows(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
         "sticks": _("it sticks"),
         "breaks_loose": _("it breaks loose"),
         "limit": _("it comes to a limit"),
+        "change_point": _("it comes to a change point"),
         "standstill": _("it comes to a standstill"),
     }
     names = str(found["occasion_kind"].attrs["flag_meanings"]).split()

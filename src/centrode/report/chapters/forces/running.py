@@ -11,7 +11,7 @@ from centrode.dynamics.simulation.regime import steady_regime
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.forces.simulation_figures import simulation_figures
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table
+from centrode.report.blocks import Chapter, Check, Formula, Paragraph, Section, Table
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.results import has_forces, simulated
 from centrode.report.chapters.forces.tables import Column, over_samples
@@ -47,9 +47,7 @@ def simulation_chapter(study: ReportStudy) -> Chapter | None:
         Section("", (Paragraph(text), Formula((line,)), first, *_energy(study))),
         Section(_("Over time"), (_course(study),)),
     ]
-    regime = _regime(study)
-    if regime:
-        sections.append(Section(_("Steady regime"), regime))
+    sections += _regime(study)
     figures = simulation_figures(mechanism, found)
     captions = {
         "simulation-speed": _("Speed and acceleration of the drive, and the moments on it, over time"),
@@ -87,16 +85,18 @@ def _energy(study: ReportStudy) -> list[Check]:
     return [measured(text, residual, float(max(works)), steps * settings.tolerance)]
 
 
-def _regime(study: ReportStudy) -> tuple[Block, ...]:
-    """The steady regime of a drive that has turned all the way round."""
+def _regime(study: ReportStudy) -> list[Section]:
+    """The steady regime, or the periodic motion, of a drive that has turned all the way round."""
     mechanism, found = study.mechanism, simulated(study)
     angular = mechanism.drives[0].kind == "angle"
     if not angular or found.attrs["ended"] not in ("duration", "turns"):
-        return ()
+        return []
     if not float(found["turned"].to_numpy().max()) >= tau:
-        return ()
+        return []
     try:
         regime = study.once("regime", lambda: steady_regime(mechanism))
     except CentrodeError as failure:
-        return (Paragraph(_("None is found: {reason}.").format(reason=failure.what)),)
-    return (facts(study.numbers, regime_rows(mechanism, regime)),)
+        none = Paragraph(_("None is found: {reason}.").format(reason=failure.what))
+        return [Section(_("Steady regime"), (none,))]
+    title = _("Periodic motion") if regime.indifferent else _("Steady regime")
+    return [Section(title, (facts(study.numbers, regime_rows(mechanism, regime)),))]

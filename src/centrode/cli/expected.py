@@ -1,0 +1,48 @@
+"""What a long run will take, told on stderr before it begins."""
+
+from __future__ import annotations
+
+import click
+
+import centrode as ct
+from centrode.locale import _
+from centrode.model import limits
+
+TOLD_FROM = 200_000_000
+"""Bytes of memory from which a run is announced."""
+BYTES = 300
+"""Memory of a coordinate at a sample: its derivatives, forces, and tables on the way to their files."""
+
+OF_A_CAM = 4
+"""What counts as its coordinates: a sample of a cam takes some 1 kB."""
+MANY_LINKS = 60
+"""Links from which a run is announced: matrices grow with their square, and so do pictures and reports."""
+MANY_TURNS = 200
+"""Turns of a simulation from which it is announced."""
+STEPS = 40
+"""Adaptive steps that a turn of a linkage takes at the usual tolerance."""
+
+
+def announce_size(description: ct.Mechanism, samples: int | None) -> None:
+    """Tell what many links and samples will take; what would take too much is refused where it is computed."""
+    count = samples if isinstance(samples, int) else description.study.samples or 0
+    coordinates = 3 * len(description.links) + 2 * len(description.moving_points)
+    if len(description.links) >= MANY_LINKS:
+        told = _("{count} links: this may take minutes")
+        click.echo(told.format(count=len(description.links)), err=True)
+    announce_samples(count, coordinates)
+
+
+def announce_samples(count: int, coordinates: int = OF_A_CAM) -> None:
+    """Tell how much memory so many samples of so many coordinates may take."""
+    size = BYTES * coordinates * count
+    if size >= TOLD_FROM and count <= limits.SAMPLES:  # more are refused at once
+        told = _("{count} samples: this may take {size:.2g} GB of memory")
+        click.echo(told.format(count=count, size=size / 1e9), err=True)
+
+
+def announce_turns(turns: float) -> None:
+    """Tell how far a simulation would run at the speed of its start, and about how many steps that takes."""
+    if turns >= MANY_TURNS:
+        told = _("about {turns:.3g} turns of the drive at the speed of the start, some {steps:.2g} steps")
+        click.echo(told.format(turns=turns, steps=turns * STEPS), err=True)
