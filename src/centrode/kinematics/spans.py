@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
-from centrode.kinematics.paths import JETS, DrivenBy, Path
+from centrode.kinematics.law_jumps import first_jump
+from centrode.kinematics.paths import JETS, DrivenBy, Path, unit_of
 from centrode.laws import ShaftLaw
 from centrode.locale import _
 from centrode.model import limits
@@ -20,6 +21,9 @@ Array: TypeAlias = npt.NDArray[np.float64]
 MAX_TURNS = 500.0
 INSIDE = 0.005
 """Share of the reachable range left out at both ends if none is asked for: there speeds are infinite."""
+
+LEAST_JUMP = 1e-9
+"""Jumps of a law are told down to this share of 1 rad, or of the greatest length."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +80,9 @@ def span_at(path: Path, places: Array) -> Span:
 
 
 def _check_extent(path: Path, span: Span) -> None:
-    """Refuse what a mesh of nodes cannot cover: a law without a value, and ends too far from the initial position."""
+    """Refuse a law that jumps or has no value, and what a mesh of nodes cannot cover: ends too far from the start."""
     for one in path.driven:
+        _check_continuity(path, one, span.time)
         if not all(np.isfinite(part).all() for part in _derivatives(one, span.time)):
             raise InputError(
                 f"[[drives]] {one.drive.id}",
@@ -95,6 +100,22 @@ def _check_extent(path: Path, span: Span) -> None:
             _("it reaches too far: {turns:.3g} turns").format(turns=turns),
             _("ask for at most {most:g}").format(most=MAX_TURNS),
         )
+
+
+def _check_continuity(path: Path, one: DrivenBy, time: Array) -> None:
+    """Refuse a law that jumps between t = 0, where the initial position is, and any of the times."""
+    least = LEAST_JUMP * unit_of(one.drive, path.scale)
+    jump = first_jump(one.law, min(0.0, float(np.min(time))), max(0.0, float(np.max(time))), least)
+    if jump is None:
+        return
+    where = f"[[drives]] {one.drive.id}"
+    if not np.isfinite(jump.after):
+        what = _("its law has no finite value at t = {time:.9g} s")
+        repair = _("correct the law, or ask for another range")
+        raise InputError(where, what.format(time=jump.time), repair)
+    what = _("its law jumps at t = {time:.9g} s, from {before:.9g} to {after:.9g}")
+    repair = _("no drive can jump: join the parts by a ramp or by segments, or ask for another range")
+    raise InputError(where, what.format(time=jump.time, before=jump.before, after=jump.after), repair)
 
 
 def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
