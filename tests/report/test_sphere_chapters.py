@@ -17,6 +17,7 @@ from centrode.report.making import report
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
 from report.made import undrawn
+from report.texts import texts_of
 
 SPHERE = ("data", "words", "structure", "equations", "tables", "plots", "rotatability", "axes")
 AB, BC = math.pi / 12, math.pi / 4
@@ -129,15 +130,6 @@ def driven_by_an_arc() -> ct.Mechanism:
         assembly={"sides": {"B": "left"}},
         study={"samples": 5},
     )
-
-
-def texts_of(part: object) -> list[str]:
-    """Every text of a part of a report, however deep."""
-    if isinstance(part, str):
-        return [part]
-    if isinstance(part, tuple):
-        return [text for one in part for text in texts_of(one)]
-    return texts_of(tuple(vars(part).values())) if hasattr(part, "__dict__") else []
 
 
 def test_the_value_of_a_drive_along_an_arc_is_an_angle() -> None:
