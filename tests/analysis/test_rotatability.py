@@ -211,3 +211,21 @@ def test_every_example_is_answered() -> None:
                 values = [extreme.value for extreme in swing.extremes]
                 assert swing.stroke is None or swing.stroke >= 0.0
                 assert np.isfinite(values).all()
+
+
+@pytest.mark.parametrize("short", [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-13])
+def test_a_mechanism_that_hardly_moves_between_two_dead_points(short: float) -> None:
+    """Three links of 1 m all but stretched out over 3 m: the crank moves by about sqrt(4 short / 3) to both sides."""
+    ground = 3.0 - short
+    mechanism = four_bar(1.0, 1.0, 1.0, ground, drives=[{"link": "OA", "start": 0.0, "speed": 1.0}])
+    found = ct.rotatability(mechanism)
+    assert found.turns_fully is False
+    assert found.one.period is None
+    # AB and DB stretched: |AD| = 2; ground is rounded, and the arc of the cosine loses digits as its sine does
+    exact = math.acos((1.0 + ground**2 - 4.0) / (2.0 * ground))
+    for limit, end in zip(found.limits, (-exact, exact), strict=False):
+        assert limit.value == pytest.approx(end, abs=32 * EPS / exact)
+    rows = dict(row for row in ct.rotatability_rows(mechanism, found) if row[0])
+    assert rows["turns fully"].startswith("no")
+    assert ("stops above" in rows) == bool(found.limits)
+    assert json.loads(ct.rotatability_text(found))["turns_fully"] is False

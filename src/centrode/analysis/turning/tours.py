@@ -78,6 +78,11 @@ class Tour:
         return not isfinite(self.low) and not isfinite(self.high)
 
     @cached_property
+    def turns_fully(self) -> bool:
+        """Whether the drive is an angle without limits, and every point has its place all over the stretch."""
+        return self.angular and self.unlimited and bool(np.isfinite(self.places(self.nodes())).all())
+
+    @cached_property
     def turns(self) -> int | None:
         """Turns of the drive after which every point is back; None where it is limited or not back after two."""
         if not (self.angular and self.unlimited):
@@ -85,7 +90,8 @@ class Tour:
         at = self.places(np.array([self.initial + tau * k for k in range(int(TURNS) + 1)]))
         scale = float(self.continuation.kinematics.numbers.scale)
         for k in range(1, int(TURNS) + 1):
-            if np.nanmax(np.abs(at[:, k] - at[:, 0]), initial=0.0) <= BACK * scale:
+            # a place that is not reached is no number, and not back
+            if np.max(np.abs(at[:, k] - at[:, 0]), initial=0.0) <= BACK * scale:
                 return k
         return None
 
@@ -99,7 +105,7 @@ class Tour:
     @property
     def comes_round(self) -> bool:
         """Whether the stretch ends where it begins."""
-        return self.turns is not None
+        return self.turns is not None and self.turns_fully
 
     def nodes(self) -> Array:
         """Values at which functions of the drive are looked at: even over turns, denser towards limits."""
