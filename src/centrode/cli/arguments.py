@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from centrode.locale import mark
+from centrode.model.asked import REACHABLE
 
 mechanism_argument = click.argument(
     "mechanism",
@@ -45,6 +46,14 @@ start_option = click.option(
 stop_option = click.option(
     "--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time.")
 )
+
+range_option = click.option(
+    "--range",
+    "ranged",
+    type=click.Choice([REACHABLE]),
+    help=mark("The range between the limits about the initial position; without limits one turn."),
+)
+"""In place of what the description says of its range; `--from` and `--to` go before it."""
 
 no_figures_option = click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
 

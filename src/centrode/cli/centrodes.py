@@ -14,6 +14,7 @@ from centrode.cli.arguments import (
     dark_option,
     mechanism_argument,
     no_figures_option,
+    range_option,
     results_option,
     samples_option,
     start_option,
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 @samples_option
 @start_option
 @stop_option
+@range_option
 @click.option(
     "--at",
     "places",
@@ -63,6 +65,7 @@ def centrodes(
     samples: int | None,
     start: str | None,
     stop: str | None,
+    ranged: str | None,
     places: tuple[str, ...],
     out: Path | None,
     animate: bool,
@@ -70,7 +73,7 @@ def centrodes(
     dark: bool,
 ) -> None:
     """Compute and write both curves, and the curvature where asked."""
-    description = ct.load(mechanism)
+    description = ct.with_range(ct.load(mechanism), ranged)
     folder = output.folder_of(out, mechanism, "centrodes")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))

@@ -10,7 +10,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument, samples_option, start_option, stop_option
+from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
 from centrode.cli.reached import is_placed, tell_no_centre
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
@@ -47,6 +47,7 @@ KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
 @samples_option
 @start_option
 @stop_option
+@range_option
 @click.option(
     "--out",
     required=True,
@@ -57,14 +58,14 @@ KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
 def draw(
     mechanism: str, instant: str | None, paths: tuple[str, ...], links: tuple[str, ...], no_names: bool,
-    samples: int | None, start: str | None, stop: str | None, out: Path, force: bool,
+    samples: int | None, start: str | None, stop: str | None, ranged: str | None, out: Path, force: bool,
 ) -> None:  # fmt: skip
     """Write one drawing, whole or not at all."""
     kind = out.suffix.lower()
     if kind not in KINDS:
         what = _("{ending} is no kind of file for drawings").format(ending=f'"{out.suffix}"')
         raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
-    description = ct.load(mechanism)
+    description = ct.with_range(ct.load(mechanism), ranged)
     place = ct.initial_place(description) if instant is None else ct.range_value(description, instant, "--at")
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")

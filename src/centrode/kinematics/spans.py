@@ -47,11 +47,17 @@ def is_uniform(path: Path) -> bool:
 
 
 def span_of(
-    path: Path, samples: int, start: float | None, stop: float | None, reach: tuple[float, float]
+    path: Path,
+    samples: int,
+    start: float | None,
+    stop: float | None,
+    reach: tuple[float, float],
+    reachable: bool = False,
 ) -> Span:
     """Evenly spaced samples from start to stop: values of the drive [rad or m], or times [s] where the drive is a law.
 
-    `reach` are the nearest limits, the range of a displacement drive where none is asked for.
+    `reach` are the nearest limits: the range of a displacement drive where none is asked for, and that of any drive
+    where the `reachable` range is.
     """
     if isinstance(samples, bool) or not 1 <= samples <= limits.SAMPLES:
         raise InputError(
@@ -63,7 +69,13 @@ def span_of(
         if value is not None and not np.isfinite(value):
             raise InputError(name, _("the range must be finite"))
     if is_uniform(path):
-        span = _even_values(path, samples, start, stop, reach)
+        span = _at_values(path, np.linspace(*_range(path, start, stop, reach, reachable), samples))
+    elif reachable and None in (start, stop):
+        raise InputError(
+            "[study] range",
+            _("the reachable range is that of one drive at constant speed; here the range is one of time"),
+            _("give from and to, or --from and --to"),
+        )
     else:
         span = _even_times(path, samples, start, stop)
     _check_extent(path, span)
@@ -127,13 +139,6 @@ def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
     return [np.broadcast_to(np.asarray(value.derivative(k), dtype=np.float64), time.shape) for k in range(3)]
 
 
-def _even_values(
-    path: Path, samples: int, start: float | None, stop: float | None, reach: tuple[float, float]
-) -> Span:
-    first, last = _range(path, start, stop, reach)
-    return _at_values(path, np.linspace(first, last, samples))
-
-
 def _at_values(path: Path, values: Array) -> Span:
     one = path.driven[0]
     speed = float(one.drive.speed or 0.0)
@@ -144,10 +149,10 @@ def _at_values(path: Path, values: Array) -> Span:
 
 
 def _range(
-    path: Path, start: float | None, stop: float | None, reach: tuple[float, float]
+    path: Path, start: float | None, stop: float | None, reach: tuple[float, float], reachable: bool
 ) -> tuple[float, float]:
     """First and last value of the drive; what is not asked for is one turn, or the reachable range."""
-    if path.driven[0].drive.kind == "angle":
+    if path.turns and not reachable:
         first = path.initial if start is None else start
         return first, first + path.forward * 2.0 * np.pi if stop is None else stop
     if start is not None and stop is not None:
@@ -158,6 +163,10 @@ def _range(
 
 def _reachable(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
     low, high = reach
+    if path.turns and np.isinf([low, high]).all():
+        return path.initial, path.initial + path.forward * 2.0 * np.pi
+    if path.turns:  # a limit on one side only bounds a turn
+        low, high = max(low, high - 2.0 * np.pi), min(high, low + 2.0 * np.pi)
     if not np.isfinite(low) or not np.isfinite(high):
         raise InputError(
             f"[[drives]] {path.driven[0].drive.id}",

@@ -21,8 +21,7 @@ from centrode.kinematics.paths import JETS
 from centrode.kinematics.places import start_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.several_drives.holding import check_closed, held_path, starting_at, unit_of_value
-from centrode.kinematics.several_drives.reach import TURNS
-from centrode.kinematics.solve import SEARCH
+from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive
 from centrode.structure.positions import Positions
 
@@ -97,9 +96,11 @@ class Tour:
 
     @property
     def span(self) -> tuple[float, float]:
-        """The stretch that is looked at: whole turns until the mechanism is back, otherwise between the limits."""
+        """The stretch that is looked at: whole turns in the drive's sense until it is back, or between the limits."""
         if self.angular and self.unlimited:
-            return self.initial, self.initial + tau * (self.turns or int(TURNS))
+            way = tau * (self.turns or int(TURNS))
+            backwards = self.continuation.kinematics.path.forward < 0.0
+            return (self.initial - way, self.initial) if backwards else (self.initial, self.initial + way)
         return max(self.low, self.initial - self.extent), min(self.high, self.initial + self.extent)
 
     @property
