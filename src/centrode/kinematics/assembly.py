@@ -91,7 +91,8 @@ def assemble(kinematics: Kinematics) -> Assembled:
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
                 raise undetermined(group) from None
             _check_finite(group, at)
-            _check_angles(kinematics, group, at)
+            if not (group.signed and stated_side(kinematics, group) is not None):
+                _check_angles(kinematics, group, at)
             kinematics.count(i, at, ARRAYS, starting)
             bounding = Bounding(kinematics, group, signs.get(i, 1.0))
             if not isinstance(group, Newton):  # its places have their bounds already

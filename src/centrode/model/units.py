@@ -117,8 +117,10 @@ def unit_factor(unit: str, kind: str) -> float:
 
 def _text_to_si(text: str, kind: str) -> float:
     if len(text) > limits.QUANTITY_LENGTH:
-        what = _("expected {kind}, got a text of {count} characters")
-        raise InputError("", what.format(kind=_(KINDS[kind].name), count=len(text)), _example(kind))
+        what = _(
+            "a text of {count} characters is too long for a number with its unit, at most {most} are allowed"
+        )
+        raise InputError("", what.format(count=len(text), most=limits.QUANTITY_LENGTH), _("shorten it"))
     number, unit = _split(text, kind)
     if not unit:
         return _finite(number, text)
