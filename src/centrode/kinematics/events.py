@@ -116,10 +116,10 @@ class Scan:
             ]
             self._settle(settled, value, lanes[touches], cells[touches], SAFETY * bound[touches])
             dips = ~touches & (~told | (least < 0.0))
-            beside = np.where(told, 0.0, BESIDE_POLE * (self.mesh[cells + 1] - self.mesh[cells]))
+            aside = np.where(told, 0.0, BESIDE_POLE * (self.mesh[cells + 1] - self.mesh[cells]))
             for first, last, edge in (
-                (self.mesh[cells], at - beside, value[lanes, cells]),
-                (at + beside, self.mesh[cells + 1], value[lanes, cells + 1]),
+                (self.mesh[cells], at - aside, value[lanes, cells]),
+                (at + aside, self.mesh[cells + 1], value[lanes, cells + 1]),
             ):
                 chosen = dips & (edge > 0.0)
                 roots = self._roots(group, lanes[chosen], first[chosen], last[chosen])

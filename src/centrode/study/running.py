@@ -158,7 +158,7 @@ def with_range(mechanism: Mechanism, asked: str | None) -> Mechanism:
     if asked is None:
         return mechanism
     own = mechanism.study
-    study = Study(samples=own.samples, instants=own.instants, range=asked)  # type: ignore[arg-type]
+    study = Study(samples=own.samples, instants=own.instants, range=asked)
     return mechanism.model_copy(update={"study": study})
 
 

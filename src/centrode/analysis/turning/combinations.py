@@ -44,7 +44,7 @@ class Combinations:
         )
         first = tour.initial if tour.angular else tour.initial - tour.extent
         length = tau if tour.angular else 2.0 * tour.extent
-        self.nodes = _with_own(first + (np.arange(NODES) + OFF_GRID) * (length / NODES), tour)
+        self.nodes = _with_own(np.asarray(first + (np.arange(NODES) + OFF_GRID) * (length / NODES)), tour)
         self.length = length
         self.closed, self.events = self._followed()
         self.limits: dict[tuple[int, int], list[float]] = {}
