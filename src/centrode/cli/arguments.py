@@ -7,7 +7,6 @@ from pathlib import Path
 import click
 
 from centrode.locale import mark
-from centrode.model.asked import REACHABLE
 
 mechanism_argument = click.argument(
     "mechanism",
@@ -50,7 +49,7 @@ stop_option = click.option(
 range_option = click.option(
     "--range",
     "ranged",
-    type=click.Choice([REACHABLE]),
+    type=click.Choice(["reachable"]),
     help=mark("The range between the limits about the initial position; without limits one turn."),
 )
 """In place of what the description says of its range; `--from` and `--to` go before it."""

@@ -73,7 +73,8 @@ def centrodes(
     dark: bool,
 ) -> None:
     """Compute and write both curves, and the curvature where asked."""
-    description = ct.with_range(ct.load(mechanism), ranged)
+    description = ct.load(mechanism)
+    description = ct.with_range(description, ranged)
     folder = output.folder_of(out, mechanism, "centrodes")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))

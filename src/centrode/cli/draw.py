@@ -65,7 +65,8 @@ def draw(
     if kind not in KINDS:
         what = _("{ending} is no kind of file for drawings").format(ending=f'"{out.suffix}"')
         raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
-    description = ct.with_range(ct.load(mechanism), ranged)
+    description = ct.load(mechanism)
+    description = ct.with_range(description, ranged)
     place = ct.initial_place(description) if instant is None else ct.range_value(description, instant, "--at")
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")

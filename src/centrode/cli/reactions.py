@@ -66,7 +66,8 @@ def reactions(
     no_figures: bool,
 ) -> None:
     """Print extremes or instants, write tables where asked; exit code 3 if samples are not reached."""
-    description = ct.with_range(ct.load(mechanism), ranged)
+    description = ct.load(mechanism)
+    description = ct.with_range(description, ranged)
     _check(instants, samples, start, stop)
     places = [ct.range_value(description, text, "--at") for text in instants] or None
     first = None if start is None else ct.range_value(description, start, "--from")

@@ -49,7 +49,8 @@ def reduce(
     no_figures: bool,
 ) -> None:
     """Print the parts of the reduction and write them where asked; exit code 3 if the mechanism locks in the range."""
-    description = ct.with_range(ct.load(mechanism), ranged)
+    description = ct.load(mechanism)
+    description = ct.with_range(description, ranged)
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")
     names: list[str] = []

@@ -52,7 +52,8 @@ def run(
     no_figures: bool,
 ) -> None:
     """Compute and write; exit code 3 if the mechanism locks in the range asked for (the rest is written)."""
-    description = ct.with_range(ct.load(mechanism), ranged)
+    description = ct.load(mechanism)
+    description = ct.with_range(description, ranged)
     folder = output.folder_of(out, mechanism, "result")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))

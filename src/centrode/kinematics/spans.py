@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
-from centrode.kinematics.law_jumps import first_jump
+from centrode.kinematics.law_jumps import Jump, first_jump
 from centrode.kinematics.paths import JETS, DrivenBy, Path, unit_of
 from centrode.laws import ShaftLaw
 from centrode.locale import _
@@ -94,11 +94,24 @@ def span_at(path: Path, places: Array) -> Span:
 def _check_extent(path: Path, span: Span) -> None:
     """Refuse a law that jumps or has no value, and what a mesh of nodes cannot cover: ends too far from the start."""
     for one in path.driven:
-        _check_continuity(path, one, span.time)
+        jump = _jump(path, one, span.time)
+        if jump is not None and np.isfinite(jump.after):
+            what = _("its law jumps at t = {time:.9g} s, from {before:.9g} to {after:.9g}")
+            raise InputError(
+                f"[[drives]] {one.drive.id}",
+                what.format(time=jump.time, before=jump.before, after=jump.after),
+                _("no drive can jump: join the parts by a ramp or by segments, or ask for another range"),
+            )
         if not all(np.isfinite(part).all() for part in _derivatives(one, span.time)):
             raise InputError(
                 f"[[drives]] {one.drive.id}",
                 _("its law has no finite value with two derivatives everywhere in the range"),
+                _("correct the law, or ask for another range"),
+            )
+        if jump is not None:
+            raise InputError(
+                f"[[drives]] {one.drive.id}",
+                _("its law has no finite value at t = {time:.9g} s").format(time=jump.time),
                 _("correct the law, or ask for another range"),
             )
     if path.pace is not None:
@@ -114,20 +127,10 @@ def _check_extent(path: Path, span: Span) -> None:
         )
 
 
-def _check_continuity(path: Path, one: DrivenBy, time: Array) -> None:
-    """Refuse a law that jumps between t = 0, where the initial position is, and any of the times."""
+def _jump(path: Path, one: DrivenBy, time: Array) -> Jump | None:
+    """Where a law first jumps, or has no value, between t = 0, the initial position, and any of the times."""
     least = LEAST_JUMP * unit_of(one.drive, path.scale)
-    jump = first_jump(one.law, min(0.0, float(np.min(time))), max(0.0, float(np.max(time))), least)
-    if jump is None:
-        return
-    where = f"[[drives]] {one.drive.id}"
-    if not np.isfinite(jump.after):
-        what = _("its law has no finite value at t = {time:.9g} s")
-        repair = _("correct the law, or ask for another range")
-        raise InputError(where, what.format(time=jump.time), repair)
-    what = _("its law jumps at t = {time:.9g} s, from {before:.9g} to {after:.9g}")
-    repair = _("no drive can jump: join the parts by a ramp or by segments, or ask for another range")
-    raise InputError(where, what.format(time=jump.time, before=jump.before, after=jump.after), repair)
+    return first_jump(one.law, min(0.0, float(np.min(time))), max(0.0, float(np.max(time))), least)
 
 
 def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
