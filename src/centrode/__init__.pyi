@@ -63,7 +63,10 @@ from .study.positions import plan_rows as plan_rows
 from .study.transmission import transmission_rows as transmission_rows
 from .study.transmission import transmission_csv as transmission_csv
 from .study.running import study as study
+from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
+from .study.running import repair_of_range as repair_of_range
+from .study.running import with_range as with_range
 from .study.limiting import limits_rows as limits_rows
 from .study.limiting import limits_text as limits_text
 from .study.regions import region_rows as region_rows

@@ -20,7 +20,7 @@ VALUE = st.floats(-100, 100).filter(lambda x: abs(x) > 1e-3)
 
 
 class Precise:
-    sin, cos, sqrt = mp.sin, mp.cos, mp.sqrt
+    sin, cos, sqrt, exp, log, abs, min, max = mp.sin, mp.cos, mp.sqrt, mp.exp, mp.log, abs, min, max
 
 
 FORMULAS: dict[str, Callable[[Any, Any, Any, Any], Any]] = {
@@ -30,6 +30,9 @@ FORMULAS: dict[str, Callable[[Any, Any, Any, Any], Any]] = {
     "quotient": lambda m, a, b, c: (2.0 / a) / b + c / 3.0,
     "functions": lambda m, a, b, c: m.sin(a) * m.cos(b) + m.sin(-c),
     "root": lambda m, a, b, c: m.sqrt(a * a + b * b) - c,
+    "exponential": lambda m, a, b, c: m.exp(a * 0.1 - b * 0.1) * c,
+    "logarithm": lambda m, a, b, c: m.log(m.abs(a * b)) + c,
+    "least and greatest": lambda m, a, b, c: m.min(a * b, b * c) + m.max(a * b, c),
     "cancelling": lambda m, a, b, c: (a + b) * (a - b) - (a * a - b * b),
 }
 

@@ -142,3 +142,83 @@ def test_absence_and_refusals() -> None:
     assert np.isnan(locked.transmission_angle.values[2]).all()
     with pytest.raises(ct.InputError, match="no group"):
         ct.transmission_angles(ct.example("two-link-arm"))
+
+
+def acute(angle: float) -> float:
+    return min(angle, math.pi - angle)
+
+
+def extremes(mechanism: ct.Mechanism, group: str, **asked: object) -> tuple[float, float]:
+    """Least and greatest transmission angle, of very few samples: they do not depend on them."""
+    angles = ct.transmission_angles(mechanism, **{"samples": 4, **asked}).sel(group=group)  # type: ignore[arg-type]
+    return float(angles.least_transmission_angle), float(angles.greatest_transmission_angle)
+
+
+def test_the_least_transmission_angle_of_a_four_bar_is_that_of_its_triangles() -> None:
+    """Crank in line with the frame: sides d -+ a, b, c; between them the links stand square to each other."""
+    least, greatest = extremes(ct.four_bar(crank=A, coupler=B, rocker=C, ground=D), "coupler-rocker")
+    ends = [math.acos((B**2 + C**2 - (D + sign * A) ** 2) / (2 * B * C)) for sign in (-1, 1)]
+    assert ends[0] < math.pi / 2 < ends[1]
+    assert least == pytest.approx(min(map(acute, ends)), abs=64 * EPS)
+    assert greatest == pytest.approx(math.pi / 2, abs=EPS)
+
+
+def test_extremes_of_a_slider_crank_and_of_a_part_of_its_turn() -> None:
+    """The rod's lean to the guide is asin((r sin q - e) / l), q the angle of the crank."""
+    mechanism = ct.slider_crank(crank=1, coupler=3, offset=0.4)
+    group = "coupler"
+    assert extremes(mechanism, group) == pytest.approx((math.acos(1.4 / 3), math.pi / 2), abs=64 * EPS)
+    part = extremes(mechanism, group, start=0.7, stop=1.0)
+    exact = sorted(math.acos(abs(math.sin(q) - 0.4) / 3) for q in (0.7, 1.0))
+    assert part == pytest.approx(exact, abs=64 * EPS)
+
+
+def test_where_it_locks_the_least_is_nothing_and_the_pressure_is_square() -> None:
+    locked = ct.example("slider-between-cranks-locked")
+    least, greatest = extremes(locked, "CB-BD")
+    assert least == 0.0
+    told = next(one for one in ct.rotatability(locked).one.transmissions if "CB-BD" in one.group)
+    assert least == told.least
+    # the range begins at 0: the stationary value at 18.6 deg, folded, lies in it
+    assert greatest == pytest.approx(acute(told.extremes[0][1]), abs=1e-12)
+    rows = {row[0]: row[1:] for row in ct.transmission_rows(ct.transmission_angles(locked))}
+    assert rows["CB-BD"] == ("0.0000", f"{math.degrees(greatest):.4f}", "90.0000")
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["crank-rocker", "drag-link", "six-bar-press", "slider-between-cranks", "whitworth-quick-return",
+     "klann-leg", "parallelogram", "spherical-four-bar", "spherical-crank-guide"],
+)  # fmt: skip
+def test_over_a_turn_the_least_angle_is_that_of_rotatability(name: str) -> None:
+    mechanism = ct.example(name)
+    angles = ct.transmission_angles(mechanism, samples=3)
+    told = [one.least for one in ct.rotatability(mechanism).one.transmissions]
+    assert angles.least_transmission_angle.values == pytest.approx(told, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "name", ["crank-rocker", "scott-russell", "watt-six-bar", "tangent-mechanism", "hookes-joint"]
+)
+def test_extremes_bound_every_sample_and_are_reached_between_them(name: str) -> None:
+    angles = ct.transmission_angles(ct.example(name), samples=2001)
+    between = angles.transmission_angle.values[angles.status.values == ct.Status.OK]
+    values = np.minimum(between, np.pi - between)
+    least, greatest = angles.least_transmission_angle.values, angles.greatest_transmission_angle.values
+    assert (least <= values.min(axis=0) + 64 * EPS).all()
+    assert (greatest >= values.max(axis=0) - 64 * EPS).all()
+    steps = np.abs(np.diff(values, axis=0)).max(axis=0)
+    assert (values.min(axis=0) - least <= steps).all()
+    assert (greatest - values.max(axis=0) <= steps).all()
+
+
+def test_two_drives_have_extremes_over_the_time() -> None:
+    """A five-bar: cosine of the angle between the rods by the distance of the pins, looked at finely."""
+    mechanism = ct.example("five-bar-two-drives")
+    fine = ct.transmission_angles(mechanism, samples=4001)
+    between = fine.transmission_angle.values[fine.status.values == ct.Status.OK, 0]
+    values = np.minimum(between, np.pi - between)
+    few = ct.transmission_angles(mechanism, samples=3)
+    step = np.abs(np.diff(values)).max()
+    assert -64 * EPS <= values.min() - float(few.least_transmission_angle[0]) <= step
+    assert -64 * EPS <= float(few.greatest_transmission_angle[0]) - values.max() <= step

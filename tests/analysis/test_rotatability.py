@@ -211,3 +211,37 @@ def test_every_example_is_answered() -> None:
                 values = [extreme.value for extreme in swing.extremes]
                 assert swing.stroke is None or swing.stroke >= 0.0
                 assert np.isfinite(values).all()
+
+
+def test_a_drive_that_runs_backwards_has_its_places_on_its_run() -> None:
+    """The same geometry; every place lies within the turn that the drive makes, so below its initial value."""
+    ahead = four_bar(1.0, 3.5, 3.0, 4.0)
+    start = ct.value_at(ahead, "drives.OA.start")
+    back = ct.rotatability(ct.with_value(ahead, "drives.OA.speed", -1.0)).one
+    places = [extreme.at for swing in back.swings for extreme in swing.extremes]
+    places += [point.at for point in back.dead_points] + [at for at, _ in back.transmissions[0].extremes]
+    assert len(places) >= 6
+    assert all(start - math.tau <= at <= start for at in places)
+    found = ct.rotatability(ahead).one
+    for swing, other in zip(back.swings, found.swings, strict=True):
+        assert swing.stroke == pytest.approx(other.stroke, abs=64 * EPS)
+        turns = sorted(extreme.at % math.tau for extreme in swing.extremes)
+        assert turns == pytest.approx(sorted(e.at % math.tau for e in other.extremes), abs=1e-7)
+
+
+@pytest.mark.parametrize("short", [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-13])
+def test_a_mechanism_that_hardly_moves_between_two_dead_points(short: float) -> None:
+    """Three links of 1 m all but stretched out over 3 m: the crank moves by about sqrt(4 short / 3) to both sides."""
+    ground = 3.0 - short
+    mechanism = four_bar(1.0, 1.0, 1.0, ground, drives=[{"link": "OA", "start": 0.0, "speed": 1.0}])
+    found = ct.rotatability(mechanism)
+    assert found.turns_fully is False
+    assert found.one.period is None
+    # AB and DB stretched: |AD| = 2; ground is rounded, and the arc of the cosine loses digits as its sine does
+    exact = math.acos((1.0 + ground**2 - 4.0) / (2.0 * ground))
+    for limit, end in zip(found.limits, (-exact, exact), strict=False):
+        assert limit.value == pytest.approx(end, abs=32 * EPS / exact)
+    rows = dict(row for row in ct.rotatability_rows(mechanism, found) if row[0])
+    assert rows["turns fully"].startswith("no")
+    assert ("stops above" in rows) == bool(found.limits)
+    assert json.loads(ct.rotatability_text(found))["turns_fully"] is False

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from centrode.cams.curvature_laws import ConstantCurvature, ExponentialCurvature
 from centrode.cams.expanded import expanded_path
 from centrode.cams.series import series_path
 from centrode.cams.text_curvature import TextCurvature
+from centrode.study.cams.routes import routes_part
+from centrode.study.cams.said import Asked
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -110,3 +113,25 @@ def test_zeros_of_the_curvature_do_not_spoil_many_terms() -> None:
     # the terms decay like (at/R)^n n^(-3/2): the sum of those left out, times 1/(1 - at/R)
     left_out = 0.95**300 * 300**-1.5 / 0.05
     assert abs(float(series.sine(at)[0, 0] - path.sine(at)[0, 0])) < left_out
+
+
+@pytest.mark.parametrize("turns", [0.0, 1.0])
+def test_where_the_curvature_does_not_change_formula_16_has_no_meaning(turns: float) -> None:
+    """K' = -2 sin(phi) is zero at half turns but for the rounding of pi; beside them the numbers are as before."""
+    law = {"law": "formula", "formula": "12+2*cos(phi)"}
+    cam = ct.Cam(kind="cam", curvature=law, start={"radius": 0.07}, range={"to": 4.0})
+    flat = turns * math.pi
+    found = ct.cam_routes(cam, at=[flat, flat + 1e-3, flat + 0.1])
+    assert np.isnan(found.parting.values).tolist() == [True, False, False]
+
+
+def test_the_places_without_a_meaning_are_told() -> None:
+    law = {"law": "formula", "formula": "12+2*cos(phi)"}
+    cam = ct.Cam(kind="cam", curvature=law, start={"radius": 0.07}, range={"to": math.pi})
+    part = routes_part(cam, Asked(samples=361))
+    (said,) = [text for _label, text in part.rows if "(15)" in text]
+    assert said.endswith("the comparison has no meaning: φ = 0 rad (0 deg), 3.14159 rad (180 deg)")
+    apart = np.abs(part.datasets["cam-routes"].parting.values)
+    assert float(re.findall(r"part by up to (\S+) m;", said)[0]) == float(f"{np.nanmax(apart):.3g}")
+    # by its neighbours, not by rounding over rounding
+    assert np.nanmax(apart) < 10.0

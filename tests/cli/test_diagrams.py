@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import math
+import re
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -185,3 +187,11 @@ def test_wrong_input_of_transmission(
     assert done.code == 2, done
     assert told in done.err
     assert list(folder.iterdir()) == []
+
+
+def test_the_command_that_the_page_of_validation_quotes_is_accepted(centrode: Centrode, folder: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "validation.md").read_text(encoding="utf-8")
+    quoted = re.findall(r"`centrode (diagrams [^`]*)`", " ".join(page.split()))
+    assert len(quoted) == 1
+    done = centrode(*shlex.split(quoted[0]), "--no-figures", "--out", "d")
+    assert done.code == 0, done.err

@@ -290,3 +290,16 @@ def test_friction_that_no_joint_bears_is_refused(centrode: Centrode, folder: Pat
         done = centrode("reactions", "r.toml")
         assert done.code == 2
         assert message in done.err
+
+
+def test_instants_beyond_a_lock_name_the_limits(centrode: Centrode, folder: Path) -> None:
+    text = ct.example_text("slider-between-cranks-locked")
+    (folder / "m.toml").write_text(text.replace("[links.AC]", "[links.AC]\nmass = 1\nshape = 'rod'"))
+    done = centrode("reactions", "m.toml", "--at", "1 rad", "--at", "150 deg")
+    assert done.code == 3
+    assert done.err == (
+        "Error: m.toml: the mechanism locks: 1 of 2 samples is not reached"
+        " (limit at -0.808314721 rad (-46.313 deg), where group CB-BD (point B) is a dead point;"
+        " limit at 1.79991242 rad (103.127 deg), where group CB-BD (point B) is a dead point);"
+        " ask for places between the limits\n"
+    )

@@ -123,13 +123,30 @@ def units(folder: Path, name: str) -> str:
     return str(json.loads((folder / "result" / "summary.json").read_text())[name]["unit"])
 
 
+def test_what_the_message_offers_is_reached(centrode: Centrode, folder: Path) -> None:
+    done = centrode(
+        "run", "slider-between-cranks-locked", "--range", "reachable", "--no-figures", "--out", "r"
+    )
+    assert done.code == 0, done.err
+    assert done.rows["samples"] == "101: ok 101"
+    text = ct.example_text("slider-between-cranks-locked")
+    assert "\n[study]\n" in text
+    (folder / "m.toml").write_text(
+        text.replace("[study]\n", '[study]\nrange = "reachable"\n'), encoding="utf-8"
+    )
+    from_file = centrode("run", "m.toml", "--no-figures", "--out", "f")
+    assert from_file.code == 0, from_file.err
+    assert from_file.rows["range"] == done.rows["range"]
+
+
 def test_a_mechanism_that_locks_ends_with_3_and_everything_written(centrode: Centrode, folder: Path) -> None:
     done = centrode("run", "slider-between-cranks-locked", "--out", "result")
     assert done.code == 3
     assert done.err == (
         "Error: slider-between-cranks-locked: the mechanism locks: 72 of 101 samples are not reached"
         " (limit at 1.79991242 rad (103.127 deg), where group CB-BD (point B) is a dead point);"
-        " ask for a range between the limits, or change the dimensions\n"
+        ' ask for the range between the limits (range = "reachable" under [study], or --range reachable),'
+        " or change the dimensions\n"
     )
     assert names(folder / "result") == sorted([*TABLES, "instants.csv", *PICTURES])
     assert "ok 29, open 59, cut off 13" in done.rows["samples"]

@@ -163,9 +163,9 @@ def test_a_diagram_from_a_file(tmp_path: Path) -> None:
         "position [mm],there [kN],back [N]\n-500,0.01,0\n100,0.04,-5\n500,0.1,-20\n"
     )
     text = ct.mechanism_text(slider({"kind": "torque", "link": "OA", "value": 1}))
-    old = 'kind = "torque", link = "OA", value = 1.0'
+    old = 'kind = "torque"\nlink = "OA"\nvalue = 1.0\n'
     assert old in text
-    new = 'kind = "force", guide = "H", table = "indicator.csv"'
+    new = 'kind = "force"\nguide = "H"\ntable = "indicator.csv"\n'
     (tmp_path / "press.toml").write_text(text.replace(old, new))
     read = ct.read_mechanism(tmp_path / "press.toml")
     assert read.loads[0].table == ((-0.5, 10, 0), (0.1, 40, -5), (0.5, 100, -20))
@@ -180,9 +180,22 @@ def test_labels_tell_loads_apart() -> None:
     assert Reducer.of(several).loads == ("force A", "gust", "force A 2", "spring A-D")
 
 
+def test_the_centre_of_a_link_of_two_points_is_its_middle() -> None:
+    """J = I + m (l/2)^2, as with the centre written out."""
+    left_out = crank(link={"mass": 3, "inertia": 0.2})
+    length = math.dist(*left_out.links["OA"].coordinates.values())
+    found = ct.reduce(left_out, samples=3).reduced_inertia.values
+    assert found == pytest.approx(0.2 + 3 * (length / 2) ** 2, rel=8 * EPS)
+    written = crank(link={"mass": 3, "inertia": 0.2, "centre": [length / 2, 0]})
+    assert found == pytest.approx(ct.reduce(written, samples=3).reduced_inertia.values, rel=8 * EPS)
+
+
 REFUSED: list[tuple[ct.Mechanism, str]] = [
     (crank(), "neither masses nor loads"),
-    (crank(link={"mass": 1, "inertia": 1}), "nothing says where its centre of mass is"),
+    (
+        crank(link={"points": {"O": [0, 0], "A": [1, 0], "B": [0, 1]}, "mass": 1, "inertia": 1}),
+        "nothing says where its centre of mass is",
+    ),
     (crank(link={"mass": 1, "centre": "A"}), "no moment of inertia"),
     (crank(link={"mass": 1, "centre": "A", "shape": "disc"}), "a disc needs a radius"),
     (crank(link={"mass": 1, "centre": "A", "shape": "rod"}), "the centre of a rod is its middle"),

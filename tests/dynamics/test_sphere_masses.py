@@ -184,7 +184,10 @@ def test_wrong_masses_are_refused(case: str) -> None:
 
 
 LACKING: dict[str, tuple[dict[str, Any], str]] = {
-    "no centre": ({"mass": 1, "inertia": 1}, "nothing says where its centre of mass is"),
+    "no centre": (
+        {"mass": 1, "inertia": 1, "shape": "disc", "radius": 0.1},
+        "nothing says where its centre of mass is",
+    ),
     "no inertia": (HEAVY, "it has a mass and turns, but no inertia"),
     "no radius": (HEAVY | {"shape": "disc"}, "a disc needs a radius"),
     "no mass": ({"shape": "arc"}, "it has a shape, but no mass"),

@@ -62,6 +62,7 @@ def test_every_variable_of_a_motion_is_named() -> None:
         "curvature_centre",
     )
     transmission = ("transmission_angle", "pressure_angle")
+    transmission += ("least_transmission_angle", "greatest_transmission_angle")
     integrated = ("drift", "angle_difference", "position_difference")
     cams = {
         "carrier_angle",

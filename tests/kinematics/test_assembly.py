@@ -62,6 +62,27 @@ def test_initial_angles_hold_to_five_degrees(off: float, refused: bool) -> None:
         assert point(found, "B")[0] == pytest.approx(point(right, "B")[0], abs=8 * EPS)
 
 
+@pytest.mark.parametrize("off", [-44.0, 5.1, 20.0])
+def test_where_sides_decide_an_initial_angle_may_be_rough(off: float) -> None:
+    right = started(four_bar(1.0, 3.5, 3.0, 4.0))
+    parts = parts_of(four_bar(1.0, 3.5, 3.0, 4.0))
+    assert parts["assembly"]["sides"]
+    parts["links"]["DB"]["angle"] = float(right["angle"].sel(link="DB")[0]) + np.radians(off)
+    found = started(ct.Mechanism(**parts))
+    assert point(found, "B")[0] == point(right, "B")[0]
+    assert float(found["angle"].sel(link="DB")[0]) == pytest.approx(
+        float(right["angle"].sel(link="DB")[0]), abs=8 * EPS
+    )
+
+
+def test_an_initial_angle_that_contradicts_the_side_is_a_mistake() -> None:
+    parts = parts_of(four_bar(1.0, 3.5, 3.0, 4.0))
+    right = started(four_bar(1.0, 3.5, 3.0, 4.0))
+    parts["links"]["DB"]["angle"] = float(right["angle"].sel(link="DB")[0]) + np.radians(46.0)
+    with pytest.raises(ct.InputError, match="46 deg off"):
+        started(ct.Mechanism(**parts))
+
+
 def test_links_too_short_or_too_long_are_told_by_how_much() -> None:
     # A = (1, 0) at the start: AD = 3
     short = four_bar(1.0, 1.2, 1.5, 4.0, drives=[{"link": "OA", "start": 0.0, "speed": 1.0}])

@@ -158,3 +158,32 @@ def test_names_are_composed(complaint: Complaint) -> None:
 def test_mechanism_from_plain_data() -> None:
     with pytest.raises(InputError, match=r"^sent, \[links.OA\]: length must be positive, got -1$"):
         mechanism_from({"links": {"OA": {"length": -1}}}, "sent")
+
+
+@pytest.mark.parametrize(
+    "name", ["six-bar-press", "planetary-hypocycloid", "cam-driven-linkage", "scissor-lift-cylinder"]
+)
+def test_each_entry_of_a_list_of_tables_has_a_heading_of_its_own(name: str) -> None:
+    mechanism = example(name)
+    text = mechanism_text(mechanism)
+    for key in ("guides", "gears", "rolling", "drives", "loads"):
+        assert text.count(f"\n[[{key}]]\n") == len(getattr(mechanism, key))
+        assert f"{key} = [" not in text
+    assert parse_mechanism(text) == mechanism
+
+
+def test_segments_and_tables_inside_an_entry_read_back() -> None:
+    """Entries too long for one line, and tables inside them, belong to their own drive."""
+    rise = {"to": 0.123456789012345, "time": 1.23456789012345, "curve": "polynomial", "speed_at_start": 0.0}
+    mechanism = Mechanism(
+        title="[[drives]] in a title",
+        frame={"points": {"O": [0, 0], "E": [1, 0]}},
+        links={"OA": {"length": 0.5}, "EB": {"length": 0.5}},
+        drives=[
+            {"link": "OA", "segments": [rise, {"time": 1.0, "curve": "dwell"}, {**rise, "to": 0.0}]},
+            {"link": "EB", "table": [[0.0, 0.0], [1.0, 0.5], [2.0, 0.25]]},
+        ],
+    )
+    text = mechanism_text(mechanism)
+    assert parse_mechanism(text) == mechanism
+    assert mechanism_text(parse_mechanism(text)) == text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 
 import numpy as np
@@ -16,6 +17,7 @@ from centrode.report.making import report
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
 from report.made import undrawn
+from report.texts import texts_of
 
 SPHERE = ("data", "words", "structure", "equations", "tables", "plots", "rotatability", "axes")
 AB, BC = math.pi / 12, math.pi / 4
@@ -115,3 +117,30 @@ def test_axes_are_those_of_hinges() -> None:
     assert rows["AB"] == [1.0, 0.0, 0.0]
     assert [abs(x) for x in rows["DC"]] == [0.0, 1.0, 0.0]
     assert abs(np.linalg.norm(rows["BC"]) - 1.0) <= 3 * 0.5e-4
+
+
+def driven_by_an_arc() -> ct.Mechanism:
+    """The slider C is driven along a great circle about D; it begins an eighth of a turn from the north."""
+    return ct.Mechanism(
+        space="sphere",
+        frame={"points": {"A": [1, 0, 0], "D": [0, 1, 0]}},
+        links={"AB": {"length": AB}, "BC": {"length": BC}},
+        guides=[{"point": "C", "pole": "D", "radius": math.pi / 2}],
+        drives=[{"guide": "C", "start": math.pi / 4, "speed": 1.0}],
+        assembly={"sides": {"B": "left"}},
+        study={"samples": 5},
+    )
+
+
+def test_the_value_of_a_drive_along_an_arc_is_an_angle() -> None:
+    mechanism = driven_by_an_arc()
+    with undrawn():
+        made = report(mechanism, ReportOptions(chapters=("data", "tables")))
+    found = texts_of(tuple(made.chapters))
+    assert "0.7854\u202frad" in found
+    assert "constant 1\u202frad/s" in found
+    assert any(text.startswith("C = 0.7854\u202frad (45°)") for text in found)
+    metres = [text for text in found if re.search(r"\d\u202fm(/s)?\b|, m(/s)?$", text)]
+    assert metres == []
+    motion = ct.motion(mechanism, at=[math.pi / 4])
+    assert ct.place_words(mechanism, motion, 0) == "C 0.785398163 rad (45 deg)"

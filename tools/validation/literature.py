@@ -68,6 +68,6 @@ def drawing() -> Source:
     return Source(
         "Slider between two cranks, by drawing",
         "The assignment's graph-analytic check at t = pi/2, its angles read to whole degrees (`centrode diagrams "
-        "--angle-step 1`).",
+        'slider-between-cranks --at "pi/2 rad" --angle-step "1 deg"`).',
         rows=tuple(rows),
     )

@@ -84,6 +84,28 @@ class RoundedFunctions:
         """Sign of the value, a plain number."""
         return np.sign(Rounded.of(x).value)
 
+    def abs(self, x: Number) -> Rounded:
+        x = Rounded.of(x)
+        return Rounded(np.abs(x.value), x.bound)
+
+    def min(self, x: Number, y: Number) -> Rounded:
+        x, y = Rounded.of(x), Rounded.of(y)
+        return Rounded(np.minimum(x.value, y.value), np.maximum(x.bound, y.bound))
+
+    def max(self, x: Number, y: Number) -> Rounded:
+        x, y = Rounded.of(x), Rounded.of(y)
+        return Rounded(np.maximum(x.value, y.value), np.maximum(x.bound, y.bound))
+
+    def exp(self, x: Number) -> Rounded:
+        x = Rounded.of(x)
+        value = np.exp(x.value)
+        return Rounded(value, value * x.bound + UNIT_ROUNDOFF * value)
+
+    def log(self, x: Number) -> Rounded:
+        x = Rounded.of(x)
+        value = np.log(x.value)
+        return Rounded(value, x.bound / np.abs(x.value) + UNIT_ROUNDOFF * np.abs(value))
+
     def sqrt(self, x: Number) -> Rounded:
         x = Rounded.of(x)
         value = np.sqrt(x.value)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import unicodedata
 
 from centrode.errors import InputError
 from centrode.locale import _
@@ -52,11 +53,16 @@ class SourceText:
         return self.error(self.columns[len(before)], what, repair)
 
     def _characters(self) -> None:
-        """Refuse what Python would read otherwise than a formula: other signs, names pasted to numbers."""
+        """Refuse what Python would read otherwise than a formula: other signs, look-alikes, names pasted to numbers."""
         strange = _STRANGE.search(self.text)
         if strange:
             what = _("a formula has no such character")
             raise self.error(strange.start(), what, _("use + - * / ** and parentheses"))
+        for column, character in enumerate(self.text):
+            # Python reads full-width and other compatibility letters as the plain ones (NFKC)
+            if not character.isspace() and unicodedata.normalize("NFKC", character) != character:
+                what = _("a formula has no such character")
+                raise self.error(column, what, _("write plain letters and digits"))
         pasted = _PASTED.search(self.text)
         if pasted:
             repair = _('write "{number}*..."').format(number=pasted.group())

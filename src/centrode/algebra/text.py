@@ -175,7 +175,7 @@ class _Reader:
         def run(m: Any, values: Mapping[str, Number]) -> Number:
             total = first(m, values)
             for operation, right in steps:
-                total = _apply(operation, total, right(m, values))
+                total = _apply(operation, m, total, right(m, values))
             return total
 
         return run
@@ -188,8 +188,8 @@ class _Reader:
             what = _("an exponent is an integer or a half, at most {most}").format(most=GREATEST_POWER)
             raise self.at(node.right, what, _("write other powers as exp(y*log(x))"))
         if exponent == round(exponent):
-            return lambda m, v: _integer_power(base(m, v), round(exponent))
-        return lambda m, v: _integer_power(m.sqrt(base(m, v)), round(twice))
+            return lambda m, v: _power(m, base(m, v), round(exponent))
+        return lambda m, v: _power(m, m.sqrt(base(m, v)), round(twice))
 
     def exponent(self, node: ast.expr, depth: int) -> float:
         try:
@@ -242,18 +242,23 @@ def _constant(value: float) -> Node:
     return lambda m, v: value
 
 
-def _apply(operation: type[ast.operator], left: Number, right: Number) -> Number:
+def _apply(operation: type[ast.operator], m: Any, left: Number, right: Number) -> Number:
     if operation is ast.Add:
         return left + right
     if operation is ast.Sub:
         return left - right
-    return left * right if operation is ast.Mult else left / right
+    return left * right if operation is ast.Mult else left / _divisor(m, right)
 
 
-def _integer_power(base: Number, exponent: int) -> Number:
-    """Power by squaring: any algebra multiplies, few raise to powers."""
+def _divisor(m: Any, number: Number) -> Number:
+    """What is divided by, as it is; an algebra that has `divisor` gets to know of it."""
+    return m.divisor(number) if hasattr(m, "divisor") else number
+
+
+def _power(m: Any, base: Number, exponent: int) -> Number:
+    """Integer power by squaring: any algebra multiplies, few raise to powers."""
     if exponent < 0:
-        return 1.0 / _integer_power(base, -exponent)
+        return 1.0 / _divisor(m, _power(m, base, -exponent))
     result: Number = None
     while exponent:
         if exponent & 1:

@@ -16,15 +16,17 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.analysis.transmission_extremes import extreme_transmission_angles
 from centrode.analysis.transmission_on_sphere import ArcAngles
 from centrode.errors import InputError
-from centrode.kinematics.dataset import named
-from centrode.kinematics.motion import motion
+from centrode.kinematics.dataset import dataset_of, named
+from centrode.kinematics.ready import ready
+from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.spans import span_at
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet, Rail, Rod, Slot, Stop, Stroke, links_of, points_of
-from centrode.structure.plan import structure_of
 
 Lines: TypeAlias = npt.NDArray[np.complex128]
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -41,21 +43,29 @@ def transmission_angles(
 
     The arguments are those of `motion`. The result has the dimensions sample and group: `transmission_angle` and
     `pressure_angle` [rad] by the links of the groups, with time, status, events and values of the drives as in the
-    motion. Accurate as the positions
-    are; at a limit the transmission angle is 0 or 180 deg. Groups of higher class and gears have none.
+    motion. Accurate as the positions are; at a limit the transmission angle is 0 or 180 deg. Groups of higher class and
+    gears have none. `least_transmission_angle` and `greatest_transmission_angle` [rad] (group) are the exact extremes
+    of the acute angle over all that the mechanism reaches between the first and the last sample.
 
     On the sphere they are angles between arcs: of links, and from a point to the pole of its guide.
 
     Raises InputError where no group has such an angle; else as `motion` does.
     """
-    data = motion(mechanism, samples, start, stop, at)
-    structure = structure_of(mechanism)
-    found = {}
+    prepared = ready(mechanism)
+    span = (
+        asked_span(prepared, samples, start, stop)
+        if at is None
+        else span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+    )
+    data = dataset_of(solve(prepared, span))
+    structure = prepared.structure
+    found, numbered = {}, []
     arcs = ArcAngles(data) if mechanism.space == "sphere" else None
-    for group in structure.groups:
+    for number, group in enumerate(structure.groups):
         angle = _angle(data, structure.dimensions, group) if arcs is None else arcs.of(group)
         if angle is not None:
             found["-".join(links_of(group) or points_of(group))] = angle
+            numbered.append(number)
     if not found:
         raise InputError(
             "[links]",
@@ -63,9 +73,13 @@ def transmission_angles(
             _("ask for it where a dyad of two links, or of a link and a guide, is driven"),
         )
     angles = np.stack(list(found.values()), axis=1)
+    extremes = extreme_transmission_angles(prepared, span)
+    least, greatest = np.array([extremes[number] for number in numbered]).T
     variables = {
         "transmission_angle": named("transmission_angle", ("sample", "group"), angles),
         "pressure_angle": named("pressure_angle", ("sample", "group"), np.abs(np.pi / 2 - angles)),
+        "least_transmission_angle": named("least_transmission_angle", ("group",), least),
+        "greatest_transmission_angle": named("greatest_transmission_angle", ("group",), greatest),
         **{name: data[name] for name in ("status", "event_value", "event_kind")},
     }
     coords = {"group": list(found), **{name: data[name] for name in ("time", "drive_value")}}

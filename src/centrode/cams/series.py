@@ -20,6 +20,8 @@ from centrode.model.cams.parts import MOST_TERMS
 
 Array = NDArray[np.float64]
 
+ROUNDED = 64.0 * 2.0**-52
+"""A slope of the curvature below this share of what it is computed from is zero."""
 FOLLOWING = 4
 """Terms behind the last one that are kept, to tell by them what is left out."""
 
@@ -67,10 +69,11 @@ class SeriesPath:
         return np.asarray([found.derivative(k) for k in range(order + 1)])
 
     def radius_by_slope(self, phi: Array) -> Array:
-        """Rho (n) by formula (16), -(eta'' + eta) / K'; NaN where K' = 0."""
-        eta = self._about(phi, 2)
-        slope = derivatives(self.law, inside(self, phi), 1)[1]
-        return np.asarray(-(2.0 * eta[2] + eta[0]) / np.where(slope == 0, np.nan, slope))
+        """Rho (n) by formula (16), -(eta'' + eta) / K'; NaN where K' is zero but for its rounding and that of phi."""
+        eta, places = self._about(phi, 2), inside(self, phi)
+        bend, slope, second = derivatives(self.law, places, 2)
+        nothing = np.abs(slope) <= ROUNDED * (np.abs(bend) + np.abs(places * second))
+        return np.asarray(-(2.0 * eta[2] + eta[0]) / np.where(nothing, np.nan, slope))
 
     def pressure_angle(self, phi: Array) -> Array:
         """The pressure angle (n) [rad]."""

@@ -9,7 +9,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import dark_option, start_option, stop_option
+from centrode.cli.arguments import dark_option, range_option, start_option, stop_option
 from centrode.cli.centres import named_pairs
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
@@ -63,6 +63,7 @@ SIZE = "800x600"
 )
 @start_option
 @stop_option
+@range_option
 @dark_option
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
 def animate(
@@ -81,11 +82,12 @@ def animate(
     speed: float | None,
     start: str | None,
     stop: str | None,
+    ranged: str | None,
     dark: bool,
     force: bool,
 ) -> None:
     """Write the animation; exit code 3 if a range was asked for that is not all reached (the rest is written)."""
-    description = ct.load_either(described)
+    description = _ranged(ct.load_either(described), ranged)
     path = out if out is not None else Path(f"{Path(described).stem}.gif")
     if path.suffix.lower() not in ENDINGS:
         raise InputError("--out", _("an animation is a .gif or a .mp4"), _("name such a file"))
@@ -122,6 +124,17 @@ def animate(
             made.left_out,
         )
         raise MotionError(described, what.format(n=made.left_out), _("ask for a range between the limits"))
+
+
+def _ranged(
+    description: ct.Mechanism | ct.Cam | ct.PlateCam, ranged: str | None
+) -> ct.Mechanism | ct.Cam | ct.PlateCam:
+    """A linkage with the range asked for by a word."""
+    if isinstance(description, ct.Mechanism):
+        return ct.with_range(description, ranged)
+    if ranged is None:
+        return description
+    raise InputError("--range", _("it belongs to a linkage; a cam turns round"), _("take it out"))
 
 
 def _shown(

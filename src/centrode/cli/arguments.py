@@ -46,6 +46,14 @@ stop_option = click.option(
     "--to", "stop", metavar=mark("B"), help=mark("Last value of the drive, or last time.")
 )
 
+range_option = click.option(
+    "--range",
+    "ranged",
+    type=click.Choice(["reachable"]),
+    help=mark("The range between the limits about the initial position; without limits one turn."),
+)
+"""In place of what the description says of its range; `--from` and `--to` go before it."""
+
 no_figures_option = click.option("--no-figures", is_flag=True, help=mark("Write no pictures."))
 
 dark_option = click.option("--dark", is_flag=True, help=mark("Pictures with light lines on a dark ground."))

@@ -14,6 +14,7 @@ from centrode.cli.arguments import (
     dark_option,
     mechanism_argument,
     no_figures_option,
+    range_option,
     results_option,
     samples_option,
     start_option,
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 @samples_option
 @start_option
 @stop_option
+@range_option
 @click.option(
     "--at",
     "places",
@@ -64,6 +66,7 @@ def centrodes(
     samples: int | None,
     start: str | None,
     stop: str | None,
+    ranged: str | None,
     places: tuple[str, ...],
     out: Path | None,
     animate: bool,
@@ -73,6 +76,7 @@ def centrodes(
     """Compute and write both curves, and the curvature where asked."""
     description = ct.load(mechanism)
     announce_size(description, samples)
+    description = ct.with_range(description, ranged)
     folder = output.folder_of(out, mechanism, "centrodes")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))

@@ -10,7 +10,7 @@ import click
 import centrode as ct
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument, samples_option, start_option, stop_option
+from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
 from centrode.cli.expected import announce_size
 from centrode.cli.reached import is_placed, tell_no_centre
 from centrode.errors import InputError, MotionError
@@ -48,6 +48,7 @@ KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
 @samples_option
 @start_option
 @stop_option
+@range_option
 @click.option(
     "--out",
     required=True,
@@ -58,7 +59,7 @@ KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
 @click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
 def draw(
     mechanism: str, instant: str | None, paths: tuple[str, ...], links: tuple[str, ...], no_names: bool,
-    samples: int | None, start: str | None, stop: str | None, out: Path, force: bool,
+    samples: int | None, start: str | None, stop: str | None, ranged: str | None, out: Path, force: bool,
 ) -> None:  # fmt: skip
     """Write one drawing, whole or not at all."""
     kind = out.suffix.lower()
@@ -67,6 +68,7 @@ def draw(
         raise InputError("--out", what, _("use one of {known}").format(known=", ".join(KINDS)))
     description = ct.load(mechanism)
     announce_size(description, samples)
+    description = ct.with_range(description, ranged)
     place = ct.initial_place(description) if instant is None else ct.range_value(description, instant, "--at")
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")

@@ -13,6 +13,7 @@ from centrode.cli.about import about
 from centrode.cli.arguments import (
     mechanism_argument,
     no_figures_option,
+    range_option,
     samples_option,
     start_option,
     stop_option,
@@ -51,6 +52,7 @@ MOST_INSTANTS = 100
 @samples_option
 @start_option
 @stop_option
+@range_option
 @no_figures_option
 def reactions(
     mechanism: str,
@@ -61,11 +63,13 @@ def reactions(
     samples: int | None,
     start: str | None,
     stop: str | None,
+    ranged: str | None,
     no_figures: bool,
 ) -> None:
     """Print extremes or instants, write tables where asked; exit code 3 if samples are not reached."""
     description = ct.load(mechanism)
     announce_size(description, samples)
+    description = ct.with_range(description, ranged)
     _check(instants, samples, start, stop)
     places = [ct.range_value(description, text, "--at") for text in instants] or None
     first = None if start is None else ct.range_value(description, start, "--from")
@@ -89,7 +93,8 @@ def reactions(
     click.echo("\n" + report(description, found, instants))
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
-    _tell_failure(mechanism, found)
+    repair = _("ask for places between the limits") if instants else ct.repair_of_range(description)
+    _tell_failure(mechanism, description, found, repair)
 
 
 def _check(instants: tuple[str, ...], samples: int | None, start: str | None, stop: str | None) -> None:
@@ -159,8 +164,8 @@ def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, 
     return "\n\n".join(texts)
 
 
-def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
-    """Raise MotionError where samples are not reached."""
+def _tell_failure(name: str, description: ct.Mechanism, found: xarray.Dataset, repair: str) -> None:
+    """Raise MotionError where samples are not reached, with the limits that bound the motion."""
     status = found["status"].to_numpy().tolist()
     missing = sum(code in MISSING for code in status)
     if missing:
@@ -169,7 +174,8 @@ def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
             "the mechanism locks: {missing} of {all} samples are not reached",
             missing,
         ).format(missing=missing, all=len(status))
-        raise MotionError(mechanism, what, _("ask for a range between the limits, or change the dimensions"))
+        where = ct.limits_sentence(description)
+        raise MotionError(name, f"{what} ({where})" if where else what, repair)
     locked = int((found["reaction_status"] == Status.SELF_LOCKING).sum())
     if locked:
         what = ngettext(
@@ -177,4 +183,4 @@ def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
             "self-locking: at {n} samples no drive overcomes the friction",
             locked,
         ).format(n=locked)
-        raise MotionError(mechanism, what, _("make the coefficients or radii less, or the sliders longer"))
+        raise MotionError(name, what, _("make the coefficients or radii less, or the sliders longer"))

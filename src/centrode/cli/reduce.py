@@ -13,6 +13,7 @@ from centrode.cli.about import about
 from centrode.cli.arguments import (
     mechanism_argument,
     no_figures_option,
+    range_option,
     samples_option,
     start_option,
     stop_option,
@@ -37,6 +38,7 @@ MISSING = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 @samples_option
 @start_option
 @stop_option
+@range_option
 @no_figures_option
 def reduce(
     mechanism: str,
@@ -44,11 +46,13 @@ def reduce(
     samples: int | None,
     start: str | None,
     stop: str | None,
+    ranged: str | None,
     no_figures: bool,
 ) -> None:
     """Print the parts of the reduction and write them where asked; exit code 3 if the mechanism locks in the range."""
     description = ct.load(mechanism)
     announce_size(description, samples)
+    description = ct.with_range(description, ranged)
     first = None if start is None else ct.range_value(description, start, "--from")
     last = None if stop is None else ct.range_value(description, stop, "--to")
     names: list[str] = []
@@ -67,7 +71,7 @@ def reduce(
     click.echo("\n" + output.table(rows, header, right=(2, 3, 4)))
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
-    _tell_failure(mechanism, found)
+    _tell_failure(mechanism, description, found)
 
 
 def _reduced(
@@ -88,8 +92,8 @@ def _write(
         ct.save_figures(ct.reduction_figures(description, found), folder)
 
 
-def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
-    """Raise MotionError where samples are not reached."""
+def _tell_failure(name: str, description: ct.Mechanism, found: xarray.Dataset) -> None:
+    """Raise MotionError where samples are not reached, with the limits that bound the motion."""
     status = found["status"].to_numpy().tolist()
     missing = sum(code in MISSING for code in status)
     if missing:
@@ -98,4 +102,5 @@ def _tell_failure(mechanism: str, found: xarray.Dataset) -> None:
             "the mechanism locks: {missing} of {all} samples are not reached",
             missing,
         ).format(missing=missing, all=len(status))
-        raise MotionError(mechanism, what, _("ask for a range between the limits, or change the dimensions"))
+        where = ct.limits_sentence(description)
+        raise MotionError(name, f"{what} ({where})" if where else what, ct.repair_of_range(description))

@@ -14,6 +14,7 @@ from centrode.cli.about import about
 from centrode.cli.arguments import (
     mechanism_argument,
     no_figures_option,
+    range_option,
     results_option,
     samples_option,
     start_option,
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 @samples_option
 @start_option
 @stop_option
+@range_option
 @click.option("--animate", is_flag=True, help=mark("Also write an animation of the motion."))
 @no_figures_option
 def run(
@@ -46,12 +48,14 @@ def run(
     samples: int | None,
     start: str | None,
     stop: str | None,
+    ranged: str | None,
     animate: bool,
     no_figures: bool,
 ) -> None:
     """Compute and write; exit code 3 if the mechanism locks in the range asked for (the rest is written)."""
     description = ct.load(mechanism)
     announce_size(description, samples)
+    description = ct.with_range(description, ranged)
     folder = output.folder_of(out, mechanism, "result")
     with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
@@ -67,9 +71,7 @@ def run(
     click.echo(summary_text(study, mechanism))
     click.echo("\n" + output.files_in(folder, names))
     if study.failure is not None:
-        raise MotionError(
-            mechanism, study.failure, _("ask for a range between the limits, or change the dimensions")
-        )
+        raise MotionError(mechanism, study.failure, ct.repair_of_range(description))
 
 
 def write(study: StudyResults, folder: Path, progress: Progress, *, figures: bool) -> None:

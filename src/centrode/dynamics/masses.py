@@ -102,6 +102,8 @@ class _Reader(LinkNumbers):
             return Centre(self.name, base, at[0] - x, at[1] - y)
         if len(link.coordinates) == 1:
             return Centre(self.name, next(iter(link.coordinates)), 0.0, 0.0)
+        if len(link.coordinates) == 2 and link.shape is None:
+            return self._middle(None)
         raise InputError(
             self.where, _("nothing says where its centre of mass is"), _("give centre, or shape")
         )

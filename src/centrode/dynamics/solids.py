@@ -89,6 +89,8 @@ class Reader(LinkNumbers):
             return unit_vector(self.m, at)
         if len(link.coordinates) == 1:
             return unit_vector(self.m, next(iter(self.local.values())))
+        if len(link.coordinates) == 2 and link.shape is None and link.model is None:
+            return self._sector()[2]
         raise InputError(
             self.where, _("nothing says where its centre of mass is"), _("give centre, or shape")
         )

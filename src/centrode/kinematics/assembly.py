@@ -40,6 +40,8 @@ Number: TypeAlias = Any
 
 ANGLE_TOLERANCE = radians(5.0)
 """Initial angles name an assembly; further than this from the assembled position they are taken as a mistake."""
+ROUGH = radians(45.0)
+"""Where [assembly] sides decides, an initial angle is a sketch; what is further off is a mistake all the same."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,8 @@ def assemble(kinematics: Kinematics) -> Assembled:
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
                 raise undetermined(group) from None
             _check_finite(group, at)
-            _check_angles(kinematics, group, at)
+            decided = group.signed and stated_side(kinematics, group) is not None
+            _check_angles(kinematics, group, at, ROUGH if decided else ANGLE_TOLERANCE)
             kinematics.count(i, at, ARRAYS, starting)
             bounding = Bounding(kinematics, group, signs.get(i, 1.0))
             if not isinstance(group, Newton):  # its places have their bounds already
@@ -159,13 +162,13 @@ def _distance(space: Space, group: Group, one: Positions, other: Positions) -> f
     return float(max(apart, default=0.0))
 
 
-def _check_angles(kinematics: Kinematics, group: Group, at: Positions) -> None:
+def _check_angles(kinematics: Kinematics, group: Group, at: Positions, tolerance: float) -> None:
     for link in links_of(group):
         angle = kinematics.structure.mechanism.links[link].angle
         if angle is None or link not in at.poses or not is_measured(kinematics.numbers, at, link):
             continue
         difference = angle_off(kinematics.numbers, angle, at, link)
-        if abs(difference) > ANGLE_TOLERANCE:
+        if abs(difference) > tolerance:
             raise InputError(
                 f"[links.{link}] angle",
                 _(

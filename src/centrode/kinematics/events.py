@@ -49,6 +49,9 @@ Mask: TypeAlias = npt.NDArray[np.bool_]
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
 
+BESIDE_POLE = 1e-6
+"""Share of a cell beside a place at infinity where a radicand has its sign again, and not that of rounding."""
+
 
 @dataclass(frozen=True)
 class Scan:
@@ -142,15 +145,20 @@ class Scan:
         if len(lanes):
             at = self.guards.minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
             least, bound = self.guards.rounded(group, lanes, at)
-            touches = np.abs(least) <= SAFETY * bound
+            # where a group before this one goes to infinity, the radicand's error exceeds the radicand itself
+            told = SAFETY * bound <= self.branches.largest[group][lanes]
+            touches = told & (np.abs(least) <= SAFETY * bound)
             found += [
                 Event("change point", group, int(lane), float(x))
                 for lane, x in zip(lanes[touches], at[touches], strict=True)
             ]
             self._settle(settled, value, lanes[touches], cells[touches], SAFETY * bound[touches])
-            dips = ~touches & (least < 0.0)
-            for first, last in ((self.mesh[cells], at), (at, self.mesh[cells + 1])):
-                edge = value[lanes, cells] if last is at else value[lanes, cells + 1]
+            dips = ~touches & (~told | (least < 0.0))
+            aside = np.where(told, 0.0, BESIDE_POLE * (self.mesh[cells + 1] - self.mesh[cells]))
+            for first, last, edge in (
+                (self.mesh[cells], at - aside, value[lanes, cells]),
+                (at + aside, self.mesh[cells + 1], value[lanes, cells + 1]),
+            ):
                 chosen = dips & (edge > 0.0)
                 roots = self.guards.roots(group, lanes[chosen], first[chosen], last[chosen])
                 found += self._limits(group, lanes[chosen], roots)

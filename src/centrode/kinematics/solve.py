@@ -24,6 +24,7 @@ from centrode.kinematics.rooms import Room
 from centrode.kinematics.sampling import Samples
 from centrode.kinematics.spans import Span, span_of
 from centrode.locale import _
+from centrode.model.asked import REACHABLE
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -38,6 +39,8 @@ BYTES = 100
 """Memory of a coordinate at a sample, with its derivatives, its labels and what is needed on the way."""
 DEFAULT_SAMPLES = 361
 """One a degree over a turn, both ends included."""
+TURNS = 2.0
+"""How far the limits of an angle are looked for on both sides: a motion through change points may need two turns."""
 SEARCH = 4.0
 """How far the limits of a displacement drive are looked for, in units of the mechanism's greatest length."""
 
@@ -84,7 +87,9 @@ def asked_span(ready: Ready, samples: int | None, start: float | None, stop: flo
     start = study.start if start is None else start
     stop = study.stop if stop is None else stop
     count = samples if samples is not None else study.samples or DEFAULT_SAMPLES
-    return span_of(ready.kinematics.path, count, start, stop, _reach_if_needed(ready, start, stop))
+    reachable = study.range == REACHABLE
+    reach = _reach_if_needed(ready, start, stop, reachable)
+    return span_of(ready.kinematics.path, count, start, stop, reach, reachable)
 
 
 def solve(
@@ -160,11 +165,14 @@ def fit_for(ready: Ready, span: Span) -> Ready:
     return replace(ready, kinematics=replace(kinematics, path=path))
 
 
-def _reach_if_needed(ready: Ready, start: float | None, stop: float | None) -> tuple[float, float]:
+def _reach_if_needed(
+    ready: Ready, start: float | None, stop: float | None, reachable: bool
+) -> tuple[float, float]:
     path = ready.kinematics.path
-    if path.by_time or path.driven[0].drive.kind == "angle" or (start is not None and stop is not None):
+    if path.by_time or (path.turns and not reachable) or (start is not None and stop is not None):
         return -np.inf, np.inf
-    ends = np.array([path.initial - SEARCH * path.unit, path.initial + SEARCH * path.unit])
+    extent = 2.0 * np.pi * TURNS if path.turns else SEARCH * path.unit
+    ends = np.array([path.initial - extent, path.initial + extent])
     continuation = start_of(ready, ready.kinematics)
     Scan(continuation, mesh_of(path, ends)).run()
     low, high = continuation.branches.reach(0)

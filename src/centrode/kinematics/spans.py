@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
-from centrode.kinematics.paths import JETS, DrivenBy, Path
+from centrode.kinematics.law_jumps import Jump, first_jump
+from centrode.kinematics.paths import JETS, DrivenBy, Path, unit_of
 from centrode.laws import ShaftLaw
 from centrode.locale import _
 from centrode.model import limits
@@ -20,6 +21,9 @@ Array: TypeAlias = npt.NDArray[np.float64]
 MAX_TURNS = 500.0
 INSIDE = 0.005
 """Share of the reachable range left out at both ends if none is asked for: there speeds are infinite."""
+
+LEAST_JUMP = 1e-9
+"""Jumps of a law are told down to this share of 1 rad, or of the greatest length."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +47,17 @@ def is_uniform(path: Path) -> bool:
 
 
 def span_of(
-    path: Path, samples: int, start: float | None, stop: float | None, reach: tuple[float, float]
+    path: Path,
+    samples: int,
+    start: float | None,
+    stop: float | None,
+    reach: tuple[float, float],
+    reachable: bool = False,
 ) -> Span:
     """Evenly spaced samples from start to stop: values of the drive [rad or m], or times [s] where the drive is a law.
 
-    `reach` are the nearest limits, the range of a displacement drive where none is asked for.
+    `reach` are the nearest limits: the range of a displacement drive where none is asked for, and that of any drive
+    where the `reachable` range is.
     """
     if isinstance(samples, bool) or not 1 <= samples <= limits.SAMPLES:
         raise InputError(
@@ -59,7 +69,13 @@ def span_of(
         if value is not None and not np.isfinite(value):
             raise InputError(name, _("the range must be finite"))
     if is_uniform(path):
-        span = _even_values(path, samples, start, stop, reach)
+        span = _at_values(path, np.linspace(*_range(path, start, stop, reach, reachable), samples))
+    elif reachable and None in (start, stop):
+        raise InputError(
+            "[study] range",
+            _("the reachable range is that of one drive at constant speed; here the range is one of time"),
+            _("give from and to, or --from and --to"),
+        )
     else:
         span = _even_times(path, samples, start, stop)
     _check_extent(path, span)
@@ -76,12 +92,26 @@ def span_at(path: Path, places: Array) -> Span:
 
 
 def _check_extent(path: Path, span: Span) -> None:
-    """Refuse what a mesh of nodes cannot cover: a law without a value, and ends too far from the initial position."""
+    """Refuse a law that jumps or has no value, and what a mesh of nodes cannot cover: ends too far from the start."""
     for one in path.driven:
+        jump = _jump(path, one, span.time)
+        if jump is not None and np.isfinite(jump.after):
+            what = _("its law jumps at t = {time:.9g} s, from {before:.9g} to {after:.9g}")
+            raise InputError(
+                f"[[drives]] {one.drive.id}",
+                what.format(time=jump.time, before=jump.before, after=jump.after),
+                _("no drive can jump: join the parts by a ramp or by segments, or ask for another range"),
+            )
         if not all(np.isfinite(part).all() for part in _derivatives(one, span.time)):
             raise InputError(
                 f"[[drives]] {one.drive.id}",
                 _("its law has no finite value with two derivatives everywhere in the range"),
+                _("correct the law, or ask for another range"),
+            )
+        if jump is not None:
+            raise InputError(
+                f"[[drives]] {one.drive.id}",
+                _("its law has no finite value at t = {time:.9g} s").format(time=jump.time),
                 _("correct the law, or ask for another range"),
             )
     if path.pace is not None:
@@ -97,6 +127,12 @@ def _check_extent(path: Path, span: Span) -> None:
         )
 
 
+def _jump(path: Path, one: DrivenBy, time: Array) -> Jump | None:
+    """Where a law first jumps, or has no value, between t = 0, the initial position, and any of the times."""
+    least = LEAST_JUMP * unit_of(one.drive, path.scale)
+    return first_jump(one.law, min(0.0, float(np.min(time))), max(0.0, float(np.max(time))), least)
+
+
 def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
     """A drive's value and its first two derivatives by time."""
     with np.errstate(all="ignore"):
@@ -104,13 +140,6 @@ def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
     if not isinstance(value, Jet):
         value = Jet((value, 0.0, 0.0))
     return [np.broadcast_to(np.asarray(value.derivative(k), dtype=np.float64), time.shape) for k in range(3)]
-
-
-def _even_values(
-    path: Path, samples: int, start: float | None, stop: float | None, reach: tuple[float, float]
-) -> Span:
-    first, last = _range(path, start, stop, reach)
-    return _at_values(path, np.linspace(first, last, samples))
 
 
 def _at_values(path: Path, values: Array) -> Span:
@@ -123,10 +152,10 @@ def _at_values(path: Path, values: Array) -> Span:
 
 
 def _range(
-    path: Path, start: float | None, stop: float | None, reach: tuple[float, float]
+    path: Path, start: float | None, stop: float | None, reach: tuple[float, float], reachable: bool
 ) -> tuple[float, float]:
     """First and last value of the drive; what is not asked for is one turn, or the reachable range."""
-    if path.driven[0].drive.kind == "angle":
+    if path.turns and not reachable:
         first = path.initial if start is None else start
         return first, first + path.forward * 2.0 * np.pi if stop is None else stop
     if start is not None and stop is not None:
@@ -137,6 +166,10 @@ def _range(
 
 def _reachable(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
     low, high = reach
+    if path.turns and np.isinf([low, high]).all():
+        return path.initial, path.initial + path.forward * 2.0 * np.pi
+    if path.turns:  # a limit on one side only bounds a turn
+        low, high = max(low, high - 2.0 * np.pi), min(high, low + 2.0 * np.pi)
     if not np.isfinite(low) or not np.isfinite(high):
         raise InputError(
             f"[[drives]] {path.driven[0].drive.id}",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, PlainValidator
 
@@ -16,6 +16,9 @@ from centrode.model.part import Part
 from centrode.model.problems import KEY, Problem, shown
 from centrode.model.values import EndOfMotion, PlaceOfMotion
 from centrode.quantities import ANGLES, LENGTHS
+
+REACHABLE = "reachable"
+"""The range that a drive reaches from its initial position."""
 
 Side = Literal["left", "right", "ahead", "behind"]
 
@@ -69,9 +72,22 @@ class Study(Part):
         Values of the drive at which positions are shown.
     start, stop : float [rad or m; s if the drive is a law of time or there are several]
         Range of the drive's value; "from" and "to" in a file.
+    range : "reachable"
+        In place of these: between the limits about the initial position, without limits one turn.
     """
 
     samples: Annotated[int, PlainValidator(read_samples)] | None = None
     instants: Annotated[tuple[PlaceOfMotion, ...], listed(limits.INSTANTS)] = ()
     start: Annotated[EndOfMotion | None, Field(alias="from")] = None
     stop: Annotated[EndOfMotion | None, Field(alias="to")] = None
+    range: Annotated[Literal["reachable"], choice(REACHABLE)] | None = None
+
+    @classmethod
+    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
+        """What is wrong with the keys that are given, by the rules of this part."""
+        ends = [key for key in ("from", "start", "to", "stop") if given.get(key) is not None]
+        wrong = super().key_problems(given)
+        if given.get("range") is not None and ends:
+            names = ", ".join(("range", *ends))
+            wrong.append(Problem(_("{names} are given together").format(names=names), _("keep one of them")))
+        return wrong

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from centrode.model.mechanism import Mechanism
 from centrode.model.reading import read_file
 from centrode.model.toml_text import described, is_cam, toml_tables
 
+_HEADING = re.compile(r"^(\[\[?)", re.MULTILINE)
 _SHORT_LIST = re.compile(r"\[\n((?: +[^\[\]\n]*,\n)+) *\]")
 
 
@@ -53,7 +54,26 @@ def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | N
 
 def mechanism_text(mechanism: Mechanism) -> str:
     """The mechanism as TOML in SI, without defaults; `parse_mechanism` gives exactly it back."""
-    return in_short_lines(tomli_w.dumps(document(mechanism)))
+    return in_short_lines("\n".join(_sections(document(mechanism))))
+
+
+def _sections(tables: Mapping[str, Any]) -> Iterator[str]:
+    """Top keys, then each table in its order; each entry of a list of tables below a heading of its own."""
+    plain = {
+        key: value for key, value in tables.items() if not isinstance(value, dict) and not _is_tables(value)
+    }
+    if plain:
+        yield tomli_w.dumps(plain)
+    for key, value in tables.items():
+        if isinstance(value, dict):
+            yield tomli_w.dumps({key: value})
+        elif _is_tables(value):
+            # headings inside an entry belong to the entry
+            yield from (f"[[{key}]]\n" + _HEADING.sub(rf"\1{key}.", tomli_w.dumps(entry)) for entry in value)
+
+
+def _is_tables(value: object) -> bool:
+    return isinstance(value, list | tuple) and bool(value) and all(isinstance(entry, dict) for entry in value)
 
 
 def in_short_lines(text: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from centrode.laws import MOST_DEGREE, SEGMENT_CURVES
 from centrode.model import limits, segments
-from centrode.model.asked import Assembly, Display, Study
+from centrode.model.asked import REACHABLE, Assembly, Display, Study
 from centrode.model.bodies import RING_AND_POINT, SHAPES, Frame, Link
 from centrode.model.description import Description
 from centrode.model.driving import Drive
@@ -187,6 +187,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "instants": list_of(AMOUNT, 0, limits.INSTANTS),
         "from": AMOUNT,
         "to": AMOUNT,
+        "range": {"enum": [REACHABLE]},
     },
     ReportWishes: {
         "chapters": CHAPTERS,

@@ -78,7 +78,7 @@ COMMON: dict[str, dict[str, float]] = {
 }
 """SI unit -> unit -> factor, of the units nearly every file uses; a test compares them with pint's."""
 
-_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.DOTALL)
+_NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)\s*(.*)", re.DOTALL)
 _FACTOR = r"[^\W\d]+(?:(?:\^|\*\*)-?\d)?"
 _UNIT = re.compile(rf"°|%|(?:1\s*/\s*)?{_FACTOR}(?:\s*[*/·]\s*{_FACTOR}|\s+{_FACTOR})*")
 
@@ -117,8 +117,10 @@ def unit_factor(unit: str, kind: str) -> float:
 
 def _text_to_si(text: str, kind: str) -> float:
     if len(text) > limits.QUANTITY_LENGTH:
-        what = _("expected {kind}, got a text of {count} characters")
-        raise InputError("", what.format(kind=_(KINDS[kind].name), count=len(text)), _example(kind))
+        what = _(
+            "a text of {count} characters is too long for a number with its unit, at most {most} are allowed"
+        )
+        raise InputError("", what.format(count=len(text), most=limits.QUANTITY_LENGTH), _("shorten it"))
     number, unit = _split(text, kind)
     if not unit:
         return _finite(number, text)

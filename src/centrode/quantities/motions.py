@@ -71,6 +71,8 @@ MOTIONS = (
     ),
     Quantity("drive_rate", "q̇", "rad/s", mark("speed of the drive that loads are taken at"), by_drive=-1),
     Quantity("transmission_angle", "μ", "rad", mark("transmission angle")),
+    Quantity("least_transmission_angle", "μ_min", "rad", mark("least transmission angle")),
+    Quantity("greatest_transmission_angle", "μ_max", "rad", mark("greatest transmission angle")),
     Quantity("pressure_angle", "α", "rad", mark("pressure angle")),
     Quantity("status", "", "1", mark("status of the sample")),
     Quantity("residual", "", "1", mark("closure residual over the greatest length")),

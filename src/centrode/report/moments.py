@@ -9,8 +9,8 @@ import xarray as xr
 
 from centrode.errors import Status
 from centrode.kinematics.motion import motion
+from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
-from centrode.model.mechanism import Drive
 from centrode.quantities import status_word
 from centrode.report.numbers import Numbers
 from centrode.report.study import ReportStudy
@@ -82,7 +82,7 @@ def _title(study: ReportStudy, data: xr.Dataset, sample: int) -> str:
     numbers = study.numbers
     values = data["drive_value"].to_numpy()[sample]
     told = [
-        f"{drive.id} = {drive_value_text(drive, float(value), numbers)}"
+        f"{drive.id} = {drive_value_text(float(value), unit_of_value(study.mechanism, drive), numbers)}"
         for drive, value in zip(study.mechanism.drives, values, strict=True)
     ]
     one = study.mechanism.drives[0]
@@ -91,9 +91,8 @@ def _title(study: ReportStudy, data: xr.Dataset, sample: int) -> str:
     return ", ".join(told)
 
 
-def drive_value_text(drive: Drive, value: float, numbers: Numbers) -> str:
+def drive_value_text(value: float, unit: str, numbers: Numbers) -> str:
     """A value of a drive with its unit; radians also in degrees, as a person thinks of them."""
-    unit = "rad" if drive.kind == "angle" else "m"
     text = numbers.measured(value, unit)
     if unit == "rad" and str(numbers.display.angle) == "rad" and value:
         return f"{text} ({numbers.plain(float(np.degrees(value)))}°)"

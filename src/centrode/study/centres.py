@@ -15,8 +15,9 @@ from centrode.analysis.instant_centres.centres import bearing
 from centrode.analysis.instant_centres.construction import Construction, Step
 from centrode.errors import Status
 from centrode.kinematics.ready import ready
+from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
-from centrode.model.mechanism import FRAME, Display, Drive, Mechanism
+from centrode.model.mechanism import FRAME, Display, Mechanism
 from centrode.model.spoken import body_name
 from centrode.quantities import display_unit, status_word
 from centrode.study.wording import value_text
@@ -47,13 +48,11 @@ def place_words(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> str:
     values = motion["drive_value"].to_numpy()[sample]
     texts = []
     for drive, value in zip(mechanism.drives, values, strict=True):
-        texts.append(f"{drive.id} {value_text(float(value), _unit(drive), mechanism.display)}")
+        texts.append(
+            f"{drive.id} {value_text(float(value), unit_of_value(mechanism, drive), mechanism.display)}"
+        )
     status = int(motion["status"][sample])
     return ", ".join(texts) + ("" if status == Status.OK else f" ({status_word(status)})")
-
-
-def _unit(drive: Drive) -> str:
-    return "rad" if drive.kind == "angle" else "m"
 
 
 def centres_header(centres: xr.Dataset | None = None) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from centrode.errors import InputError
 from centrode.kinematics.several_drives.holding import named_drive, unit_of_value
-from centrode.kinematics.several_drives.reach import End, Limits
+from centrode.kinematics.several_drives.reach import End, Limits, limits
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.study.wording import value_text
@@ -46,6 +46,19 @@ def limits_rows(mechanism: Mechanism, found: Limits) -> Rows:
         (_("to"), text(found.high)),
         (_("change points"), "; ".join(changes) or _("none")),
     ]
+
+
+def limits_sentence(mechanism: Mechanism) -> str:
+    """Where the limits of the only drive lie, and which groups lock there; empty where there are none to tell."""
+    if len(mechanism.drives) != 1:
+        return ""
+    found = limits(mechanism)
+    told = _("limit at {value}, where {group} is a dead point")
+    ends = [end for end in (found.low, found.high) if end is not None]
+    return "; ".join(
+        told.format(value=value_text(end.value, found.unit, mechanism.display), group=end.group)
+        for end in ends
+    )
 
 
 def _unit(mechanism: Mechanism, name: str) -> str:

@@ -18,7 +18,7 @@ from centrode.kinematics.several_drives.coefficients import coefficients_of, mos
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.kinematics.spans import is_uniform, span_at
 from centrode.locale import _, ngettext
-from centrode.model.mechanism import Mechanism
+from centrode.model.mechanism import Mechanism, Study
 from centrode.model.units import to_si
 from centrode.structure.dimensions import SPACES
 from centrode.study.checking import Check, check_of
@@ -148,6 +148,29 @@ def _at_instants(prepared: Ready) -> xr.Dataset | None:
     except InputError as error:
         raise InputError("[study] instants", error.what, error.repair) from None
     return dataset_of(solve(prepared, span))
+
+
+def with_range(mechanism: Mechanism, asked: str | None) -> Mechanism:
+    """The mechanism whose study has a range by a word ("reachable") in place of its own; itself without a word.
+
+    Raises InputError for another word.
+    """
+    if asked is None:
+        return mechanism
+    own = mechanism.study
+    study = Study(samples=own.samples, instants=own.instants, range=asked)
+    return mechanism.model_copy(update={"study": study})
+
+
+def repair_of_range(mechanism: Mechanism) -> str:
+    """What to ask for where samples are not reached: between the limits, by a word where one drive has them."""
+    drive = mechanism.drives[0]
+    if len(mechanism.drives) > 1 or drive.speed is None:
+        return _("ask for a range between the limits, or change the dimensions")
+    return _(
+        'ask for the range between the limits (range = "reachable" under [study], or --range reachable), or '
+        "change the dimensions"
+    )
 
 
 def range_value(mechanism: Mechanism, text: float | str, where: str) -> float:

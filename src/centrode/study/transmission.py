@@ -13,20 +13,21 @@ from centrode.locale import _
 
 
 def transmission_rows(angles: xr.Dataset) -> list[tuple[str, ...]]:
-    """Each group with the extremes of its angles over the samples that are reached, heads first."""
+    """Each group with the exact extremes of its acute angles over what is reached, heads first."""
     heads = (
         _("group"),
         _("least transmission angle, deg"),
         _("greatest, deg"),
         _("greatest pressure angle, deg"),
     )
-    reached = angles["status"].to_numpy() == Status.OK
     rows: list[tuple[str, ...]] = [heads]
     for name in angles["group"].to_numpy().tolist():
-        own = np.degrees(angles["transmission_angle"].sel(group=name).to_numpy()[reached])
-        pressure = np.degrees(angles["pressure_angle"].sel(group=name).to_numpy()[reached])
-        numbers = (own.min(), own.max(), pressure.max()) if reached.any() else (np.nan,) * 3
-        rows.append((name, *(f"{x:.4f}" for x in numbers)))
+        least, greatest = (
+            float(np.degrees(angles[variable].sel(group=name)))
+            for variable in ("least_transmission_angle", "greatest_transmission_angle")
+        )
+        # what is zero but for rounding is said without a sign
+        rows.append((name, *(f"{x + 0.0:.4f}" for x in (least, greatest, 90.0 - least))))
     return rows
 
 

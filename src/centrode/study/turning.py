@@ -86,6 +86,8 @@ class _Words:
         turning = self.turning
         if turning.turns_fully is None:
             return _("a displacement does not turn")
+        if not turning.turns_fully and not turning.limits:
+            return _("no; it does not close all over the turn, though no limit was found")
         if not turning.turns_fully:
             return _("no")
         if turning.period is None:

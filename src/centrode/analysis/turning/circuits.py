@@ -15,7 +15,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.analysis.turning.combinations import NODES, Combinations
+from centrode.analysis.turning.combinations import Combinations
 from centrode.analysis.turning.tours import Tour
 from centrode.kinematics.branches import Event
 from centrode.kinematics.sides import side_names, side_words
@@ -75,7 +75,8 @@ def circuits_of(tour: Tour) -> tuple[Circuits | None, str]:
         return None, _("not counted: wheels may mesh in any position")
     if len(signed) > MOST_DYADS:
         return None, _("not counted: more than {most} groups with two sides").format(most=MOST_DYADS)
-    return _Search(tour, signed).run(), ""
+    found = _Search(tour, signed).run()
+    return found, "" if found else _("not counted: the mechanism moves too little to be followed")
 
 
 class _Search:
@@ -86,8 +87,13 @@ class _Search:
         self.combinations = Combinations(tour, signed)
         self.parent: dict[tuple[int, int], tuple[int, int]] = {}
 
-    def run(self) -> Circuits:
-        """Join what hangs together."""
+    def run(self) -> Circuits | None:
+        """Join what hangs together; None where no node lies in the mechanism's own branch."""
+        own_signs = [self.tour.prepared.assembled.signs[group] for group in self.signed]
+        lane = next(k for k, row in enumerate(self.combinations.signs) if list(row) == own_signs)
+        own = self._run(lane, self._start(lane))
+        if own is None:
+            return None
         joined = False
         for event in self._nearest():
             if event.group not in self.signed:
@@ -100,7 +106,7 @@ class _Search:
                 if one is not None and other is not None:
                     joined |= event.kind == "change point" and self._root(one) != self._root(other)
                     self._join(one, other)
-        return self._circuits(joined)
+        return self._circuits(own, joined)
 
     def _hidden(self, event: Event, node: int) -> bool:
         """Whether another limit lies between a node and an event in its cell."""
@@ -132,16 +138,13 @@ class _Search:
         if one != other:
             self.parent[max(one, other)] = min(one, other)
 
-    def _circuits(self, joined: bool) -> Circuits:
+    def _circuits(self, own: tuple[int, int], joined: bool) -> Circuits:
         found: dict[tuple[int, int], list[Branch]] = {}
-        own_signs = [self.tour.prepared.assembled.signs[group] for group in self.signed]
-        lane = next(k for k, row in enumerate(self.combinations.signs) if list(row) == own_signs)
-        own = self._root((lane, int(self.combinations.runs[lane][self._start(lane)])))
         for k, runs in enumerate(self.combinations.runs):
             for run in range(int(runs.max(initial=-1)) + 1):
                 found.setdefault(self._root((k, run)), []).append(self._branch(k, run))
         order = list(found)
-        return Circuits(tuple(tuple(found[root]) for root in order), order.index(own), joined)
+        return Circuits(tuple(tuple(found[root]) for root in order), order.index(self._root(own)), joined)
 
     def _start(self, lane: int) -> int:
         """The node of the mechanism's own branch that is nearest to the initial position."""
@@ -174,7 +177,7 @@ class _Search:
         }
         inside = np.nonzero(self.combinations.runs[lane] == run)[0]
         limits = [e for e in self.combinations.events if e.lane == lane and e.kind == "limit"]
-        if not limits and len(inside) == NODES:
+        if not limits and len(inside) == len(self.combinations.nodes):
             return Branch(sides, None, None)
         first, last = self._edges(inside)
         low, high = self._edge(limits, first, -1), self._edge(limits, last, 0)
@@ -187,14 +190,14 @@ class _Search:
     def _edges(self, inside: npt.NDArray[np.intp]) -> tuple[int, int]:
         """First and last node of a run that may go on over the end of the nodes."""
         gaps = np.nonzero(np.diff(inside) > 1)[0]
-        if len(gaps) and inside[0] == 0 and inside[-1] == NODES - 1:
+        if len(gaps) and inside[0] == 0 and inside[-1] == len(self.combinations.nodes) - 1:
             return int(inside[gaps[-1] + 1]), int(inside[gaps[0]])
         return int(inside[0]), int(inside[-1])
 
     def _edge(self, limits: list[Event], node: int, which: int) -> float | None:
         """The limit in the cell before a node (which = -1) or behind it (0), the nearest to the node."""
         before = node - 1 if which == -1 else node
-        cell = before % NODES if self.tour.angular else before
+        cell = before % len(self.combinations.nodes) if self.tour.angular else before
         first, last = float(self.combinations.nodes[0]), float(self.combinations.nodes[-1])
         ends = [e for e in limits if self.combinations.cells(e)[0] == cell]
         if self.tour.angular:

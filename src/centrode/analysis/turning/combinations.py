@@ -29,7 +29,8 @@ class Combinations:
     ----------
     signed : numbers of the groups with two sides
     signs : (lane, signed), of +1 and -1
-    nodes, length : values of the drive [rad or m], and how far they reach
+    nodes, length : values of the drive [rad or m], evenly spaced and one in the mechanism's own branch, and how far
+        they reach
     closed : (lane, node), where a combination closes
     events : limits and change points of all of them
     runs : for each lane (node) the number of the stretch between limits, -1 where it does not close
@@ -43,7 +44,7 @@ class Combinations:
         )
         first = tour.initial if tour.angular else tour.initial - tour.extent
         length = tau if tour.angular else 2.0 * tour.extent
-        self.nodes = first + (np.arange(NODES) + OFF_GRID) * (length / NODES)
+        self.nodes = _with_own(np.asarray(first + (np.arange(NODES) + OFF_GRID) * (length / NODES)), tour)
         self.length = length
         self.closed, self.events = self._followed()
         self.limits: dict[tuple[int, int], list[float]] = {}
@@ -64,11 +65,12 @@ class Combinations:
         continuation = Continuation(
             tour.continuation.kinematics, branches, tour.continuation.start, tour.continuation.nominal
         )
-        ends = [self.nodes[-1] + self.length / NODES] if tour.angular else []
+        count = len(self.nodes)
+        ends = [self.nodes[0] + self.length] if tour.angular else []
         at = Scan(continuation, np.concatenate([self.nodes, ends])).run()
-        closed = np.ones((lanes, NODES), dtype=bool)
+        closed = np.ones((lanes, count), dtype=bool)
         for x in _numbers(at):
-            closed &= np.isfinite(np.broadcast_to(x, (lanes, NODES + len(ends)))[:, :NODES])
+            closed &= np.isfinite(np.broadcast_to(x, (lanes, count + len(ends)))[:, :count])
         return closed, branches.events
 
     def cells(self, event: Event) -> tuple[int, int]:
@@ -76,16 +78,30 @@ class Combinations:
         before = int(np.searchsorted(self.nodes, event.at, side="right")) - 1
         behind = before + 1
         if self.tour.angular:
-            return before % NODES, behind % NODES
-        return max(before, 0), min(behind, NODES - 1)
+            return before % len(self.nodes), behind % len(self.nodes)
+        return max(before, 0), min(behind, len(self.nodes) - 1)
 
     def _cut(self) -> Mask:
         """Cells, by the node before them, that hold a limit."""
-        cut = np.zeros((len(self.signs), NODES), dtype=bool)
+        cut = np.zeros((len(self.signs), len(self.nodes)), dtype=bool)
         for event in self.events:
             if event.kind == "limit":
                 cut[event.lane, self.cells(event)[0]] = True
         return cut
+
+
+def _with_own(nodes: Array, tour: Tour) -> Array:
+    """The nodes, and the middle of the stretch between the limits where no node lies in it."""
+    low, high = tour.low, tour.high
+    turns = (0.0, tau) if tour.angular else (0.0,)
+    if not np.isfinite(high - low) or any(
+        ((low + turn < nodes) & (nodes < high + turn)).any() for turn in turns
+    ):
+        return nodes
+    middle = 0.5 * (low + high)
+    if tour.angular:
+        middle = nodes[0] + (middle - nodes[0]) % tau
+    return np.sort(np.append(nodes, middle))
 
 
 def _numbers(at: Positions) -> list[Array]:

@@ -21,8 +21,7 @@ from centrode.kinematics.paths import JETS
 from centrode.kinematics.places import start_of
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.several_drives.holding import check_closed, held_path, starting_at, unit_of_value
-from centrode.kinematics.several_drives.reach import TURNS
-from centrode.kinematics.solve import SEARCH
+from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive
 from centrode.structure.positions import Positions
 
@@ -78,6 +77,11 @@ class Tour:
         return not isfinite(self.low) and not isfinite(self.high)
 
     @cached_property
+    def turns_fully(self) -> bool:
+        """Whether the drive is an angle without limits, and every point has its place all over the stretch."""
+        return self.angular and self.unlimited and bool(np.isfinite(self.places(self.nodes())).all())
+
+    @cached_property
     def turns(self) -> int | None:
         """Turns of the drive after which every point is back; None where it is limited or not back after two."""
         if not (self.angular and self.unlimited):
@@ -85,21 +89,24 @@ class Tour:
         at = self.places(np.array([self.initial + tau * k for k in range(int(TURNS) + 1)]))
         scale = float(self.continuation.kinematics.numbers.scale)
         for k in range(1, int(TURNS) + 1):
-            if np.nanmax(np.abs(at[:, k] - at[:, 0]), initial=0.0) <= BACK * scale:
+            # a place that is not reached is no number, and not back
+            if np.max(np.abs(at[:, k] - at[:, 0]), initial=0.0) <= BACK * scale:
                 return k
         return None
 
     @property
     def span(self) -> tuple[float, float]:
-        """The stretch that is looked at: whole turns until the mechanism is back, otherwise between the limits."""
+        """The stretch that is looked at: whole turns in the drive's sense until it is back, or between the limits."""
         if self.angular and self.unlimited:
-            return self.initial, self.initial + tau * (self.turns or int(TURNS))
+            way = tau * (self.turns or int(TURNS))
+            backwards = self.continuation.kinematics.path.forward < 0.0
+            return (self.initial - way, self.initial) if backwards else (self.initial, self.initial + way)
         return max(self.low, self.initial - self.extent), min(self.high, self.initial + self.extent)
 
     @property
     def comes_round(self) -> bool:
         """Whether the stretch ends where it begins."""
-        return self.turns is not None
+        return self.turns is not None and self.turns_fully
 
     def nodes(self) -> Array:
         """Values at which functions of the drive are looked at: even over turns, denser towards limits."""

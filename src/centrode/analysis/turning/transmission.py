@@ -44,12 +44,14 @@ class Transmission:
     extremes: tuple[tuple[float, float], ...]
 
 
-def watched_dyads(tour: Tour) -> list[tuple[Watched, int]]:
-    """The transmission angles of a plan's dyads, each with the number of its group."""
+def watched_dyads(tour: Tour, guides: bool = False) -> list[tuple[Watched, int]]:
+    """The transmission angles of a plan's dyads, each with the number of its group; on demand of two guides too."""
     kinematics = tour.continuation.kinematics
     found = []
     for index, group in enumerate(kinematics.structure.groups):
         watched = _watched(kinematics, group)
+        if watched is None and guides:
+            watched = _watched_guides(kinematics, group)
         if watched is not None:
             found.append((watched, index))
     return found
@@ -73,6 +75,42 @@ def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
     if len(centres) == 1 and line is not None and not sphere:
         return Watched(name, "rad", lambda at: _to_normal(kinematics, centres[0], line, group.carriage, at))
     return None
+
+
+def _watched_guides(kinematics: Kinematics, group: Group) -> Watched | None:
+    """PRP, RPP: between the two guides, on the sphere between the arcs to the poles of both circles."""
+    if not isinstance(group, Meet) or len(group.loci) != 2:
+        return None
+    lines = [locus for locus in group.loci if isinstance(locus, (Rail, Slot))]
+    name = name_of(group)
+    if len(lines) != 2:
+        return None
+    if kinematics.numbers.space.name != "sphere":
+        return Watched(name, "rad", lambda at: _between_guides(kinematics, lines, group.carriage, at))
+    rails = [line for line in lines if isinstance(line, Rail)]
+    if len(rails) != 2 or len(group.points) != 1:
+        return None
+    return Watched(name, "rad", lambda at: _between_poles(kinematics, rails, group.points[0], at))
+
+
+def _between_guides(
+    kinematics: Kinematics, lines: list[Rail | Slot], carriage: str | None, at: Positions
+) -> Pair:
+    bodies = [line.on if isinstance(line, Rail) else carriage for line in lines]
+    one, other = (
+        turned(kinematics.numbers.direction[line.guide], at.poses[body or "frame"].rotor)
+        for line, body in zip(lines, bodies, strict=True)
+    )
+    return plane_dot(one, other), plane_cross(one, other)
+
+
+def _between_poles(kinematics: Kinematics, rails: list[Rail], point: str, at: Positions) -> Pair:
+    space, numbers = kinematics.numbers.space, kinematics.numbers
+    pin = at.points[point]
+    one, other = (
+        tangent(pin, space.place(JETS, at.poses[rail.on], numbers.through[rail.guide])) for rail in rails
+    )
+    return dot(one, other), dot(pin, cross(one, other))
 
 
 def _between_rods(sphere: bool, rods: list[Any], at: Positions) -> Pair:
@@ -129,7 +167,7 @@ def transmissions_of(course: Course, groups: list[int], first: int = 0) -> list[
         group = course.tour.prepared.structure.groups[index]
         fold = _between if group.kind == "RRR" else _acute  # two links have a sense each, a line has none
         extremes = [(float(at), fold(float(value))) for at, value in zip(*course.turned[k], strict=True)]
-        least, at = _least(course, k, index, extremes)
+        least, at = least_of(course, k, index, extremes)
         found.append(Transmission(course.watched[k].name, group.kind, least, at, tuple(extremes)))
     return found
 
@@ -146,7 +184,7 @@ def _acute(value: float) -> float:
     return min(between, pi - between)
 
 
-def _least(course: Course, k: int, index: int, extremes: list[tuple[float, float]]) -> tuple[float, float]:
+def least_of(course: Course, k: int, index: int, extremes: list[tuple[float, float]]) -> tuple[float, float]:
     """The least acute angle; zero at the group's own limits and change points."""
     tour = course.tour
     if not isinstance(tour.prepared.structure.groups[index], Aim):
@@ -155,7 +193,7 @@ def _least(course: Course, k: int, index: int, extremes: list[tuple[float, float
                 return 0.0, event.at
     acute = [(min(value, pi - value), at) for at, value in extremes]
     if not acute or not tour.comes_round:
-        acute += _at_ends(course, k)
+        acute += transmission_at_ends(course, k)
     if not acute:
         sines = np.abs(np.sin(course.values[k]))
         node = int(np.nanargmin(sines))
@@ -163,7 +201,7 @@ def _least(course: Course, k: int, index: int, extremes: list[tuple[float, float
     return min(acute)
 
 
-def _at_ends(course: Course, k: int) -> list[tuple[float, float]]:
+def transmission_at_ends(course: Course, k: int) -> list[tuple[float, float]]:
     """The acute angle at the ends of the stretch: the drive's limits, or the initial position."""
     found = []
     for at in (end for end in course.tour.span if np.isfinite(end)):

@@ -25,13 +25,10 @@ from centrode.kinematics.several_drives.holding import (
     unit_of_value,
     value_of,
 )
-from centrode.kinematics.solve import SEARCH
+from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.steps import name_of
-
-TURNS = 2.0
-"""How far the limits of an angle are looked for on both sides: a motion through change points may need two turns."""
 
 
 @dataclass(frozen=True)

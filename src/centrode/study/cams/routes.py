@@ -14,6 +14,8 @@ from centrode.study.cams.said import Asked, CamPart, Rows, Table, Units
 from centrode.study.scalars import Scalar
 
 MOST_LINES = 19
+PLACES = 3
+"""So many places at which formula (16) has no meaning are named."""
 
 
 def routes_part(cam: Cam, asked: Asked) -> CamPart:
@@ -116,9 +118,16 @@ def _valid(cam: Cam, found: xr.Dataset) -> str:
     parting = found["parting"].to_numpy()
     if not np.isfinite(parting).any():
         return _("formula (16) says nothing where the curvature is constant")
-    return _("formulas (15) and (16) part by up to {parting}").format(
+    parts = _("formulas (15) and (16) part by up to {parting}").format(
         parting=units.text(_greatest(found["parting"]), digits=3)
     )
+    reached = np.isfinite(found["path_radius"].to_numpy()[0])
+    flat = found["carrier_angle"].to_numpy()[np.isnan(parting) & reached]
+    if not len(flat):
+        return parts
+    places = ", ".join([units.angle(at) for at in flat[:PLACES]] + ["..."] * (len(flat) > PLACES))
+    none = _("where K′ = 0 the comparison has no meaning: φ = {places}").format(places=places)
+    return f"{parts}; {none}"
 
 
 def _stalls(cam: Cam, found: xr.Dataset) -> Rows:

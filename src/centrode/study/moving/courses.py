@@ -85,9 +85,8 @@ def course_of(
     """
     prepared = ready(mechanism)
     found = motion(mechanism, samples, start, stop)
-    free = {start, stop, mechanism.study.start, mechanism.study.stop} == {None} and is_uniform(
-        prepared.kinematics.path
-    )
+    asked_for = (start, stop, mechanism.study.start, mechanism.study.stop, mechanism.study.range)
+    free = set(asked_for) == {None} and is_uniform(prepared.kinematics.path)
     asked, whole = found.sizes["sample"], usable(found)
     turns = 1
     if free and not whole.all():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam
 from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
@@ -160,7 +161,7 @@ class _Data:
         yield from segment_tables(cam, self.numbers)
 
     def _drive(self, drive: Drive) -> tuple[str, ...]:
-        unit = "rad" if drive.kind == "angle" else "m"
+        unit = unit_of_value(self.mechanism, drive)
         start = "" if drive.start is None else self.numbers.measured(drive.start, unit)
         return shown(drive.id), _given(drive), start, self._law(drive, unit)
 

@@ -1,0 +1,157 @@
+"""Where a drive's law jumps or has no value: no mechanism moves like that.
+
+A formula jumps only where a sign, an angle by atan2, a logarithm or a divisor changes its sign or touches zero.
+These numbers are looked at on a mesh of time, the places are halved down to rounding, and there the values of the
+law on both sides are compared: a change that does not shrink with the stretch it is taken over is a jump.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jet_functions import JetFunctions
+from centrode.algebra.jets import Jet
+from centrode.kinematics.roots import bracketed_roots
+from centrode.laws import Law, TextLaw
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Places: TypeAlias = npt.NDArray[np.intp]
+Number: TypeAlias = Any
+
+NODES = 4096
+"""Of the mesh of time."""
+HALVINGS = 64
+MOST = 128
+"""Places at which one number changes its sign that are looked at, the earliest ones."""
+NEAR, FAR = 2.0**-44, 2.0**-24
+"""Distances to both sides of a place, as shares of the range."""
+KEPT = 0.1
+"""A jump keeps more than this share of its change from far to near; a square root keeps a thousandth."""
+
+
+@dataclass(frozen=True)
+class Jump:
+    """A jump of a law at a time [s], from a value to another [rad or m]; to NaN where the law has no finite value."""
+
+    time: float
+    before: float
+    after: float
+
+
+class _Watching(JetFunctions):
+    """Jets that keep the numbers at whose zeros a formula may jump, in the order in which they come up."""
+
+    def __init__(self) -> None:
+        super().__init__(ARRAYS)
+        self.kept: list[Jet] = []
+
+    def divisor(self, x: Number) -> Number:
+        """What is divided by, as it is."""
+        return self._keep(x)
+
+    def sign(self, x: Number) -> Number:
+        return super().sign(self._keep(x))
+
+    def tan(self, x: Number) -> Number:
+        return self.sin(x) / self._keep(self.cos(x))
+
+    def atan2(self, y: Number, x: Number) -> Number:
+        return super().atan2(self._keep(y), x)
+
+    def log(self, x: Number) -> Number:
+        return super().log(self._keep(x))
+
+    def _keep(self, x: Number) -> Number:
+        if isinstance(x, Jet):
+            self.kept.append(x)
+        return x
+
+
+def first_jump(law: Law, first: float, last: float, least: float) -> Jump | None:
+    """The first jump by more than `least` [rad or m] between two times [s], or place without a value; None without.
+
+    Only formulas jump: tables, segments and cams are continuous by their making.
+    """
+    if not isinstance(law, TextLaw) or not last > first:
+        return None
+    mesh = np.linspace(first, last, NODES)
+    places = np.concatenate([_suspects(law, mesh), mesh[~np.isfinite(_values(law, mesh))]])
+    if not len(places):
+        return None
+    width = max(last - first, abs(first), abs(last))
+    here = _values(law, places)
+    near, far = (
+        [_values(law, np.clip(places + side * share * width, first, last)) for side in (-1.0, 1.0)]
+        for share in (NEAR, FAR)
+    )
+    with np.errstate(all="ignore"):
+        close, wide = (np.abs([after - before, here - before, after - here]) for before, after in (near, far))
+        jumps = ((close > least) & (close > KEPT * wide)).any(axis=0)
+        grows = (close > 2.0 * wide + least).any(axis=0)
+    absent = ~np.isfinite(here) | ~np.isfinite(close).all(axis=0) | (jumps & grows)
+    found = np.flatnonzero(jumps | absent)
+    if not len(found):
+        return None
+    k = found[np.argmin(places[found])]
+    time = places[k] if abs(places[k]) > NEAR * width else 0.0
+    return Jump(float(time), float(near[0][k]), np.nan if absent[k] else float(near[1][k]))
+
+
+def _suspects(law: TextLaw, mesh: Array) -> Array:
+    """Times at which a number whose zeros matter changes its sign, or turns round towards zero."""
+    found = [np.empty(0)]
+    for number, jet in enumerate(_kept(law, mesh, 1)):
+        value, slope = (np.broadcast_to(jet.derivative(k), mesh.shape) for k in (0, 1))
+        with np.errstate(all="ignore"):
+            dips = (value[:-1] * slope[:-1] < 0.0) & (value[1:] * slope[1:] >= 0.0)
+        cells = np.flatnonzero(dips & (np.sign(value[:-1]) == np.sign(value[1:])))
+        nodes = mesh
+        if len(cells):
+            turns = _turns(law, number, mesh[cells], mesh[cells + 1])
+            found.append(turns)
+            nodes = np.unique(np.append(mesh, turns))
+        found.append(_changes(law, number, nodes))
+    return np.concatenate(found)
+
+
+def _turns(law: TextLaw, number: int, low: Array, high: Array) -> Array:
+    """Where a number turns round."""
+
+    def slope(x: Array) -> tuple[Array, Array]:
+        jet = _kept(law, x, 2)[number]
+        return np.broadcast_to(jet.derivative(1), x.shape), np.broadcast_to(jet.derivative(2), x.shape)
+
+    return bracketed_roots(slope, low, high)
+
+
+def _changes(law: TextLaw, number: int, nodes: Array) -> Array:
+    """Where a number changes its sign, zero being a sign of its own."""
+
+    def sign(x: Array) -> Array:
+        return np.broadcast_to(np.sign(_kept(law, x, 0)[number].value), x.shape)
+
+    at = sign(nodes)
+    cells = np.flatnonzero(at[:-1] != at[1:])[:MOST]
+    low, high, begins = nodes[cells], nodes[cells + 1], at[cells]
+    for _halving in range(HALVINGS if len(cells) else 0):
+        middle = 0.5 * (low + high)
+        same = sign(middle) == begins
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return high
+
+
+def _kept(law: TextLaw, time: Array, order: int) -> list[Jet]:
+    watching = _Watching()
+    with np.errstate(all="ignore"):
+        law.jet(watching, Jet.variable(time, order))
+    return watching.kept
+
+
+def _values(law: TextLaw, time: Array) -> Array:
+    with np.errstate(all="ignore"):
+        return np.broadcast_to(np.asarray(law.jet(ARRAYS, time), dtype=np.float64), time.shape)
