@@ -49,7 +49,8 @@ class Pace:
         fastest = np.maximum.accumulate(
             np.max(_finite(rates(times.reshape(-1))).reshape(times.shape), axis=1)
         )
-        slow = np.nonzero(fastest * powers <= tau)[0]
+        with np.errstate(over="ignore"):  # a law may grow without bound long after any range
+            slow = np.nonzero(fastest * powers <= tau)[0]
         return cls(rates, float(powers[slow[-1]] if len(slow) else powers[0]))
 
     def unit_at(self, time: float) -> float:
