@@ -107,6 +107,8 @@ def swinging_line(random: np.random.Generator, start: float) -> Carrier:
     nodes = np.linspace(start - np.pi, start + np.pi, 2001)
     side = float(random.choice([-1.0, 1.0]))
     ends = minima(lambda q: side * angle(q), nodes)
+    if not len(ends):  # it turns back next to the end of the turn
+        ends = nodes[[np.argmin(side * angle(nodes))]]
     past = side * float(random.choice([1.0, 1.0, -1.0])) * 10.0 ** -float(random.uniform(3.0, 9.0))
     extreme = float(np.min(side * angle(ends))) * side + past
     through, local = complex(*random.uniform(-1.5, 1.5, 2)), complex(*random.uniform(-1.0, 1.0, 2))
