@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import pickle
 import subprocess
@@ -13,6 +15,7 @@ import click
 import pytest
 
 from centrode.cli import main as command_line
+from centrode.cli.expected import announce_samples, announce_turns
 from centrode.errors import InputError, MotionError
 from centrode.locale import choose_language
 
@@ -258,3 +261,15 @@ def test_a_pipe_that_is_full_and_does_not_wait(words: str, stream: str, code: in
     told = "" if stream == "stderr" else "Error: the operating system refused: "
     assert ((done.stdout or "") + (done.stderr or "")).startswith(told)
     assert "Traceback" not in f"{done.stderr}"
+
+
+def test_an_announcement_that_nobody_can_read_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a long run announces on stderr is no reason to fail where that is full."""
+
+    class Full(io.StringIO):
+        def write(self, text: str) -> int:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(sys, "stderr", Full())
+    announce_turns(1e3)
+    announce_samples(1_000_000)

@@ -1,14 +1,13 @@
-"""What a long run will take, told on stderr before it begins."""
+"""What a long run will take: an announcement on stderr before it begins."""
 
 from __future__ import annotations
 
-import click
-
 import centrode as ct
+from centrode.cli import output
 from centrode.locale import _
 from centrode.model import limits
 
-TOLD_FROM = 200_000_000
+ANNOUNCED_FROM = 200_000_000
 """Bytes of memory from which a run is announced."""
 BYTES = 300
 """Memory of a coordinate at a sample: its derivatives, forces, and tables on the way to their files."""
@@ -28,21 +27,23 @@ def announce_size(description: ct.Mechanism, samples: int | None) -> None:
     count = samples if isinstance(samples, int) else description.study.samples or 0
     coordinates = 3 * len(description.links) + 2 * len(description.moving_points)
     if len(description.links) >= MANY_LINKS:
-        told = _("{count} links: this may take minutes")
-        click.echo(told.format(count=len(description.links)), err=True)
+        announcement = _("{count} links: this may take minutes")
+        output.tell(announcement.format(count=len(description.links)))
     announce_samples(count, coordinates)
 
 
 def announce_samples(count: int, coordinates: int = OF_A_CAM) -> None:
     """Tell how much memory so many samples of so many coordinates may take."""
     size = BYTES * coordinates * count
-    if size >= TOLD_FROM and count <= limits.SAMPLES:  # more are refused at once
-        told = _("{count} samples: this may take {size:.2g} GB of memory")
-        click.echo(told.format(count=count, size=size / 1e9), err=True)
+    if size >= ANNOUNCED_FROM and count <= limits.SAMPLES:  # more are refused at once
+        announcement = _("{count} samples: this may take {size:.2g} GB of memory")
+        output.tell(announcement.format(count=count, size=size / 1e9))
 
 
 def announce_turns(turns: float) -> None:
     """Tell how far a simulation would run at the speed of its start, and about how many steps that takes."""
     if turns >= MANY_TURNS:
-        told = _("about {turns:.3g} turns of the drive at the speed of the start, some {steps:.2g} steps")
-        click.echo(told.format(turns=turns, steps=turns * STEPS), err=True)
+        announcement = _(
+            "about {turns:.3g} turns of the drive at the speed of the start, some {steps:.2g} steps"
+        )
+        output.tell(announcement.format(turns=turns, steps=turns * STEPS))

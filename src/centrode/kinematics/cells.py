@@ -157,9 +157,9 @@ def without_sign(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array, Arr
 def unsettled(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array, Array]:
     """Lanes and stretches between neighbours of the same sign of which one is not known, and the sign."""
     first, last = _neighbours(pieces, slack)
-    open_ = (last == first + 1) & ~(pieces.known[first] & pieces.known[last])
-    open_ &= np.sign(pieces.value[first]) == np.sign(pieces.value[last])
-    first, last = first[open_], last[open_]
+    doubtful = (last == first + 1) & ~(pieces.known[first] & pieces.known[last])
+    doubtful &= np.sign(pieces.value[first]) == np.sign(pieces.value[last])
+    first, last = first[doubtful], last[doubtful]
     return pieces.lane[first], pieces.centre[first], pieces.centre[last], np.sign(pieces.value[first])
 
 
@@ -168,7 +168,7 @@ def _neighbours(pieces: Pieces, slack: float) -> tuple[Lanes, Lanes]:
     apart = np.diff(pieces.centre) - pieces.half[1:] - pieces.half[:-1]
     broken = (np.diff(pieces.lane) != 0) | (apart > slack) | np.isinf(pieces.value[1:])
     chain = np.concatenate([[0], np.cumsum(broken)])
-    told = np.nonzero(np.isfinite(pieces.value) & (pieces.value != 0.0))[0]
-    first, last = told[:-1], told[1:]
+    signed = np.nonzero(np.isfinite(pieces.value) & (pieces.value != 0.0))[0]
+    first, last = signed[:-1], signed[1:]
     together = chain[first] == chain[last]
     return first[together], last[together]

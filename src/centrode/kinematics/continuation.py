@@ -53,10 +53,8 @@ SHARE = 0.75
 """Greatest half width in units of the radius: towards the circle itself the derivatives of a series lose digits."""
 LEAST_CIRCLE = 1e-10
 """Radius below which a series is given up, in the path's units: rounding leaves nothing of such a circle."""
-LARGE = 0.5 * CIRCLE / WINDOW
-"""Circles below this many half widths have shrunk."""
 LOST = 1e-3
-"""Greatest rounding error on such a circle, in units of the motion along it, of the number that moves most."""
+"""Greatest rounding error on a circle that has shrunk, of the number that moves most, in units of its motion."""
 BARE = 4e-3
 """Half width, in the path's units, without derivatives where there is no series: rounding is 1e-16 over its cube."""
 SHRINKING, GROWING = 0.25, 2.0**0.5
@@ -168,7 +166,10 @@ class Continuation:
         return windows
 
     def _with_circles(self, group: int, windows: Windows) -> tuple[Windows, Series]:
-        """The windows with the greatest circles that hold no singularity, and the series that rest on these."""
+        """The windows with the greatest circles that hold no singularity, and the series that rest on these.
+
+        As given, windows have their greatest half width, which is `WINDOW` units of the path, and greatest radius.
+        """
         count, radius = len(windows), windows.radius.copy()
         best, growing = np.zeros(count), np.zeros(count, dtype=bool)
         series: Series | None = None
@@ -202,7 +203,7 @@ class Continuation:
             with np.errstate(all="ignore"):
                 lost = np.fmin(lost, bound / np.sum(np.abs(number[:, 1:TERMS]), axis=1))
         # on a circle as small as rounding errors everything looks analytic
-        shrunk = windows.radius < LARGE * windows.half
+        shrunk = windows.radius < windows.half
         whole &= ~shrunk | (lost <= LOST)
         return Series([number[:, :TERMS] for number in numbers], bounds), whole
 

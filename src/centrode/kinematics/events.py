@@ -146,15 +146,15 @@ class Scan:
             at = self.guards.minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
             least, bound = self.guards.rounded(group, lanes, at)
             # where a group before this one goes to infinity, the radicand's error exceeds the radicand itself
-            told = SAFETY * bound <= self.branches.largest[group][lanes]
-            touches = told & (np.abs(least) <= SAFETY * bound)
+            certain = SAFETY * bound <= self.branches.largest[group][lanes]
+            touches = certain & (np.abs(least) <= SAFETY * bound)
             found += [
                 Event("change point", group, int(lane), float(x))
                 for lane, x in zip(lanes[touches], at[touches], strict=True)
             ]
             self._settle(settled, value, lanes[touches], cells[touches], SAFETY * bound[touches])
-            dips = ~touches & (~told | (least < 0.0))
-            aside = np.where(told, 0.0, BESIDE_POLE * (self.mesh[cells + 1] - self.mesh[cells]))
+            dips = ~touches & (~certain | (least < 0.0))
+            aside = np.where(certain, 0.0, BESIDE_POLE * (self.mesh[cells + 1] - self.mesh[cells]))
             for first, last, edge in (
                 (self.mesh[cells], at - aside, value[lanes, cells]),
                 (at + aside, self.mesh[cells + 1], value[lanes, cells + 1]),
