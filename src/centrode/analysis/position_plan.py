@@ -81,7 +81,7 @@ def plan_of_positions(mechanism: Mechanism, positions: int = 12, link: str | Non
         )
     path = motion(mechanism, SAMPLES)
     ok = path["status"].to_numpy() == Status.OK
-    by = _parameter(mechanism, path)
+    by = mechanism.motion_parameter.instants(path)
     closed = bool(ok.all()) and _is_turn(mechanism, by)
     if link is not None:
         _refuse_unknown(mechanism, link)
@@ -93,17 +93,10 @@ def plan_of_positions(mechanism: Mechanism, positions: int = 12, link: str | Non
     return PositionPlan(motion(mechanism, at=values), path, zero, name, closed, extremes)
 
 
-def _parameter(mechanism: Mechanism, path: xr.Dataset) -> Array:
-    """What a motion is asked at: the drive's value, or time."""
-    if len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None:
-        return path["drive_value"].to_numpy()[:, 0]
-    return path["time"].to_numpy()
-
-
 def _is_turn(mechanism: Mechanism, by: Array) -> bool:
-    one = len(mechanism.drives) == 1 and mechanism.drives[0].kind == "angle"
-    uniform = mechanism.drives[0].speed is not None
-    return one and uniform and math.isclose(abs(by[-1] - by[0]), math.tau, rel_tol=1e-9)
+    parameter = mechanism.motion_parameter
+    turned = parameter.is_uniform and parameter.turns
+    return turned and math.isclose(abs(by[-1] - by[0]), math.tau, rel_tol=1e-9)
 
 
 def _open_plan(

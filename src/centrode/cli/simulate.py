@@ -83,12 +83,12 @@ def _settings(description: ct.Mechanism, changes: dict[str, Any]) -> ct.Simulati
         raise InputError(
             "[simulation]", _("it is missing"), _('say --driving "20 - 2*v" and --duration "10 s"')
         )
-    return ct.Simulation.for_drives(description.drives, **known | given)
+    return ct.Simulation.for_parameter(description.motion_parameter, **known | given)
 
 
 def _turns(description: ct.Mechanism, settings: ct.Simulation) -> float:
     """Turns of the drive at the speed of the start, up to where they end."""
-    if description.drives[0].kind != "angle":
+    if not description.motion_parameter.turns:
         return 0.0
     ends = [settings.turns] if settings.turns is not None else []
     if settings.duration is not None:
@@ -127,8 +127,7 @@ def _regime(
     description: ct.Mechanism, settings: ct.Simulation, found: xarray.Dataset
 ) -> list[tuple[str, str]]:
     """Rows of the steady regime, of a drive that has turned all the way round."""
-    angular = description.drives[0].kind == "angle"
-    if not angular or found.attrs["ended"] not in ("duration", "turns"):
+    if not description.motion_parameter.turns or found.attrs["ended"] not in ("duration", "turns"):
         return []
     if not float(found["turned"].to_numpy().max()) >= tau:
         return []

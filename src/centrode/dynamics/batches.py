@@ -19,7 +19,6 @@ from centrode.dynamics.states import Moving, State, getters_of
 from centrode.errors import InputError
 from centrode.kinematics.compiled.deciding import Untraceable
 from centrode.kinematics.solve import Solved
-from centrode.kinematics.spans import is_uniform
 from centrode.locale import _, mark
 
 Array: TypeAlias = npt.NDArray[Any]
@@ -68,12 +67,16 @@ def reduced_number(name: str, solved: Solved, values: Values) -> Array:
 def _moving(solved: Solved, burden: Burden) -> Moving:
     """The speed that loads see, as `reduction_of` has it."""
     span, ready = solved.span, solved.ready
-    if ready.mechanism.machine is None or not is_uniform(ready.kinematics.path):
+    if ready.mechanism.machine is None or not ready.parameter.is_uniform:
         return Moving(span.time, span.parameter, span.rate)
     speed = Reducer(ready, burden).default_rate
     assert speed is not None
     start = ready.kinematics.path.driven[0].start
-    return Moving((span.parameter - start) / speed, span.parameter, speed * np.ones(len(span.parameter)))
+    return Moving(
+        ready.parameter.times(span.parameter, start, speed),
+        span.parameter,
+        speed * np.ones(len(span.parameter)),
+    )
 
 
 def _state_of_nodes(solved: Solved, burden: Burden) -> State:

@@ -19,7 +19,6 @@ from centrode.errors import InputError
 from centrode.kinematics.branches import Event
 from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
@@ -140,7 +139,7 @@ class Reducer:
             if mean == 0.0:
                 raise InputError("[machine] mean_speed", _("its speed is zero"), _("give the mean speed"))
             return copysign(mean, path.forward)
-        return path.driven[0].drive.speed if is_uniform(path) else None
+        return path.parameter.constant_speed
 
     def moving(
         self, values: Array, rate: npt.ArrayLike | None = None, time: npt.ArrayLike | None = None

@@ -17,11 +17,10 @@ from centrode.kinematics.dataset import (
     judgements_of,
     labels_of,
     named,
-    units_of_drives,
 )
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Solved, asked_span, solve
-from centrode.kinematics.spans import is_uniform, span_at
+from centrode.kinematics.spans import span_at
 from centrode.model.mechanism import Mechanism
 
 __all__ = ["Reduced", "Reducer", "reduce", "reduction_of"]
@@ -73,8 +72,8 @@ def reduction_of(solved: Solved, burden: Burden | None = None) -> xr.Dataset:
     moving = _moving(solved, reducer)
     found = reduced(burden, State.of(solved, moving), solved.status[0])
     first, last = np.min(solved.span.parameter), np.max(solved.span.parameter)
-    variables = _variables(found, units_of_drives(solved)[0])
-    unit = units_of_drives(solved)[0]
+    variables = _variables(found, solved.ready.parameter.units[0])
+    unit = solved.ready.parameter.units[0]
     variables["drive_rate"] = named("drive_rate", ("sample",), moving.rate.copy(), unit)
     variables["jumps"] = named("jumps", ("jump",), reducer.jumps(float(first), float(last)), unit)
     variables["status"] = judgements_of(solved, ())["status"]
@@ -90,7 +89,7 @@ def reduction_of(solved: Solved, burden: Burden | None = None) -> xr.Dataset:
 def _by_drive(solved: Solved) -> bool:
     """Whether loads are taken at the speed of the drive, and not at the machine's mean speed."""
     ready = solved.ready
-    return ready.mechanism.machine is None or not is_uniform(ready.kinematics.path)
+    return ready.mechanism.machine is None or not ready.parameter.is_uniform
 
 
 def _moving(solved: Solved, reducer: Reducer) -> Moving:

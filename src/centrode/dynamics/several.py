@@ -23,7 +23,6 @@ from centrode.kinematics.dataset import (
     judgements_of,
     labels_of,
     named,
-    units_of_drives,
 )
 from centrode.kinematics.several_drives.partials import Partials, partials
 from centrode.kinematics.solve import GREATEST_RESULT, Solved
@@ -45,7 +44,7 @@ def reduced_to_several(solved: Solved, burden: Burden) -> xr.Dataset:
     directions = _Directions.of(found, solved)
     matrix, christoffel = _inertia(directions, burden)
     forces = _forces(directions, solved, burden)
-    units = units_of_drives(solved)
+    units = solved.ready.parameter.units
     variables = {
         "inertia_matrix": _mixed("inertia_matrix", ("drive", "drive_2"), matrix.sum(axis=1), units),
         "inertia_matrix_part": _mixed("inertia_matrix_part", ("link", "drive", "drive_2"), matrix, units),

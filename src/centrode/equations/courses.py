@@ -121,9 +121,9 @@ def _pace(prepared: Ready, form: CauchyForm, rates: Array) -> Array:
     """
     scale = float(prepared.kinematics.numbers.scale)
     sizes = np.array([scale if name.startswith("slide.") else 1.0 for name in form.names])
-    drive, least = prepared.mechanism.drives[0], 1.0
-    if len(prepared.mechanism.drives) == 1 and drive.speed:
-        least = abs(drive.speed) / (1.0 if drive.kind == "angle" else scale)
+    speed, least = prepared.parameter.constant_speed, 1.0
+    if speed:
+        least = abs(speed) / (1.0 if prepared.parameter.turns else scale)
     return np.asarray(np.maximum(least, (np.abs(rates) / sizes).max(axis=1, initial=0.0)))
 
 

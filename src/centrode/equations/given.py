@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from centrode.equations.lettering import Lettering
 from centrode.equations.letters import Letter
 from centrode.equations.sums import Sum
-from centrode.laws import Uniform
 
 
 @dataclass(frozen=True)
@@ -46,16 +45,17 @@ class Given:
 def given_of(board: Lettering) -> Given:
     """What the drives of a mechanism give; with one drive at 1 rad/s from 0 its angle is time."""
     found, names, values = [], {}, {}
+    parameter = board.ready.parameter
     path = {one.drive.id: one for one in board.ready.kinematics.path.driven}
     for letter, drive in board.driven.items():
         rate = board.alphabet.rates[letter]
         second = board.alphabet.seconds[rate]
-        law, start = path[drive].law, path[drive].start
+        coordinate, start = parameter.drive(drive), path[drive].start
         word, speed = "law", 0.0
-        if isinstance(law, Uniform):
-            word, speed = "uniform", law.speed
+        if coordinate.speed is not None:
+            word, speed = "uniform", coordinate.speed
             values[second] = Sum({})
-            if (start, speed, len(path)) == (0.0, 1.0, 1) and path[drive].drive.kind == "angle":
+            if (start, speed, len(path)) == (0.0, 1.0, 1) and coordinate.turns:
                 word = "t"
                 names[letter] = Letter(letter.rank, "t")
                 values[rate] = Sum.number(1)

@@ -25,7 +25,6 @@ from centrode.kinematics.dataset import (
 )
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
-from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import nearest, shown
@@ -73,7 +72,7 @@ def integrate(
     _check(method, steps, tolerance)
     prepared = ready(mechanism)
     form = form_of(prepared)
-    start = prepared.kinematics.path.initial if is_uniform(prepared.kinematics.path) else 0.0
+    start = prepared.kinematics.path.initial if prepared.parameter.is_uniform else 0.0
     solved = solve(prepared, asked_span(prepared, steps + 1, start, stop))
     scaled = Scaled(form, float(prepared.kinematics.numbers.scale))
     times = solved.span.time

@@ -126,7 +126,7 @@ def kinds_of(solved: Solved) -> list[Kind]:
 
 def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Kinematic coefficients: derivatives by the drive's value."""
-    unit = units_of_drives(solved)[0]
+    unit = solved.ready.parameter.units[0]
     found = {}
     for order, word in ((1, "velocity"), (2, "acceleration")):
         for kind in kinds_of(solved):
@@ -138,12 +138,6 @@ def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]
 
 def _length_unit(solved: Solved) -> str:
     return solved.layout.space.unit
-
-
-def units_of_drives(solved: Solved) -> list[str]:
-    """SI unit of each drive's value."""
-    driven = solved.ready.kinematics.path.driven
-    return ["rad" if one.drive.kind == "angle" else _length_unit(solved) for one in driven]
 
 
 def _contacts(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
@@ -167,17 +161,15 @@ def judgements_of(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]
 
 def _events(solved: Solved) -> dict[str, Variable]:
     events = solved.events()
-    by_time = solved.ready.kinematics.path.by_time
-    kind = "rad" if by_time else units_of_drives(solved)[0]
+    parameter = solved.ready.parameter
     with speaking("en"):
         groups = [name_of(solved.ready.structure.groups[event.group]) for event in events]
     kinds = np.array([EVENT_KINDS.index(event.kind) for event in events], dtype=np.int8)
     dimensions, values, attributes = named("event_kind", ("event",), kinds)
     attributes["flag_values"] = np.arange(len(EVENT_KINDS), dtype=np.int8)
     attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in EVENT_KINDS)
-    places = named("event_value", ("event",), np.array([event.at for event in events]), kind)
-    if by_time:
-        places[2]["units"] = "s"
+    places = named("event_value", ("event",), np.array([event.at for event in events]))
+    places[2]["units"] = parameter.variable.unit
     return {
         "event_value": places,
         "event_kind": (dimensions, values, attributes),
@@ -191,7 +183,7 @@ def coordinates_of(solved: Solved) -> dict[str, Any]:
     values = path.drive_values(ARRAYS, solved.span.parameter)
     count = len(solved.span.time)
     drives = np.stack([np.broadcast_to(value, (count,)) for value in values.values()], axis=-1)
-    units = units_of_drives(solved)
+    units = solved.ready.parameter.units
     drive_value = named("drive_value", ("sample", "drive"), drives, units[0])
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)

@@ -23,6 +23,7 @@ from centrode.laws import Law
 from centrode.locale import _
 from centrode.model.chain import chain_of
 from centrode.model.mechanism import Drive, Mechanism
+from centrode.model.motion_parameter import MotionParameter
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -57,6 +58,8 @@ class Path:
     ----------
     initial : float
         Parameter of the initial position.
+    parameter : MotionParameter
+        What the path is run along: time or the value of the one drive.
     forward : +1.0 or -1.0
         Sense in which the parameter runs from there.
     unit : float
@@ -69,6 +72,7 @@ class Path:
     """
 
     driven: tuple[DrivenBy, ...]
+    parameter: MotionParameter
     initial: float
     forward: float
     unit: float
@@ -79,12 +83,12 @@ class Path:
     @property
     def by_time(self) -> bool:
         """Whether the parameter is time."""
-        return self.pace is not None
+        return self.parameter.by_time
 
     @property
     def turns(self) -> bool:
         """Whether the parameter is an angle."""
-        return not self.by_time and self.driven[0].drive.kind == "angle"
+        return self.parameter.turns
 
     @property
     def step(self) -> float:
@@ -125,11 +129,12 @@ class Path:
 def path_of(mechanism: Mechanism, scale: float) -> Path:
     """The path that a description's drives take; `scale` is the mechanism's greatest length [m]."""
     driven = tuple(_driven_by(mechanism, drive) for drive in mechanism.drives)
-    if len(driven) > 1:
+    parameter = mechanism.motion_parameter
+    if parameter.by_time:
         pace = Pace.of(lambda times: _fastest(driven, scale, times))
-        return Path(driven, 0.0, 1.0, pace.unit_at(0.0), scale, pace)
+        return Path(driven, parameter, 0.0, 1.0, pace.unit_at(0.0), scale, pace)
     unit = unit_of(driven[0].drive, scale)
-    return Path(driven, driven[0].initial, _sense_at_start(driven[0]), unit, scale)
+    return Path(driven, parameter, driven[0].initial, _sense_at_start(driven[0]), unit, scale)
 
 
 def unit_of(drive: Drive, scale: float) -> float:

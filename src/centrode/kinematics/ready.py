@@ -20,6 +20,7 @@ from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.paths import path_of
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.model.motion_parameter import MotionParameter
 from centrode.structure.constraints import is_drive
 from centrode.structure.groups import Newton
 from centrode.structure.plan import Structure, drives_against_mobility, structure_of
@@ -49,6 +50,11 @@ class Ready:
     @property
     def structure(self) -> Structure:
         return self.kinematics.structure
+
+    @property
+    def parameter(self) -> MotionParameter:
+        """What a motion is a function of: time or the value of the one drive."""
+        return self.kinematics.path.parameter
 
     @property
     def mechanism(self) -> Mechanism:

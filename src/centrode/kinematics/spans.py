@@ -41,11 +41,6 @@ class Span:
         return bool(self.second_rate.any())
 
 
-def is_uniform(path: Path) -> bool:
-    """Whether the only drive has a constant speed, so that samples are evenly spaced in its value."""
-    return not path.by_time and path.driven[0].drive.speed is not None
-
-
 def span_of(
     path: Path,
     samples: int,
@@ -68,7 +63,7 @@ def span_of(
     for name, value in (("from", start), ("to", stop)):
         if value is not None and not np.isfinite(value):
             raise InputError(name, _("the range must be finite"))
-    if is_uniform(path):
+    if path.parameter.is_uniform:
         span = _at_values(path, np.linspace(*_range(path, start, stop, reach, reachable), samples))
     elif reachable and None in (start, stop):
         raise InputError(
@@ -86,7 +81,7 @@ def span_at(path: Path, places: Array) -> Span:
     """Samples at given places: values of the drive [rad or m], or times [s] where the drive is a law."""
     if places.ndim != 1 or not 1 <= len(places) <= limits.SAMPLES or not np.isfinite(places).all():
         raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
-    span = _at_values(path, places) if is_uniform(path) else _at_times(path, places)
+    span = _at_values(path, places) if path.parameter.is_uniform else _at_times(path, places)
     _check_extent(path, span)
     return span
 
@@ -143,12 +138,11 @@ def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
 
 
 def _at_values(path: Path, values: Array) -> Span:
-    one = path.driven[0]
-    speed = float(one.drive.speed or 0.0)
-    if speed == 0.0:
+    one, speed = path.driven[0], path.parameter.constant_speed
+    if not speed:
         raise InputError(f"[[drives]] {one.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
     ones = np.ones(len(values))
-    return Span((values - one.start) / speed, values, speed * ones, 0.0 * ones)
+    return Span(path.parameter.times(values, one.start), values, speed * ones, 0.0 * ones)
 
 
 def _range(

@@ -20,6 +20,12 @@ from centrode.model.entries import choice, listed
 from centrode.model.frozen import FrozenMap
 from centrode.model.loads import Load
 from centrode.model.machines import Machine
+from centrode.model.motion_parameter import (
+    UNDRIVEN,
+    DriveCoordinate,
+    MotionParameter,
+    drive_coordinate,
+)
 from centrode.model.names import FRAME, two_points
 from centrode.model.pairs import Gear, Guide, Rolling
 from centrode.model.part import Part
@@ -88,6 +94,11 @@ class Description(Part):
     def sphere_radius(self) -> float:
         """Radius [m] of the sphere that masses and forces count on; 1 if it is not given."""
         return 1.0 if self.radius is None else self.radius
+
+    @property
+    def motion_parameter(self) -> MotionParameter:
+        """What a motion is a function of: the value of the one drive, or time; its unit and how instants are stated."""
+        return MotionParameter.of(self.drives, self.space)
 
     @property
     def link_names(self) -> tuple[str, ...]:
@@ -187,15 +198,16 @@ def _reading(data: object, folder: Path) -> Reading:
     space = "sphere" if data.get("space") == "sphere" else "plane"
     given = data.get("drives")
     drives = given if isinstance(given, list | tuple) else ()
-    kind, by_law = _kind_and_law(drives[0] if drives else None)
-    several = len(drives) > 1
-    return Reading(space, kind, folder, several, by_law or several)
+    coordinates = tuple(_coordinate(drive, space) for drive in drives)
+    return Reading(space, MotionParameter(coordinates, len(drives) > 1) if drives else UNDRIVEN, folder)
 
 
-def _kind_and_law(first: object) -> tuple[str, bool]:
-    """Kind of the first drive, and whether it is a law of time and not a speed."""
-    if isinstance(first, Drive):
-        return first.kind, first.speed is None
-    keys = first if isinstance(first, Mapping) else {}
-    kind = "displacement" if keys.get("guide") else "distance" if keys.get("distance") else "angle"
-    return kind, keys.get("speed") is None and bool({"law", "table", "segments", "cam"} & keys.keys())
+def _coordinate(drive: object, space: str) -> DriveCoordinate:
+    """What is driven, and whether at a constant speed, as the raw data of a drive have it."""
+    if isinstance(drive, Drive):
+        return drive_coordinate(drive.id, drive.kind, space, drive.speed)
+    keys = drive if isinstance(drive, Mapping) else {}
+    driven = "displacement" if keys.get("guide") else "distance" if keys.get("distance") else "angle"
+    by_law = keys.get("speed") is None and bool({"law", "table", "segments", "cam"} & keys.keys())
+    # its numbers are not read yet: any number stands for a constant speed
+    return drive_coordinate("", driven, space, None if by_law else 0.0)

@@ -13,6 +13,7 @@ from centrode.locale import _
 from centrode.model.cams.beside import read_plate_cam
 from centrode.model.cams.plate import PlateCam
 from centrode.model.entries import listed
+from centrode.model.motion_parameter import SPEED_KINDS, kind_of_value
 from centrode.model.names import FRAME
 from centrode.model.part import Part, one_of
 from centrode.model.problems import Problem
@@ -155,10 +156,9 @@ class Drive(Part):
 
 
 def _kind(info: ValidationInfo, rate: bool = False) -> str:
-    angular = info.data.get("link") is not None or READING.get().space == "sphere"
-    if rate:
-        return "angular speed" if angular else "speed"
-    return "angle" if angular else "length"
+    driven = "angle" if info.data.get("link") is not None else "displacement"
+    kind = kind_of_value(driven, READING.get().space)
+    return SPEED_KINDS[kind] if rate else kind
 
 
 def _check_cam(drive: Drive, cam: PlateCam) -> None:

@@ -65,12 +65,8 @@ def kind_at(mechanism: Mechanism, path: str) -> str:
     _spot(document(mechanism), words, path)
     key, on_sphere = words[-1], mechanism.space == "sphere"
     if words[0] == "drives":
-        angular = on_sphere or mechanism.drive(words[1]).kind == "angle"
-        return (
-            {"start": "angle", "speed": "angular speed"}[key]
-            if angular
-            else {"start": "length"}.get(key, key)
-        )
+        coordinate = mechanism.motion_parameter.drive(words[1])
+        return {"start": coordinate.kind, "speed": coordinate.speed_kind}.get(key, key)
     if words[0] == "links" and key in ("radius", "centre_radius"):
         return "length"
     if key in ("length", "radius"):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any, Literal
 
@@ -12,8 +12,8 @@ from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import limits
-from centrode.model.driving import Drive
 from centrode.model.entries import choice
+from centrode.model.motion_parameter import UNDRIVEN, MotionParameter
 from centrode.model.part import Part
 from centrode.model.problems import KEY, Problem, shown
 from centrode.model.values import READING, PlaceOfMotion, positive, quantity, read_text, si
@@ -163,9 +163,7 @@ class Simulation(Part):
     @field_validator("speed", mode="plain")
     @classmethod
     def _speed(cls, value: object, info: ValidationInfo) -> float:
-        reading = READING.get()
-        angular = reading.drive_kind == "angle" or reading.space == "sphere"
-        return si(value, "angular speed" if angular else "speed")
+        return si(value, READING.get().parameter.drives[0].speed_kind)
 
     @classmethod
     def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
@@ -176,10 +174,10 @@ class Simulation(Part):
         return found
 
     @classmethod
-    def for_drives(cls, drives: Sequence[Drive], **values: Any) -> Simulation:
-        """Settings whose numbers with units are read as those of a description with these drives."""
-        kind = drives[0].kind if drives else "angle"
-        token = READING.set(replace(READING.get(), drive_kind=kind, several_drives=len(drives) > 1))
+    def for_parameter(cls, parameter: MotionParameter, **values: Any) -> Simulation:
+        """Settings whose numbers with units are read as those of a description with this parameter of the motion."""
+        known = parameter if parameter.drives else UNDRIVEN
+        token = READING.set(replace(READING.get(), parameter=known))
         try:
             return cls(**values)
         finally:

@@ -17,6 +17,7 @@ from centrode.locale import _
 from centrode.model import limits
 from centrode.model.entries import table
 from centrode.model.frozen import FrozenMap
+from centrode.model.motion_parameter import UNDRIVEN, MotionParameter
 from centrode.model.names import PLACED, read_link_name, read_name
 from centrode.model.problems import KEY, Problem, likely, shown
 from centrode.model.units import to_si
@@ -26,30 +27,16 @@ Vector = tuple[float, float]
 
 @dataclass(frozen=True)
 class Reading:
-    """What a value means depends on the whole: space, kind and law of the drives, folder of the file."""
+    """What a value means depends on the whole: space, parameter of the motion, folder of the file."""
 
     space: str = "plane"
-    drive_kind: str = "angle"
+    parameter: MotionParameter = UNDRIVEN
     folder: Path = Path()
-    several_drives: bool = False
-    by_law: bool = False
 
     @property
     def length(self) -> str:
         """Kind of a length: an arc on the unit sphere."""
         return "arc" if self.space == "sphere" else "length"
-
-    @property
-    def place(self) -> str:
-        """Kind of what tells a place of the motion: the value of the drive, or the time if there are several."""
-        if self.several_drives:
-            return "time"
-        return "angle" if self.drive_kind == "angle" else self.length
-
-    @property
-    def range(self) -> str:
-        """Kind of the ends of the motion: times where the drive is a law of time."""
-        return "time" if self.by_law else self.place
 
 
 READING: ContextVar[Reading] = ContextVar("READING", default=Reading())  # noqa: B039 (frozen)
@@ -207,8 +194,10 @@ PositiveMetres = Annotated[float, PlainValidator(lambda value: positive(value, "
 """A length in metres on the sphere too."""
 PositiveLength = Annotated[float, quantity("length", positive)]
 Angle = Annotated[float, quantity("angle")]
-PlaceOfMotion = Annotated[float, PlainValidator(lambda value: si(value, READING.get().place))]
-EndOfMotion = Annotated[float, PlainValidator(lambda value: si(value, READING.get().range))]
+PlaceOfMotion = Annotated[
+    float, PlainValidator(lambda value: si(value, READING.get().parameter.variable.kind))
+]
+EndOfMotion = Annotated[float, PlainValidator(lambda value: si(value, READING.get().parameter.instant.kind))]
 NamedPositions = Annotated[
     Mapping[str, Position], table(read_name, limits.POINTS), AfterValidator(FrozenMap[str, Vector | Placed])
 ]

@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from centrode.errors import Status
 from centrode.locale import _
-from centrode.present.shown import drive_unit, formula, labelled, plain, shown_as
+from centrode.present.shown import formula, labelled, plain, shown_as
 from centrode.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.mechanism import Drive, Mechanism
+    from centrode.model.mechanism import Mechanism
+    from centrode.model.motion_parameter import DriveCoordinate
 
 Array = NDArray[np.float64]
 LIMIT, CHANGE_POINT = 0, 1
@@ -69,14 +70,14 @@ class Abscissa:
 
 def main_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
     """The drive's value if one drive turns or moves uniformly, else time."""
-    uniform = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    return over_drive(mechanism, dataset) if uniform else over_time(dataset)
+    return over_drive(mechanism, dataset) if mechanism.motion_parameter.is_uniform else over_time(dataset)
 
 
 def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
     """The value of the only drive, in the unit of the display."""
-    factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
-    text = text_of_drive(mechanism.drives[0])
+    coordinate = mechanism.motion_parameter.drives[0]
+    factor, unit = shown_as(coordinate.unit, mechanism.display)
+    text = text_of_drive(coordinate)
     values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
     marks = within(values, events(dataset))
     return Abscissa(
@@ -90,14 +91,14 @@ def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
     )
 
 
-def text_of_drive(drive: Drive) -> str:
+def text_of_drive(coordinate: DriveCoordinate) -> str:
     """What a drive gives, with its symbol."""
-    text, symbol = {
-        "angle": (_("angle {symbol} of link {name}"), "φ"),
-        "displacement": (_("displacement {symbol} along guide {name}"), "s"),
-        "distance": (_("distance {symbol} of {name}"), "l"),
-    }[drive.kind]
-    return text.format(symbol=formula(symbol), name=plain(drive.id))
+    text = {
+        "angle": _("angle {symbol} of link {name}"),
+        "displacement": _("displacement {symbol} along guide {name}"),
+        "distance": _("distance {symbol} of {name}"),
+    }[coordinate.driven]
+    return text.format(symbol=formula(coordinate.symbol), name=plain(coordinate.name))
 
 
 def over_time(dataset: xarray.Dataset) -> Abscissa:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from centrode.analysis.instant_centres.cases import Case
 from centrode.errors import Status
-from centrode.present.shown import drive_unit, shown_as
+from centrode.present.shown import shown_as
 from centrode.present.tables import field
 
 if TYPE_CHECKING:
@@ -115,13 +115,18 @@ def _places(mechanism: Mechanism, names: Sequence[str]) -> tuple[float, list[str
 
 def _instant_header(mechanism: Mechanism, data: xarray.Dataset) -> list[str]:
     drives = [str(name) for name in data["drive"].values]
-    units = [shown_as(drive_unit(mechanism, k), mechanism.display)[1] for k in range(len(drives))]
+    units = [
+        shown_as(mechanism.motion_parameter.drives[k].unit, mechanism.display)[1] for k in range(len(drives))
+    ]
     return ["time [s]", *(f"drive_{name} [{unit}]" for name, unit in zip(drives, units, strict=True))]
 
 
 def _instants(mechanism: Mechanism, data: xarray.Dataset) -> list[list[float]]:
     """Time and values of the drives of each sample."""
-    factors = [shown_as(drive_unit(mechanism, k), mechanism.display)[0] for k in range(data.sizes["drive"])]
+    factors = [
+        shown_as(mechanism.motion_parameter.drives[k].unit, mechanism.display)[0]
+        for k in range(data.sizes["drive"])
+    ]
     values = data["drive_value"].to_numpy() * factors
     return [
         [float(time), *map(float, row)] for time, row in zip(data["time"].to_numpy(), values, strict=True)

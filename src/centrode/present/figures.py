@@ -117,7 +117,7 @@ def sheets(motion: Motion) -> dict[str, tuple[str, Rows, Abscissa]]:
         "accelerations": (_("Accelerations of the points"), of_points(motion, "acceleration"), main),
         "slides": (_("Motion along the guides"), of_guides(motion), main),
     }
-    if len(motion.mechanism.drives) == 1 and "velocity_coefficient" in motion.dataset:
+    if not motion.mechanism.motion_parameter.by_time and "velocity_coefficient" in motion.dataset:
         over = over_drive(motion.mechanism, motion.dataset)
         found["kinematic-coefficients"] = (_("Kinematic coefficients"), of_coefficients(motion), over)
     return found

@@ -24,11 +24,11 @@ from centrode.present.curves import (
 )
 from centrode.present.drawing import MARGIN, draw_mechanism
 from centrode.present.scene import Scene
-from centrode.present.shown import drive_unit, formula, labelled, shown_as
+from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.sphere.globe import Globe
 from centrode.present.sphere.globe_drawing import HIDDEN, draw_globe
 from centrode.present.style import MUTED, Decimals, Pen, pens
-from centrode.quantities import QUANTITIES, status_word, typeset_unit
+from centrode.quantities import status_word, typeset_unit
 
 if TYPE_CHECKING:
     import xarray
@@ -42,7 +42,8 @@ FAINT = "#B4B4B4"
 
 def mechanism_figure(scene: Scene | Globe, dataset: xarray.Dataset, instants: Sequence[float]) -> Figure:
     """The mechanism at the chosen values of the drive, or initially over fading pictures of its motion."""
-    samples = [nearest_sample(dataset, instant) for instant in instants] or [initial_sample(scene, dataset)]
+    samples = [nearest_sample(scene.mechanism, dataset, instant) for instant in instants]
+    samples = samples or [initial_sample(scene, dataset)]
     columns = 2 if len(samples) == 4 else min(COLUMNS, len(samples))
     rows = -(-len(samples) // columns)
     scene, figure = picture(scene, scene.mechanism.link_names, rows, columns)
@@ -125,29 +126,20 @@ def link_key(mechanism: Mechanism) -> list[tuple[Line2D, str]]:
 
 def caption(mechanism: Mechanism, dataset: xarray.Dataset, sample: int) -> str:
     """The instant, and why there is nothing to see where there is not."""
-    if len(mechanism.drives) == 1:
-        factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
-        symbol = {"angle": "φ", "displacement": "s", "distance": "l"}[mechanism.drives[0].kind]
-        values = dataset["drive_value"].isel(drive=0).to_numpy()
-        value = factor * float(values[sample])
-        if abs(value) < 1e-9 * factor * float(np.nanmax(np.abs(values))):
-            value = 0.0  # rounding of the range's middle or end
-    else:
-        symbol, unit, value = QUANTITIES["time"].symbol, "s", float(dataset["time"][sample])
-    text = f"{formula(symbol)} = {value:.5g} {typeset_unit(unit)}".replace("-", "−")
+    parameter = mechanism.motion_parameter
+    values = parameter.values(dataset)
+    factor, unit = shown_as(parameter.variable.unit, mechanism.display)
+    value = factor * float(values[sample])
+    if not parameter.by_time and abs(value) < 1e-9 * factor * float(np.nanmax(np.abs(values))):
+        value = 0.0  # rounding of the range's middle or end
+    text = f"{formula(parameter.variable.symbol)} = {value:.5g} {typeset_unit(unit)}".replace("-", "−")
     status = int(dataset["status"][sample])
     return text if status == Status.OK else f"{text} ({status_word(status)})"
 
 
-def instants_of(dataset: xarray.Dataset) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """What an instant is given by: the value of the only drive, else time."""
-    one = dataset.sizes["drive"] == 1
-    return np.asarray(dataset["drive_value"].isel(drive=0) if one else dataset["time"], dtype=float)
-
-
-def nearest_sample(dataset: xarray.Dataset, instant: float) -> int:
-    """The sample nearest to an instant."""
-    return int(np.argmin(np.abs(instants_of(dataset) - instant)))
+def nearest_sample(mechanism: Mechanism, dataset: xarray.Dataset, value: float) -> int:
+    """The sample nearest to a value of the motion's parameter."""
+    return int(np.argmin(np.abs(mechanism.motion_parameter.values(dataset) - value)))
 
 
 def initial_sample(scene: Scene | Globe, dataset: xarray.Dataset) -> int:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from centrode.quantities import display_unit, typeset_unit
 
 if TYPE_CHECKING:
-    from centrode.model.mechanism import Display, Mechanism
+    from centrode.model.mechanism import Display
 
 MATHEMATICAL = str.maketrans(
     {
@@ -34,11 +34,6 @@ def shown_as(unit: str, display: Display | None) -> tuple[float, str]:
         return 1.0, unit
     angle = "rad" if "/rad" in unit else str(display.angle)
     return display_unit(unit, str(display.length), angle)
-
-
-def drive_unit(mechanism: Mechanism, number: int = 0) -> str:
-    """SI unit of the value of a drive."""
-    return "rad" if mechanism.drives[number].kind == "angle" or mechanism.space == "sphere" else "m"
 
 
 def plain(name: str) -> str:

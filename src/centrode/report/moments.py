@@ -9,7 +9,6 @@ import xarray as xr
 
 from centrode.errors import Status
 from centrode.kinematics.motion import motion
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.quantities import status_word
 from centrode.report.numbers import Numbers
@@ -64,12 +63,12 @@ def reached_moments(study: ReportStudy) -> tuple[Moment, ...]:
 def _moments(study: ReportStudy) -> list[Moment]:
     mechanism = study.mechanism
     wished = dict.fromkeys(study.wishes.instants)
-    uniform = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
+    parameter = mechanism.motion_parameter
     if not wished:
         places = [initial_place(mechanism)]
-    elif len(mechanism.drives) == 1 and not uniform:
+    elif not parameter.states_instants:
         # a law may pass a value more than once, so the nearest samples have to do
-        values = study.motion["drive_value"].to_numpy()[:, 0]
+        values = parameter.values(study.motion)
         nearest = dict.fromkeys(int(np.argmin(np.abs(values - value))) for value in wished)
         places = [float(study.motion["time"][sample]) for sample in nearest]
     else:
@@ -82,11 +81,10 @@ def _title(study: ReportStudy, data: xr.Dataset, sample: int) -> str:
     numbers = study.numbers
     values = data["drive_value"].to_numpy()[sample]
     told = [
-        f"{drive.id} = {drive_value_text(float(value), unit_of_value(study.mechanism, drive), numbers)}"
+        f"{drive.id} = {drive_value_text(float(value), study.mechanism.motion_parameter.drive(drive.id).unit, numbers)}"
         for drive, value in zip(study.mechanism.drives, values, strict=True)
     ]
-    one = study.mechanism.drives[0]
-    if len(study.mechanism.drives) > 1 or one.speed is None:
+    if not study.mechanism.motion_parameter.is_uniform:
         told.insert(0, f"t = {numbers.measured(float(data['time'][sample]), 's')}")
     return ", ".join(told)
 

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from centrode.errors import InputError, Status
 from centrode.locale import _
 from centrode.present.drawing import MARGIN, draw_mechanism
-from centrode.present.pictures import complete, initial_sample, instants_of
+from centrode.present.pictures import complete, initial_sample
 from centrode.present.reading import scene_of
 from centrode.present.scene import Scene, corners
-from centrode.present.shown import drive_unit
 from centrode.present.sphere.globe import Globe, globe_of
 from centrode.present.sphere.globe_drawing import draw_globe
 from centrode.present.style import house_style
@@ -66,7 +65,7 @@ def moving_of(mechanism: Mechanism, motion: xarray.Dataset) -> Moving:
         fixed=fixed,
         guides={name: np.array(line) / factor for name, line in lines.items() if line is not None},
         sliders={guide.point: guide.id for guide in frame_guides},
-        drive=instants_of(motion)[chosen],
+        drive=mechanism.motion_parameter.values(motion)[chosen],
         drive_texts=tuple(drive_texts(mechanism, motion, chosen)),
         tracks=tuple(name for name in mechanism.moving_points if name in places),
         still=picture(_still(scene, motion), ""),
@@ -98,12 +97,10 @@ def played(scene: Scene | Globe, motion: xarray.Dataset) -> NDArray[np.intp]:
 
 def drive_texts(mechanism: Mechanism, motion: xarray.Dataset, samples: NDArray[np.intp]) -> list[str]:
     """The value of the only drive at each sample, else the time, with symbol and unit."""
-    values = instants_of(motion)[samples]
-    if len(mechanism.drives) == 1:
-        unit, drive = drive_unit(mechanism), mechanism.drives[0]
-        name = f"{ {'angle': 'φ', 'displacement': 's', 'distance': 'l'}[drive.kind] } ({drive.id})"
-    else:
-        unit, name = "s", "t"
+    parameter = mechanism.motion_parameter
+    values, unit, name = parameter.values(motion)[samples], parameter.variable.unit, parameter.variable.symbol
+    if not parameter.by_time:
+        name = f"{name} ({mechanism.drives[0].id})"
     numbers = Numbers(mechanism.display, DIGITS)
     label = numbers.shown(unit)[1]
     room = "" if label.startswith("°") else NARROW

@@ -21,9 +21,7 @@ def motion_among(mechanism: Mechanism, course: xr.Dataset, place: float) -> tupl
 
     `place` is a value of the drive [rad or m], or a time [s] where the drive is a law of time or there are several.
     """
-    by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    values = course["drive_value"].to_numpy()[:, 0] if by_value else course["time"].to_numpy()
-    places = np.unique(np.append(values, place))
+    places = np.unique(np.append(mechanism.motion_parameter.instants(course), place))
     return motion(mechanism, at=places), int(np.searchsorted(places, place))
 
 

@@ -15,7 +15,6 @@ from centrode.analysis.instant_centres.centres import bearing
 from centrode.analysis.instant_centres.construction import Construction, Step
 from centrode.errors import Status
 from centrode.kinematics.ready import ready
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Display, Mechanism
 from centrode.model.spoken import body_name
@@ -33,9 +32,8 @@ def centre_symbol(pair: Pair, bodies: int) -> str:
 
 def initial_place(mechanism: Mechanism) -> float:
     """Value of the drive in the initial position, with a law or several drives the time there [rad, m or s]."""
-    path = ready(mechanism).kinematics.path
-    by_value = not path.by_time and path.driven[0].drive.speed is not None
-    return float(path.initial) if by_value else 0.0
+    prepared = ready(mechanism)
+    return float(prepared.kinematics.path.initial) if prepared.parameter.is_uniform else 0.0
 
 
 def body_names(mechanism: Mechanism) -> tuple[str, ...]:
@@ -49,7 +47,7 @@ def place_words(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> str:
     texts = []
     for drive, value in zip(mechanism.drives, values, strict=True):
         texts.append(
-            f"{drive.id} {value_text(float(value), unit_of_value(mechanism, drive), mechanism.display)}"
+            f"{drive.id} {value_text(float(value), mechanism.motion_parameter.drive(drive.id).unit, mechanism.display)}"
         )
     status = int(motion["status"][sample])
     return ", ".join(texts) + ("" if status == Status.OK else f" ({status_word(status)})")

@@ -25,9 +25,8 @@ RETURNS = 1e-9
 
 def closed_motion(mechanism: Mechanism, integration: xr.Dataset, samples: int = 361) -> xr.Dataset:
     """The motion in closed form over the range of an integrated one, for curves to be compared with."""
-    uniform = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    places = integration["drive_value"].isel(drive=0) if uniform else integration["time"]
-    first, last = (float(places.to_numpy()[end]) for end in (0, -1))
+    instants = mechanism.motion_parameter.instants(integration)
+    first, last = (float(instants[end]) for end in (0, -1))
     return motion(mechanism, samples, start=first, stop=last)
 
 
@@ -89,14 +88,14 @@ def integration_failure(mechanism: Mechanism, integration: xr.Dataset) -> str | 
 def _at(mechanism: Mechanism, integration: xr.Dataset, time: float) -> str:
     """A time, with the value of the only drive where it is even."""
     text = value_text(time, "s", mechanism.display)
-    drive = mechanism.drives[0]
-    if len(mechanism.drives) > 1 or drive.speed is None:
+    parameter = mechanism.motion_parameter
+    if not parameter.is_uniform:
         return text
-    values = integration["drive_value"].to_numpy()[:, 0]
-    value = float(values[0]) + drive.speed * time
-    unit = str(integration["drive_value"].attrs["units"])
+    value = parameter.value_at(time, float(parameter.values(integration)[0]))
     return _("{time} ({drive} at {value})").format(
-        time=text, drive=drive.id, value=value_text(value, unit, mechanism.display)
+        time=text,
+        drive=mechanism.drives[0].id,
+        value=value_text(value, parameter.variable.unit, mechanism.display),
     )
 
 

@@ -8,7 +8,6 @@ import json
 from typing import TypeAlias
 
 from centrode.errors import InputError
-from centrode.kinematics.several_drives.holding import named_drive, unit_of_value
 from centrode.kinematics.several_drives.reach import End, Limits, limits
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -29,7 +28,7 @@ def limits_rows(mechanism: Mechanism, found: Limits) -> Rows:
         return _("{value}, limit of {group}").format(value=value, group=end.group)
 
     held = [
-        f"{name} = {value_text(value, _unit(mechanism, name), mechanism.display)}"
+        f"{name} = {value_text(value, mechanism.motion_parameter.drive(name).unit, mechanism.display)}"
         for name, value in found.held.items()
     ]
     changes = [
@@ -59,10 +58,6 @@ def limits_sentence(mechanism: Mechanism) -> str:
         told.format(value=value_text(end.value, found.unit, mechanism.display), group=end.group)
         for end in ends
     )
-
-
-def _unit(mechanism: Mechanism, name: str) -> str:
-    return unit_of_value(mechanism, named_drive(mechanism, name, "hold"))
 
 
 def limits_text(found: Limits, kind: str) -> str:

@@ -6,19 +6,16 @@ from centrode.analysis.position_plan import PositionPlan
 from centrode.errors import Status
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.structure.dimensions import SPACES
 from centrode.study.wording import value_text
 
 
 def plan_rows(mechanism: Mechanism, plan: PositionPlan) -> list[tuple[str, str]]:
     """Number of positions, where they begin and by what, and where else the link stands still."""
-    drive, data = mechanism.drives[0], plan.positions
-    uniform = len(mechanism.drives) == 1 and drive.speed is not None
-    unit = "s" if not uniform else "rad" if drive.kind == "angle" else SPACES[mechanism.space].unit
-    values = data["drive_value"].to_numpy()[:, 0] if uniform else data["time"].to_numpy()
+    parameter, data = mechanism.motion_parameter, plan.positions
+    values = parameter.instants(data)
 
     def shown(value: float) -> str:
-        return value_text(value, unit, mechanism.display)
+        return value_text(value, parameter.instant.unit, mechanism.display)
 
     reached = int((data["status"].to_numpy() == Status.OK).sum())
     rows = [

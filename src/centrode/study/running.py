@@ -16,16 +16,14 @@ from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.several_drives.coefficients import coefficients_of, most_samples
 from centrode.kinematics.solve import Solved, asked_span, solve
-from centrode.kinematics.spans import is_uniform, span_at
+from centrode.kinematics.spans import span_at
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
-from centrode.model.units import to_si
-from centrode.structure.dimensions import SPACES
 from centrode.study.checking import Check, check_of
 from centrode.study.forces.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
 from centrode.study.forces.machines import MachineResults, flywheel_scalars, machine_results
 from centrode.study.scalars import Scalar
-from centrode.study.wording import Words, extremes, unit_of_drive
+from centrode.study.wording import Words, extremes
 
 NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 
@@ -140,11 +138,10 @@ def _at_instants(prepared: Ready) -> xr.Dataset | None:
     They are values of the drive, which a law of time may pass more than once: then the nearest samples have to do.
     """
     places = prepared.mechanism.study.instants
-    path = prepared.kinematics.path
-    if not places or not (path.by_time or is_uniform(path)):
+    if not places or not prepared.parameter.states_instants:
         return None
     try:
-        span = span_at(path, np.array(places))
+        span = span_at(prepared.kinematics.path, np.array(places))
     except InputError as error:
         raise InputError("[study] instants", error.what, error.repair) from None
     return dataset_of(solve(prepared, span))
@@ -164,8 +161,7 @@ def with_range(mechanism: Mechanism, asked: str | None) -> Mechanism:
 
 def repair_of_range(mechanism: Mechanism) -> str:
     """What to ask for where samples are not reached: between the limits, by a word where one drive has them."""
-    drive = mechanism.drives[0]
-    if len(mechanism.drives) > 1 or drive.speed is None:
+    if not mechanism.motion_parameter.is_uniform:
         return _("ask for a range between the limits, or change the dimensions")
     return _(
         'ask for the range between the limits (range = "reachable" under [study], or --range reachable), or '
@@ -178,19 +174,11 @@ def range_value(mechanism: Mechanism, text: float | str, where: str) -> float:
 
     Raises InputError for a unit of another kind.
     """
-    drive = mechanism.drives[0] if mechanism.drives else None
-    by_time = drive is None or len(mechanism.drives) > 1 or drive.speed is None
-    length = "angle" if SPACES[mechanism.space].unit == "rad" else "length"
-    kind = "time" if by_time else "angle" if drive is not None and drive.kind == "angle" else length
-    try:
-        return to_si(text, kind)
-    except InputError as error:
-        raise InputError(where, error.what, error.repair) from None
+    return mechanism.motion_parameter.instant.read(text, where)
 
 
 def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:
-    path = solved.ready.kinematics.path
-    unit = "s" if path.by_time else unit_of_drive(solved, path.driven[0].drive)
+    unit = solved.ready.parameter.variable.unit
     parameter = solved.span.parameter
     found = {
         "mobility": Scalar(checked.mobility, "1"),
@@ -220,10 +208,10 @@ def _times(solved: Solved) -> dict[str, Scalar]:
     """How long the motion takes; where a law drives, from when to when, and what each drive reaches."""
     first, last = float(solved.span.time[0]), float(solved.span.time[-1])
     found = {"duration": Scalar(abs(last - first), "s")}
-    if not is_uniform(solved.ready.kinematics.path):
+    if not solved.ready.parameter.is_uniform:
         found |= {"first_time": Scalar(first, "s"), "last_time": Scalar(last, "s")}
         for drive, low, high in extremes(solved):
-            unit = unit_of_drive(solved, drive)
+            unit = solved.ready.parameter.drive(drive.id).unit
             found |= {f"least_{drive.id}": Scalar(low, unit), f"greatest_{drive.id}": Scalar(high, unit)}
     return found
 

@@ -12,7 +12,6 @@ from centrode.analysis.turning.dwells import Dwell
 from centrode.analysis.turning.four_bars import FourBar
 from centrode.analysis.turning.swings import Extreme, Swing
 from centrode.analysis.turning.transmission import Transmission
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _, mark, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.names import body_word
@@ -59,8 +58,7 @@ class _Words:
 
     def held(self, name: str, value: float) -> str:
         """The value of a drive that stands still."""
-        drive = next(drive for drive in self.mechanism.drives if drive.id == name)
-        return self.value(value, unit_of_value(self.mechanism, drive))
+        return self.value(value, self.mechanism.motion_parameter.drive(name).unit)
 
     def place(self, at: float) -> str:
         """A value of the drive."""

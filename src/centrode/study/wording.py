@@ -8,16 +8,10 @@ import numpy as np
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.solve import Solved
-from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
 from centrode.model.mechanism import Display, Drive
 from centrode.quantities import display_unit
 from centrode.structure.steps import name_of
-
-
-def unit_of_drive(solved: Solved, drive: Drive) -> str:
-    """SI unit of a drive's value."""
-    return "rad" if drive.kind == "angle" else solved.layout.space.unit
 
 
 def extremes(solved: Solved) -> list[tuple[Drive, float, float]]:
@@ -40,9 +34,8 @@ class Words:
 
     def __init__(self, solved: Solved) -> None:
         self.solved = solved
-        path = solved.ready.kinematics.path
         display = solved.ready.mechanism.display
-        self.unit = "s" if path.by_time else unit_of_drive(solved, path.driven[0].drive)
+        self.unit = solved.ready.parameter.variable.unit
         self.display = display
 
     def value(self, at: float, unit: str = "") -> str:
@@ -52,7 +45,7 @@ class Words:
     def range(self) -> str:
         """From where to where, and how long that takes; times and extremes where a law drives."""
         parameter, time = self.solved.span.parameter, self.solved.span.time
-        if not is_uniform(self.solved.ready.kinematics.path):
+        if not self.solved.ready.parameter.is_uniform:
             first, last = (self.value(float(time[end]), "s") for end in (0, -1))
             reached = ", ".join(self._reached(*extreme) for extreme in extremes(self.solved))
             return _("{first} to {last}, {drives}").format(first=first, last=last, drives=reached)
@@ -63,7 +56,7 @@ class Words:
         )
 
     def _reached(self, drive: Drive, low: float, high: float) -> str:
-        unit = unit_of_drive(self.solved, drive)
+        unit = self.solved.ready.parameter.drive(drive.id).unit
         return _("{drive} between {low} and {high}").format(
             drive=drive.id, low=self.value(low, unit), high=self.value(high, unit)
         )
@@ -84,8 +77,7 @@ class Words:
     def period(self) -> list[str]:
         """A note if a full turn does not bring the mechanism back to where it was."""
         solved = self.solved
-        path = solved.ready.kinematics.path
-        if path.by_time or path.driven[0].drive.kind != "angle" or len(solved.span.parameter) < 2:
+        if not solved.ready.parameter.turns or len(solved.span.parameter) < 2:
             return []
         turned = abs(solved.span.parameter[-1] - solved.span.parameter[0])
         ends = solved.points[0, 0, [0, -1]]

@@ -25,8 +25,7 @@ def integrated_rates(mechanism: Mechanism, exact: xr.Dataset) -> Mapping[tuple[s
     Speeds of points are lengths of their velocities. Empty where there are no such equations, where the integration
     does not get to the instant, or where this installation cannot integrate. Accelerations are not integrated.
     """
-    uniform = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    stop = float(exact["drive_value"][0, 0] if uniform else exact["time"][0])
+    stop = float(mechanism.motion_parameter.instants(exact)[0])
     try:
         course = _integrated().integrate(mechanism, "adaptive", steps=STEPS, stop=stop)
     except (ModuleNotFoundError, CentrodeError):

@@ -28,7 +28,7 @@ from centrode.kinematics.paths import JETS
 from centrode.kinematics.places import start_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import fit_for, solve
-from centrode.kinematics.spans import Span, is_uniform, span_at
+from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.problems import nearest, shown
@@ -92,9 +92,8 @@ def curvature(
         raise InputError("link", _("{name} does not move against itself").format(name=link))
     prepared = ready(mechanism)
     if places is None:
-        uniform = is_uniform(prepared.kinematics.path)
         assert isinstance(source, xr.Dataset)
-        places = (source["drive_value"].isel(drive=0) if uniform else source["time"]).to_numpy()
+        places = prepared.parameter.instants(source)
     span = span_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64))
     solved = solve(prepared, span)
     positions = jet_positions(prepared, span)

@@ -20,7 +20,7 @@ from centrode.kinematics.pace import OFF_GRID
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.places import start_of
 from centrode.kinematics.ready import Ready
-from centrode.kinematics.several_drives.holding import check_closed, held_path, starting_at, unit_of_value
+from centrode.kinematics.several_drives.holding import check_closed, held_path, starting_at
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive
 from centrode.structure.positions import Positions
@@ -64,7 +64,7 @@ class Tour:
     @property
     def unit(self) -> str:
         """SI unit of the drive's value."""
-        return unit_of_value(self.prepared.mechanism, self.drive)
+        return self.prepared.parameter.drive(self.drive.id).unit
 
     @property
     def angular(self) -> bool:

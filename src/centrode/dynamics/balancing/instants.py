@@ -18,7 +18,6 @@ from centrode.dynamics.steady_motion.solution import Solution, solution_of
 from centrode.errors import InputError, MotionError, NotComputedYet
 from centrode.kinematics.places import Places
 from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.spans import is_uniform
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
@@ -101,10 +100,10 @@ def constant_rate(prepared: Ready) -> float:
     if path.by_time:
         what = _("a cycle needs one drive, the mechanism has {count}").format(count=len(mechanism.drives))
         raise InputError("[[drives]]", what, _("tie the drives by a gear"))
-    if not is_uniform(path):
+    if not path.parameter.is_uniform:
         what = _("a cycle needs a drive of constant speed, and this one is a law of time")
         raise InputError(f"[[drives]] {path.driven[0].drive.id}", what, _("give it a speed"))
-    rate = float(path.driven[0].drive.speed or 0.0)
+    rate = float(path.parameter.constant_speed or 0.0)
     if mechanism.machine is not None:
         rate = copysign(mechanism.machine.mean_speed, path.forward)
     if rate == 0.0:

@@ -23,11 +23,10 @@ from centrode.kinematics.dataset import (
     coordinates_of,
     judgements_of,
     named,
-    units_of_drives,
 )
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
-from centrode.kinematics.spans import Span, is_uniform, span_at
+from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import nearest, shown
@@ -86,8 +85,10 @@ def shaking(
     effects = effects_of(
         tracks_of(state, masses), masses, Pace(span.rate, span.second_rate), complex(*centre)
     )
-    variables = _curves(effects, units_of_drives(solved)[0], several=prepared.kinematics.path.by_time)
-    variables["drive_rate"] = named("drive_rate", ("sample",), span.rate.copy(), units_of_drives(solved)[0])
+    variables = _curves(effects, solved.ready.parameter.units[0], several=prepared.kinematics.path.by_time)
+    variables["drive_rate"] = named(
+        "drive_rate", ("sample",), span.rate.copy(), solved.ready.parameter.units[0]
+    )
     variables["status"] = judgements_of(solved, ())["status"]
     found, facts = _harmonics(mechanism, complex(*centre), speed, orders)
     if prepared.kinematics.path.by_time:
@@ -140,11 +141,10 @@ def _asked(
         span = asked_span(prepared, samples, start, stop)
     else:
         span = span_at(path, np.asarray(at, dtype=np.float64))
-    if mechanism.machine is not None and is_uniform(path):
+    if mechanism.machine is not None and path.parameter.is_uniform:
         rate = np.full(len(span.parameter), np.copysign(mechanism.machine.mean_speed, path.forward))
-        return prepared, Span(
-            (span.parameter - path.driven[0].start) / rate, span.parameter, rate, 0.0 * rate
-        )
+        time = path.parameter.times(span.parameter, path.driven[0].start, rate)
+        return prepared, Span(time, span.parameter, rate, 0.0 * rate)
     return prepared, span
 
 

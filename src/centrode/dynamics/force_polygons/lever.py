@@ -84,7 +84,13 @@ def lever_of(
         )
     links = {name: tuple(link.coordinates) for name, link in structure.mechanism.links.items()}
     images = {name: -1j * rate for name, rate in stage.points.items()}
-    return Lever(drive.id, "N m" if drive.kind == "angle" else "N", images, links, tuple(forces))
+    return Lever(
+        drive.id,
+        structure.mechanism.motion_parameter.drive(drive.id).force_unit,
+        images,
+        links,
+        tuple(forces),
+    )
 
 
 def _rate(stage: Stage, bodies: Bodies, action: Action) -> complex:

@@ -34,7 +34,7 @@ from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import Solved, solve
-from centrode.kinematics.spans import is_uniform, span_at
+from centrode.kinematics.spans import span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import status_word
@@ -107,7 +107,7 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
 def _state(solved: Solved, burden: Burden) -> tuple[State, Rates, bool]:
     """The state at the speed that `reduce` takes, its rates by time, and whether the machine gives the speed."""
     span, prepared = solved.span, solved.ready
-    by_machine = prepared.mechanism.machine is not None and is_uniform(prepared.kinematics.path)
+    by_machine = prepared.mechanism.machine is not None and prepared.parameter.is_uniform
     if by_machine:
         moving = Reducer(prepared, burden).moving(span.parameter)
         return State.of(solved, moving), Rates(float(moving.rate[0]), 0.0), True

@@ -11,7 +11,7 @@ from centrode.dynamics.friction.following import Outcome
 from centrode.dynamics.friction.losses import JAMMED, LOCKING, Powers, works_over
 from centrode.dynamics.friction.reversals import reversals
 from centrode.dynamics.friction.rubbing import Rubbed
-from centrode.kinematics.dataset import Variable, labels_of, named, units_of_drives
+from centrode.kinematics.dataset import Variable, labels_of, named
 from centrode.kinematics.solve import Solved
 
 
@@ -35,7 +35,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
     if not solved.ready.kinematics.path.by_time:
         first, last = float(np.min(parameter)), float(np.max(parameter))
         places = reversals(solved.ready, rubbed.contacts, first, last)
-        found["jumps"] = named("jumps", ("jump",), places, units_of_drives(solved)[0])
+        found["jumps"] = named("jumps", ("jump",), places, solved.ready.parameter.units[0])
     return found
 
 

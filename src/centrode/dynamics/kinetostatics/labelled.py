@@ -27,7 +27,6 @@ from centrode.kinematics.dataset import (
     judgements_of,
     labels_of,
     named,
-    units_of_drives,
 )
 from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
@@ -73,13 +72,15 @@ def labelled(solved: Solved, burden: Burden, found: Found, whole: bool) -> xr.Da
         parts["joint_moment"] = joint_moments(found, parts["joint_force"])
     for values in parts.values():
         values[absent] = np.nan
-    units = units_of_drives(solved)
+    units = solved.ready.parameter.units
     variables = {
         name: named(name, ("sample", *_dimensions(name, values)), values, units[0])
         for name, values in parts.items()
     }
     if len(set(units)) > 1:
-        variables["balancing"][2]["units"] = ", ".join("N m" if unit == "rad" else "N" for unit in units)
+        variables["balancing"][2]["units"] = ", ".join(
+            one.force_unit for one in solved.ready.parameter.drives
+        )
     if not solved.ready.kinematics.path.by_time:
         variables["drive_rate"] = named("drive_rate", ("sample",), found.pace.moving.rate.copy(), units[0])
     variables |= _statuses(solved, found)

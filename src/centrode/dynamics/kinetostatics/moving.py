@@ -18,7 +18,7 @@ from centrode.dynamics.steady_motion.steady import turned_at
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.solve import Solved
-from centrode.kinematics.spans import Span, is_uniform
+from centrode.kinematics.spans import Span
 from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -45,7 +45,7 @@ def pace_of(solved: Solved, burden: Burden) -> Pace:
     path = prepared.kinematics.path
     if path.by_time:
         refuse_drive_in_formulas(burden)
-    if path.by_time or prepared.mechanism.machine is None or not is_uniform(path):
+    if path.by_time or prepared.mechanism.machine is None or not path.parameter.is_uniform:
         return _along(span, "drive")
     moving = Reducer(prepared, burden).moving(span.parameter)
     return Pace(moving, np.zeros(len(span.parameter)), "machine")

@@ -26,7 +26,6 @@ from centrode.kinematics.dataset import (
     dataset_of,
     judgements_of,
     named,
-    units_of_drives,
 )
 from centrode.kinematics.solve import Solved, solve
 from centrode.kinematics.spans import Span
@@ -42,7 +41,7 @@ def simulation_dataset(setting: Setting, course: Course, times: Array, *, motion
     moving = senses != 0.0
     acceleration = np.where(moving, forces.acceleration(states[RATE]), 0.0)
     solved = solve(setting.prepared, Span(times, states[VALUE], states[RATE], acceleration))
-    unit = units_of_drives(solved)[0]
+    unit = solved.ready.parameter.units[0]
     curves = _curves(setting, states, forces, acceleration, moving)
     curves_named = {name: named(name, ("sample",), values, unit) for name, values in curves.items()}
     occasions = _occasions(course, unit)

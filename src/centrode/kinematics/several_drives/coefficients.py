@@ -19,7 +19,6 @@ from centrode.kinematics.dataset import (
     kinds_of,
     labels_of,
     named,
-    units_of_drives,
 )
 from centrode.kinematics.ready import ready
 from centrode.kinematics.several_drives.partials import Partials, partials
@@ -77,7 +76,7 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
         )
     found = partials(solved)
     variables = {"status": judgements_of(found.solved, ())["status"]}
-    units, length = units_of_drives(solved), solved.layout.space.unit
+    units, length = solved.ready.parameter.units, solved.layout.space.unit
     for number, kind in enumerate(kinds_of(solved)):
         first, second = _tensors(found, number)
         for word, values, drives in (("velocity", first, 1), ("acceleration", second, 2)):

@@ -27,17 +27,10 @@ from centrode.laws import Uniform
 from centrode.locale import _
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.problems import nearest
-from centrode.model.units import to_si
-from centrode.structure.dimensions import SPACES
 from centrode.structure.groups import Newton
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Value: TypeAlias = float | str
-
-
-def unit_of_value(mechanism: Mechanism, drive: Drive) -> str:
-    """SI unit of a drive's value."""
-    return "rad" if drive.kind == "angle" else SPACES[mechanism.space].unit
 
 
 def named_drive(mechanism: Mechanism, name: str, where: str) -> Drive:
@@ -50,11 +43,7 @@ def named_drive(mechanism: Mechanism, name: str, where: str) -> Drive:
 
 def value_of(ready: Ready, drive: Drive, value: Value, where: str) -> float:
     """Value of a drive [rad or m] of a number in SI, or of a text with a unit ("30 deg"); not too far away."""
-    kind = "angle" if unit_of_value(ready.mechanism, drive) == "rad" else "length"
-    try:
-        found = to_si(value, kind)
-    except InputError as error:
-        raise InputError(where, error.what, error.repair) from None
+    found = ready.parameter.drive(drive.id).read(value, where)
     way = abs(found - initial_values(ready)[drive.id]) / unit_of(drive, ready.kinematics.path.scale)
     if way > tau * MAX_TURNS:
         raise InputError(
@@ -94,7 +83,8 @@ def held_path(ready: Ready, drive: str, initial: float, held: Mapping[str, float
     """The path of one drive's value; the values held may be arrays (lanes, 1)."""
     path = ready.kinematics.path
     one = next(one for one in path.driven if one.drive.id == drive)
-    return Path((one,), initial, 1.0, unit_of(one.drive, path.scale), path.scale, None, dict(held))
+    unit, parameter = unit_of(one.drive, path.scale), path.parameter.along(drive)
+    return Path((one,), parameter, initial, 1.0, unit, path.scale, None, dict(held))
 
 
 def starting_at(ready: Ready, path: Path) -> Continuation:
@@ -147,7 +137,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
     )
     fastest = max(abs(ways[one.drive.id]) / unit_of(one.drive, old.scale) for one in driven)
     pace = Pace.of(lambda times: np.full(len(times), fastest))
-    path = Path(driven, 0.0, 1.0, pace.unit_at(0.0), old.scale, pace)
+    path = Path(driven, old.parameter.in_time(), 0.0, 1.0, pace.unit_at(0.0), old.scale, pace)
     kinematics = replace(ready.kinematics, path=path)
     smooth = ready.mechanism.assembly.continuation == "smooth"
     first = ready.assembled

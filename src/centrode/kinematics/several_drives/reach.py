@@ -22,7 +22,6 @@ from centrode.kinematics.several_drives.holding import (
     initial_values,
     named_drive,
     starting_at,
-    unit_of_value,
     value_of,
 )
 from centrode.kinematics.solve import SEARCH, TURNS
@@ -156,7 +155,7 @@ def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: 
         for event in continuation.branches.events
         if event.kind == "change point" and low <= event.at <= high and abs(event.at - about) <= extent
     ]
-    unit = unit_of_value(prepared.mechanism, path.driven[0].drive)
+    unit = path.parameter.variable.unit
     found = tuple(sorted(inside, key=lambda one: one.value))
     return Limits(drive, unit, about, dict(held), end(low), end(high), found)
 

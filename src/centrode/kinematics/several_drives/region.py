@@ -19,7 +19,6 @@ from centrode.kinematics.several_drives.holding import (
     held_values,
     initial_values,
     named_drive,
-    unit_of_value,
 )
 from centrode.kinematics.several_drives.ranges import Ranges, comes_round, grid_nodes, node_of
 from centrode.locale import _, speaking
@@ -173,7 +172,7 @@ def _dataset(
     held: Mapping[str, float],
 ) -> xr.Dataset:
     mechanism, start = prepared.mechanism, initial_values(prepared)
-    units = [unit_of_value(mechanism, named_drive(mechanism, name, "drives")) for name in pair]
+    units = [prepared.parameter.drive(name).unit for name in pair]
     each = units[0] if units[0] == units[1] else " ".join(units)
     variables["border_value"][2]["units"] = each
     initial = np.array([start[name] for name in pair])

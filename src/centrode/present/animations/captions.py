@@ -11,7 +11,7 @@ from centrode.cams.followers.guidance import Oscillating
 from centrode.errors import Status
 from centrode.locale import decimal_mark
 from centrode.present.animations.layers import Array
-from centrode.present.shown import drive_unit, shown_as
+from centrode.present.shown import shown_as
 from centrode.quantities import QUANTITIES, status_word, typeset_unit
 
 if TYPE_CHECKING:
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from centrode.study.moving.films import Film
 
 DIGITS = 4
-SYMBOLS = {"angle": "φ", "displacement": "s", "distance": "l"}
 
 
 def instant_captions(film: Film) -> list[str]:
@@ -29,12 +28,9 @@ def instant_captions(film: Film) -> list[str]:
     The status stands there where it is not in order. All have as many decimals, so that no digit jumps.
     """
     mechanism = film.mechanism
-    if len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None:
-        factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
-        symbol = SYMBOLS[mechanism.drives[0].kind]
-        values = factor * film.motion["drive_value"].isel(drive=0).to_numpy()
-    else:
-        symbol, unit, values = QUANTITIES["time"].symbol, "s", film.motion["time"].to_numpy()
+    parameter = mechanism.motion_parameter
+    factor, unit = shown_as(parameter.instant.unit, mechanism.display)
+    symbol, values = parameter.instant.symbol, factor * parameter.instants(film.motion)
     decimals = _decimals(values, unit)
     # plain text: mathematical text is laid out for every frame anew, at many times the cost
     texts = [f"{symbol} = {_plain(value, decimals)} {typeset_unit(unit)}" for value in values]

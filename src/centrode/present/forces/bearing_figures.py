@@ -19,7 +19,7 @@ from centrode.present.curves import say_nothing_known, write_title
 from centrode.present.forces.force_picture import force_page
 from centrode.present.forces.wear_figures import JOURNAL, NAME_POINTS, draw_wear
 from centrode.present.labels import label_places
-from centrode.present.shown import drive_unit, formula, labelled, plain, shown_as
+from centrode.present.shown import formula, labelled, plain, shown_as
 from centrode.present.style import INK, Decimals, house_style
 from centrode.quantities import QUANTITIES
 
@@ -133,12 +133,9 @@ def _at(force: Array, at: tuple[int, float]) -> Array | None:
 
 def _marks(mechanism: Mechanism, bearings: xarray.Dataset) -> list[tuple[str, tuple[int, float]]]:
     """Texts of round values of the drive, with the sample and the share of the step behind it; else of time."""
-    by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    if by_value:
-        factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
-        values = factor * bearings["drive_value"].isel(drive=0).to_numpy()
-    else:
-        unit, values = "s", bearings["time"].to_numpy()
+    parameter = mechanism.motion_parameter
+    factor, unit = shown_as(parameter.instant.unit, mechanism.display)
+    values = factor * parameter.instants(bearings)
     if len(values) < 2 or values[0] == values[-1]:
         return []
     turn = {"deg": 360.0, "rad": 2.0 * np.pi}.get(unit, 0.0)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.present.shown import drive_unit, shown_as
+from centrode.present.shown import shown_as
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
@@ -22,10 +22,10 @@ def write_bearing_loads_csv(mechanism: Mechanism, loads: Sequence[BearingLoad], 
     loads : sequence of BearingLoad
         Of `bearing_loads`. Forces and moments are SI, places and directions in the units of the display.
     """
-    by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    factor, unit = shown_as(drive_unit(mechanism), mechanism.display) if by_value else (1.0, "s")
+    parameter = mechanism.motion_parameter
+    factor, unit = shown_as(parameter.instant.unit, mechanism.display)
     turn, angle = shown_as("rad", mechanism.display)
-    where = ("drive_value" if by_value else "time") + f" [{unit}]"
+    where = ("drive_value" if parameter.is_uniform else "time") + f" [{unit}]"
     header = ["reaction", "unit", "greatest", f"greatest at {where}", f"direction [{angle}]"]
     header += ["least", f"least at {where}", "mean", "rms"]
     with Path(path).open("w", encoding="utf-8", newline="") as file:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from centrode.locale import _
 from centrode.present.abscissa import Abscissa
 from centrode.present.curves import Panel, sheet
-from centrode.present.shown import drive_unit, formula, labelled, plain, shown_as
+from centrode.present.shown import formula, labelled, plain, shown_as
 from centrode.present.style import house_style, pens
 from centrode.quantities import QUANTITIES
 
@@ -84,11 +84,11 @@ def _over(
 def _phase(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
     """The drive's value; of one that turns on and on within one turn, with gaps where a new one begins."""
     values = dataset["drive_value"].to_numpy()[:, 0]
-    factor, unit = shown_as(drive_unit(mechanism), mechanism.display)
+    factor, unit = shown_as(mechanism.motion_parameter.drives[0].unit, mechanism.display)
     quantity = QUANTITIES["drive_value"]
     label = labelled(f"{quantity.title} {formula(quantity.symbol)}", unit)
     breaks: NDArray[np.intp] | None = None
-    if mechanism.drives[0].kind == "angle" and np.ptp(values) > TURN:
+    if mechanism.motion_parameter.turns and np.ptp(values) > TURN:
         turn = np.floor(values / TURN)
         values, breaks = values - TURN * turn, np.flatnonzero(np.diff(turn)) + 1
     return _over(dataset, factor * values, label, unit, breaks)

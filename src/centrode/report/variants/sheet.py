@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _, chosen_language, ngettext
 from centrode.model.paths import kind_at
 from centrode.model.units import KINDS
@@ -133,8 +132,7 @@ class _Sheet:
         link_head = _("Links") if flat else _("Angles of the links, from their reference arcs")
         units = POINTS if flat else (("v", "1/s"), ("a", "1/s^2"))
         drives = {
-            drive.id: "N m" if unit_of_value(self.topology, drive) == "rad" else "N"
-            for drive in self.topology.drives
+            coordinate.name: coordinate.force_unit for coordinate in self.topology.motion_parameter.drives
         }
         sections = []
         for title, key, kinds in ((link_head, "links", LINKS), (_("Points"), "points", units)):

@@ -11,11 +11,9 @@ import xarray as xr
 
 from centrode.dynamics.kinetostatics.reactions import Speed
 from centrode.dynamics.kinetostatics.reactions import reactions as reactions_of
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import display_unit
-from centrode.study.forces.bearings import places_of
 from centrode.study.forces.named_reactions import each_reaction
 from centrode.study.scalars import Scalar
 
@@ -84,7 +82,7 @@ def bearing_loads(mechanism: Mechanism, reactions: xr.Dataset) -> tuple[BearingL
     of samples, values of smooth curves to its square times their curvature, beside a jump to it times their slope. An
     extreme that no sample is near is missed. Means are by the trapezoid rule over time, of what is reached.
     """
-    places, time = places_of(mechanism, reactions), reactions["time"].to_numpy()
+    places, time = mechanism.motion_parameter.instants(reactions), reactions["time"].to_numpy()
     curves = [one for one in each_reaction(mechanism, reactions) if np.isfinite(one[3]).any()]
     tops = [
         top
@@ -133,8 +131,7 @@ def bearing_load_rows(mechanism: Mechanism, loads: tuple[BearingLoad, ...]) -> T
 
 def bearing_load_scalars(mechanism: Mechanism, loads: tuple[BearingLoad, ...]) -> dict[str, Scalar]:
     """The same as numbers of a summary, in SI."""
-    by_value = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    unit = unit_of_value(mechanism, mechanism.drives[0]) if by_value else "s"
+    unit = mechanism.motion_parameter.instant.unit
     found: dict[str, Scalar] = {}
     for one in loads:
         found |= {
@@ -148,10 +145,7 @@ def bearing_load_scalars(mechanism: Mechanism, loads: tuple[BearingLoad, ...]) -
 
 def _place(mechanism: Mechanism, at: float) -> str:
     """The value of the drive at an extreme, or the time."""
-    if len(mechanism.drives) > 1 or mechanism.drives[0].speed is None:
-        return f"{at:.6g} s"
-    display = mechanism.display
-    unit = unit_of_value(mechanism, mechanism.drives[0])
+    display, unit = mechanism.display, mechanism.motion_parameter.instant.unit
     factor, shown = display_unit(unit, str(display.length), str(display.angle))
     return f"{factor * at:.6g} {shown}"
 

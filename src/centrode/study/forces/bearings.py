@@ -130,23 +130,17 @@ def _check(sectors: int, arc: float) -> None:
         raise InputError("arc", what, _("give more than 0 and at most 2 pi"))
 
 
-def places_of(mechanism: Mechanism, reactions: xr.Dataset) -> Array:
-    """What `at` takes for the samples of reactions: values of the only drive, if it has a speed; else times."""
-    uniform = len(mechanism.drives) == 1 and mechanism.drives[0].speed is not None
-    places: Array = (reactions["drive_value"].isel(drive=0) if uniform else reactions["time"]).to_numpy()
-    return places
-
-
 def motion_beside(mechanism: Mechanism, reactions: xr.Dataset) -> xr.Dataset:
     """The motion at the samples of reactions."""
-    return motion(mechanism, at=places_of(mechanism, reactions))
+    return motion(mechanism, at=mechanism.motion_parameter.instants(reactions))
 
 
 def _moving(mechanism: Mechanism, reactions: xr.Dataset, there: xr.Dataset | None) -> dict[str, Array]:
     """Angles of all bodies at the samples."""
-    places = places_of(mechanism, reactions)
+    parameter = mechanism.motion_parameter
+    places = parameter.instants(reactions)
     there = motion_beside(mechanism, reactions) if there is None else there
-    if not np.array_equal(places_of(mechanism, there), places):
+    if not np.array_equal(parameter.instants(there), places):
         raise InputError("motion_there", _("it has other samples than the reactions"))
     angles = there["angle"].transpose("link", "sample").to_numpy()
     return {

@@ -43,7 +43,7 @@ def _speed(found: ForcePolygons) -> str:
     texts = []
     for drive in found.mechanism.drives:
         rate = found.speed[drive.id]
-        unit = "rad/s" if drive.kind == "angle" else "m/s"
+        unit = found.mechanism.motion_parameter.drive(drive.id).speed_unit
         texts.append(_("as the drive moves") if math.isnan(rate) else f"{rate:.6g} {unit}")
     text = ", ".join(texts)
     return (
@@ -136,7 +136,7 @@ def polygon_balance_rows(found: ForcePolygons) -> Rows:
         apart = max(known) - min(known)
         none = NONE * max(size, *map(abs, known))
         shown = ["-" if value is None else _moment(value, none) for value in routes]
-        unit = "N m" if drive.kind == "angle" else "N"
+        unit = found.mechanism.motion_parameter.drive(drive.id).force_unit
         rows.append((drive.id, unit, *shown, "0" if apart == 0.0 else f"{apart:.1e}"))
     return rows
 

@@ -13,7 +13,6 @@ from centrode.dynamics.steady_motion.flywheel import Flywheel, flywheel_of
 from centrode.dynamics.steady_motion.sizes import SOURCE_DISC, SOURCE_RIM, Wheel
 from centrode.dynamics.steady_motion.solution import solution_of
 from centrode.dynamics.steady_motion.steady import Method, steady_dataset, turned_at
-from centrode.kinematics.spans import is_uniform
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import display_unit
@@ -76,7 +75,7 @@ def machine_results(
 ) -> MachineResults:
     """Everything about the machine of a description; arguments and errors are those of `ct.steady_motion`."""
     found = solution_of(mechanism, mean)
-    places = mechanism.study.instants if is_uniform(found.prepared.kinematics.path) else ()
+    places = mechanism.study.instants if found.prepared.parameter.is_uniform else ()
     instants = steady_dataset(found, turned_at(found, at=places), method) if places else None
     return MachineResults(
         flywheel_of(found), steady_dataset(found, turned_at(found, samples), method), instants

@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from centrode.dynamics.masses import massless_links
 from centrode.errors import Status
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.spoken import reaction_name, side_name
@@ -66,9 +65,9 @@ def _counts(status: npt.NDArray[np.int8]) -> str:
 def _speed(mechanism: Mechanism, found: xarray.Dataset) -> Rows:
     if "drive_rate" not in found:
         return []
-    unit = unit_of_value(mechanism, mechanism.drives[0])
+    unit = mechanism.motion_parameter.drives[0].speed_unit
     rates = found["drive_rate"].to_numpy()
-    low, high = (f"{rate:.6g} {unit}/s" for rate in (np.min(rates), np.max(rates)))
+    low, high = (f"{rate:.6g} {unit}" for rate in (np.min(rates), np.max(rates)))
     speed = low if low == high else _("{first} to {last}").format(first=low, last=high)
     text = {
         "machine": _("{speed}, the mean speed of the machine"),
@@ -164,7 +163,8 @@ def _number(value: float, noise: float) -> str:
 
 def _place(mechanism: Mechanism, found: xarray.Dataset, sample: int) -> str:
     """The drive's value at a sample; with several drives, or one by a law, the time: what instants are asked for by."""
-    if len(mechanism.drives) > 1 or mechanism.drives[0].speed is None:
-        return f"{float(found['time'].to_numpy()[sample]):.6g} s"
-    unit = unit_of_value(mechanism, mechanism.drives[0])
-    return value_text(float(found["drive_value"].to_numpy()[sample, 0]), unit, mechanism.display)
+    parameter = mechanism.motion_parameter
+    at = float(parameter.instants(found)[sample])
+    if not parameter.is_uniform:
+        return f"{at:.6g} {parameter.instant.unit}"
+    return value_text(at, parameter.instant.unit, mechanism.display)

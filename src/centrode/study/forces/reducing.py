@@ -9,7 +9,6 @@ import numpy.typing as npt
 
 from centrode.dynamics.masses import massless_links
 from centrode.errors import Status
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.spoken import load_name
@@ -45,14 +44,14 @@ def reduction_rows(mechanism: Mechanism, reduction: xarray.Dataset) -> Rows:
 
 
 def _of_one_drive(mechanism: Mechanism, reduction: xarray.Dataset) -> Rows:
-    unit = unit_of_value(mechanism, mechanism.drives[0])
+    coordinate = mechanism.motion_parameter.drives[0]
     rates = reduction["drive_rate"].to_numpy()
-    low, high = (f"{rate:.6g} {unit}/s" for rate in (np.min(rates), np.max(rates)))
+    low, high = (f"{rate:.6g} {coordinate.speed_unit}" for rate in (np.min(rates), np.max(rates)))
     speed = low if low == high else _("{first} to {last}").format(first=low, last=high)
     if reduction.attrs["rate_from"] == "machine":
         speed = _("{speed}, the mean speed of the machine").format(speed=speed)
     jumps = reduction["jumps"].to_numpy()
-    texts = [value_text(float(at), unit, mechanism.display) for at in jumps[:JUMPS_SHOWN]]
+    texts = [value_text(float(at), coordinate.unit, mechanism.display) for at in jumps[:JUMPS_SHOWN]]
     if len(jumps) > JUMPS_SHOWN:
         texts.append(_("and {n} more").format(n=len(jumps) - JUMPS_SHOWN))
     return [

@@ -14,10 +14,9 @@ from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import solve
-from centrode.kinematics.spans import INSIDE, is_uniform, span_at
+from centrode.kinematics.spans import INSIDE, span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.study.forces.bearings import places_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Loop: TypeAlias = Literal["round", "back"]
@@ -86,12 +85,12 @@ def course_of(
     prepared = ready(mechanism)
     found = motion(mechanism, samples, start, stop)
     asked_for = (start, stop, mechanism.study.start, mechanism.study.stop, mechanism.study.range)
-    free = set(asked_for) == {None} and is_uniform(prepared.kinematics.path)
+    free = set(asked_for) == {None} and prepared.parameter.is_uniform
     asked, whole = found.sizes["sample"], usable(found)
     turns = 1
     if free and not whole.all():
         found = _swing(prepared, found)
-    elif free and not closes(found) and mechanism.drives[0].kind == "angle":
+    elif free and not closes(found) and prepared.parameter.turns:
         found, turns = _several_turns(mechanism, found)
     return course_from(mechanism, found, turns=turns, asked=asked, reached=int(whole.sum()))
 
@@ -105,7 +104,7 @@ def course_from(
         raise InputError("", _("no sample has every point in place"), _("ask for another range"))
     first, last = _part(whole, np.abs(found["time"].to_numpy()))
     part = found.isel(sample=slice(first, last + 1))
-    places = places_of(mechanism, part)
+    places = mechanism.motion_parameter.instants(part)
     if places[0] == places[-1]:
         raise InputError("", _("only one position is reached: nothing moves"), _("ask for another range"))
     loop: Loop = "round" if whole.all() and closes(part) and _cams_close(mechanism, part) else "back"
@@ -154,7 +153,7 @@ def _part(whole: npt.NDArray[np.bool_], distance: Array) -> tuple[int, int]:
 def _swing(prepared: Ready, found: xr.Dataset) -> xr.Dataset:
     """The same between the nearest limits on both sides of the initial position, if all of that is reached."""
     path = prepared.kinematics.path
-    way = np.linspace(-math.tau, math.tau, 3) if path.driven[0].drive.kind == "angle" else np.zeros(1)
+    way = np.linspace(-math.tau, math.tau, 3) if path.parameter.turns else np.zeros(1)
     reach = solve(prepared, span_at(path, path.initial + way)).branches.reach(0)
     low, high = (float(end) for end in reach)
     if not (math.isfinite(low) and math.isfinite(high) and high - low < math.tau):

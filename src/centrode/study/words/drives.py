@@ -39,8 +39,8 @@ def sentence_on_drive(drive: Drive, roles: Roles) -> str:
     if drive.turning is not None:
         return _sentence_on_cam(drive, mechanism)
     constant = drive.speed is not None
-    angular = drive.kind == "angle" or mechanism.space == "sphere"
-    speed = "" if drive.speed is None else _speed(mechanism, abs(drive.speed), angular=angular)
+    unit = mechanism.motion_parameter.drive(drive.id).speed_unit
+    speed = "" if drive.speed is None else _speed(mechanism, abs(drive.speed), unit)
     if drive.kind == "distance":
         return _(DRIVEN["cylinder", constant]).format(name=drive.id, speed=speed)
     if drive.guide is not None:
@@ -62,7 +62,7 @@ def sentence_on_drive(drive: Drive, roles: Roles) -> str:
 
 def _sentence_on_cam(drive: Drive, mechanism: Mechanism) -> str:
     """What a cam drives, and how fast it turns."""
-    speed = _speed(mechanism, drive.turning or 0.0, angular=True)
+    speed = _speed(mechanism, drive.turning or 0.0, "rad/s")
     if drive.guide is None:
         return _(BY_CAM["link"]).format(link=called(drive.link or ""), speed=speed)
     guide = mechanism.guide(drive.guide)
@@ -70,8 +70,7 @@ def _sentence_on_cam(drive: Drive, mechanism: Mechanism) -> str:
     return _(BY_CAM[kind]).format(point=guide.point, link=called(guide.link or ""), speed=speed)
 
 
-def _speed(mechanism: Mechanism, speed: float, *, angular: bool) -> str:
+def _speed(mechanism: Mechanism, speed: float, unit: str) -> str:
     display = mechanism.display
-    unit = "rad/s" if angular else "m/s"
     factor, shown = display_unit(unit, str(display.length), str(display.angle))
     return f"{speed * factor:.4g} {typeset_unit(shown)}"

@@ -96,7 +96,6 @@ def roles_of(mechanism: Mechanism) -> Roles:
     for column, guide in enumerate(data["guide"].to_numpy()):
         slides = data["slide"].to_numpy()[:, column]
         strokes[str(guide)], ways[str(guide)] = float(np.ptp(slides)), float(slides[-1] - slides[0])
-    one = len(mechanism.drives) == 1 and mechanism.drives[0].kind == "angle"
     value = data["drive_value"].to_numpy()[:, 0]
-    one_turn = one and abs(abs(value[-1] - value[0]) - math.tau) < WHOLE
+    one_turn = mechanism.motion_parameter.turns and abs(abs(value[-1] - value[0]) - math.tau) < WHOLE
     return Roles(mechanism, swings, turned, strokes, ways, one_turn)

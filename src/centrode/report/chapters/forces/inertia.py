@@ -9,7 +9,6 @@ import numpy as np
 from centrode.locale import _
 from centrode.report.blocks import Block, Table, shown
 from centrode.report.chapters.forces.by_links import motions_of_links
-from centrode.report.chapters.forces.places import by_value
 from centrode.report.chapters.forces.results import motion_at_instants, reactions_at_instants
 from centrode.report.formulas import in_si
 
@@ -26,7 +25,7 @@ def inertia_at(study: ReportStudy, k: int) -> list[Block]:
     if not names:
         return []
     columns: list[tuple[str, str, np.ndarray]] = []
-    if study.is_planar and by_value(study) and "drive_rate" in here:
+    if study.is_planar and study.mechanism.motion_parameter.is_uniform and "drive_rate" in here:
         columns += _accelerations(study, float(here["drive_rate"]), k)
     force, moment = here["inertia_force"].to_numpy(), here["inertia_moment"].to_numpy()
     axes = here["axis"].to_numpy().tolist()

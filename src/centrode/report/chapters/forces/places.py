@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.report.blocks import shown
 from centrode.report.moments import moments_of
@@ -20,12 +19,6 @@ COURSE = 25
 """Rows of a table over a motion."""
 
 
-def by_value(study: ReportStudy) -> bool:
-    """Whether places are values of the one drive, and not times."""
-    drives = study.mechanism.drives
-    return len(drives) == 1 and drives[0].speed is not None
-
-
 def instants(study: ReportStudy) -> tuple[float, ...]:
     """The instants that are shown: values of the drive; by a law or with several drives times."""
     return tuple(moment.at for moment in moments_of(study))
@@ -33,7 +26,7 @@ def instants(study: ReportStudy) -> tuple[float, ...]:
 
 def unit_of_place(study: ReportStudy) -> str:
     """SI unit of a place."""
-    return unit_of_value(study.mechanism, study.mechanism.drives[0]) if by_value(study) else "s"
+    return study.mechanism.motion_parameter.instant.unit
 
 
 def titles(study: ReportStudy) -> tuple[str, ...]:
@@ -43,12 +36,13 @@ def titles(study: ReportStudy) -> tuple[str, ...]:
 
 def head_of_places(study: ReportStudy) -> str:
     """Head of a column of places, without the unit."""
-    return shown(study.mechanism.drives[0].id) if by_value(study) else "$t$"
+    parameter = study.mechanism.motion_parameter
+    return shown(parameter.drives[0].name) if parameter.is_uniform else f"${parameter.instant.symbol}$"
 
 
 def places_of(study: ReportStudy, data: xr.Dataset) -> np.ndarray:
     """Places of the samples of a dataset [rad, m or s]."""
-    return np.asarray(data["drive_value"].to_numpy()[:, 0] if by_value(study) else data["time"].to_numpy())
+    return np.asarray(study.mechanism.motion_parameter.instants(data))
 
 
 def few(count: int, most: int = COURSE) -> list[int]:

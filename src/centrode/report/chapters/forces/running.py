@@ -88,8 +88,7 @@ def _energy(study: ReportStudy) -> list[Check]:
 def _regime(study: ReportStudy) -> list[Section]:
     """The steady regime, or the periodic motion, of a drive that has turned all the way round."""
     mechanism, found = study.mechanism, simulated(study)
-    angular = mechanism.drives[0].kind == "angle"
-    if not angular or found.attrs["ended"] not in ("duration", "turns"):
+    if not mechanism.motion_parameter.turns or found.attrs["ended"] not in ("duration", "turns"):
         return []
     if not float(found["turned"].to_numpy().max()) >= tau:
         return []

@@ -9,7 +9,6 @@ import numpy as np
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.report.blocks import Block, Formula, Paragraph
-from centrode.report.chapters.forces.places import by_value
 from centrode.report.chapters.forces.results import reactions_at_instants, reduced_at_instants
 from centrode.report.formulas import factor, in_si, squared, with_unit
 from centrode.report.telling import measured
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 def by_virtual_work(study: ReportStudy, k: int) -> list[Block]:
     """The formula with its numbers and the check; nothing where the rate changes or friction grows with reactions."""
     found = reactions_at_instants(study).isel(sample=k)
-    if not by_value(study) or "drive_rate" not in found:
+    if not study.mechanism.motion_parameter.is_uniform or "drive_rate" not in found:
         return []
     try:
         here = reduced_at_instants(study).isel(sample=k)

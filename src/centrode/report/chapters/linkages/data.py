@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam
 from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
@@ -161,13 +160,13 @@ class _Data:
         yield from segment_tables(cam, self.numbers)
 
     def _drive(self, drive: Drive) -> tuple[str, ...]:
-        unit = unit_of_value(self.mechanism, drive)
-        start = "" if drive.start is None else self.numbers.measured(drive.start, unit)
-        return shown(drive.id), _given(drive), start, self._law(drive, unit)
+        coordinate = self.mechanism.motion_parameter.drive(drive.id)
+        start = "" if drive.start is None else self.numbers.measured(drive.start, coordinate.unit)
+        return shown(drive.id), _given(drive), start, self._law(drive, coordinate.speed_unit)
 
-    def _law(self, drive: Drive, unit: str) -> str:
+    def _law(self, drive: Drive, speed_unit: str) -> str:
         if drive.speed is not None:
-            rate = self.numbers.measured(drive.speed, f"{unit}/s")
+            rate = self.numbers.measured(drive.speed, speed_unit)
             return _("constant {rate}").format(rate=rate)
         if drive.cam is not None:
             return _("lift of a cam")

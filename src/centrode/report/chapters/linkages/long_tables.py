@@ -10,7 +10,6 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import Status
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import FRAME
 from centrode.present.equations.typst import word
@@ -123,7 +122,7 @@ def _front(study: ReportStudy, data: xr.Dataset) -> list[Column]:
     numbers = study.numbers
     found = [Column(numbers.head("$t$", "s"), numbers.column(known(data["time"]), "s"))]
     for k, drive in enumerate(study.mechanism.drives):
-        unit = unit_of_value(study.mechanism, drive)
+        unit = study.mechanism.motion_parameter.drive(drive.id).unit
         if drive.link is not None and drive.relative_to == FRAME:
             continue  # its angle stands among those of the links
         values = known(data["drive_value"])[:, k]

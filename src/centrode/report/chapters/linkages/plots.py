@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from centrode.locale import _, mark
 from centrode.present.figures import motion_figures
-from centrode.present.pictures import instants_of
 from centrode.report.blocks import Chapter, Section
 from centrode.report.figures import picture
 from centrode.report.moments import moments_of
@@ -28,7 +27,7 @@ def plots_chapter(study: ReportStudy) -> Chapter | None:
     if not study.is_planar:
         return None
     exact = moments_of(study)[0].data if study.wishes.instants else None
-    instants = [] if exact is None else instants_of(exact).tolist()
+    instants = [] if exact is None else study.mechanism.motion_parameter.values(exact).tolist()
     figures = motion_figures(study.mechanism, study.motion, instants, exact)
     blocks = tuple(picture(figure, _(CAPTIONS[name])) for name, figure in figures.items())
     return Chapter("plots", _("Plots of the motion"), (Section("", blocks),))

@@ -7,7 +7,6 @@ import xarray as xr
 
 from centrode.analysis.position_plan import plan_of_positions
 from centrode.errors import Status
-from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.present.plan_drawing import COLUMN, TOP, plan_figure
 from centrode.report.blocks import Chapter, Section, Table, shown
@@ -41,7 +40,7 @@ def positions_chapter(study: ReportStudy) -> Chapter | None:
 
 def _table(study: ReportStudy, data: xr.Dataset) -> Table:
     numbers, drive = study.numbers, study.mechanism.drives[0]
-    unit = unit_of_value(study.mechanism, drive)
+    unit = study.mechanism.motion_parameter.drive(drive.id).unit
     head = [_("position"), numbers.head(shown(drive.id), unit)]
     values = data["drive_value"].to_numpy()[:, 0]
     ok = data["status"].to_numpy() == Status.OK

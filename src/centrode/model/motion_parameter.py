@@ -1,0 +1,216 @@
+"""The parameter of a motion: time or the value of the one drive; its kind, unit and symbol, and how instants are stated.
+
+With one drive the parameter is the value of that drive, so positions do not depend on its law; with several drives it
+is time. An instant of a motion is a value of the drive where one drive runs at constant speed. Otherwise it is a time,
+because a law of time may pass the same value more than once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar
+
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model.problems import nearest, shown
+from centrode.model.units import KINDS, to_si
+
+if TYPE_CHECKING:
+    from centrode.model.driving import Drive
+
+Kind: TypeAlias = Literal["time", "angle", "length"]
+"""A kind of quantity by its name in `units.KINDS`."""
+
+Number = TypeVar("Number", bound=Any)
+
+SPEED_KINDS: Mapping[Kind, str] = {"angle": "angular speed", "length": "speed"}
+"""Kind of the value of a drive -> kind of its speed."""
+FORCE_UNITS: Mapping[Kind, str] = {"angle": "N m", "length": "N"}
+"""Kind of the value of a drive -> SI unit of what it gives: a moment along an angle, a force along a length."""
+SYMBOLS: Mapping[str, str] = {"angle": "φ", "displacement": "s", "distance": "l"}
+"""What is driven -> letter of its value in figures."""
+
+
+@dataclass(frozen=True)
+class MotionVariable:
+    """Time, or the value of a drive.
+
+    Attributes
+    ----------
+    kind : "time", "angle" or "length"
+    symbol : letter in figures
+    """
+
+    kind: Kind
+    symbol: str
+
+    @property
+    def unit(self) -> str:
+        """SI unit: "s", "rad" or "m"."""
+        return KINDS[self.kind].unit
+
+    def read(self, text: float | str, where: str) -> float:
+        """Value [s, rad or m] of a number in SI or of a text with a unit ("30 deg").
+
+        Raises InputError, which names `where`, for a text that is no number or has a unit of another kind.
+        """
+        try:
+            return to_si(text, self.kind)
+        except InputError as error:
+            raise InputError(where, error.what, error.repair) from None
+
+
+TIME = MotionVariable("time", "t")
+
+
+@dataclass(frozen=True)
+class DriveCoordinate(MotionVariable):
+    """The value of one drive as a coordinate of the mechanism; on the sphere a displacement is an arc, so an angle.
+
+    Attributes
+    ----------
+    name : id of the drive
+    driven : "angle" of a link, "displacement" along a guide, "distance" of two points
+    speed : float [rad/s or m/s], where it is constant; None for every other law of time
+    """
+
+    name: str
+    driven: str
+    speed: float | None
+
+    @property
+    def speed_kind(self) -> str:
+        """Kind of the speed by its name in `units.KINDS`."""
+        return SPEED_KINDS[self.kind]
+
+    @property
+    def speed_unit(self) -> str:
+        """SI unit of the speed: "rad/s" or "m/s"."""
+        return KINDS[self.speed_kind].unit
+
+    @property
+    def force_unit(self) -> str:
+        """SI unit of what the drive gives: "N m" or "N"."""
+        return FORCE_UNITS[self.kind]
+
+    @property
+    def turns(self) -> bool:
+        """Whether a full turn of the value brings the driven link back: only the angle of a link does that."""
+        return self.driven == "angle"
+
+
+@dataclass(frozen=True)
+class MotionParameter:
+    """What a motion is a function of, and what states an instant of it.
+
+    Attributes
+    ----------
+    drives : the coordinates of the drives, in description order
+    by_time : whether the parameter is time; else it is the value of the one drive
+    """
+
+    drives: tuple[DriveCoordinate, ...]
+    by_time: bool
+
+    @classmethod
+    def of(cls, drives: Sequence[Drive], space: str) -> MotionParameter:
+        """The parameter of a mechanism with these drives, in the plane or on the sphere."""
+        return cls(
+            tuple(drive_coordinate(one.id, one.kind, space, one.speed) for one in drives), len(drives) > 1
+        )
+
+    @property
+    def variable(self) -> MotionVariable:
+        """The parameter itself; it gives the places of limits and change points."""
+        return TIME if self.by_time else self.drives[0]
+
+    @property
+    def instant(self) -> MotionVariable:
+        """What states an instant, and counts samples: the value of a drive at constant speed, else time."""
+        return self.drives[0] if self.is_uniform else TIME
+
+    @property
+    def constant_speed(self) -> float | None:
+        """Speed [rad/s or m/s] of the one drive where it is constant; None for another law and for several drives."""
+        return None if self.by_time or not self.drives else self.drives[0].speed
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether one drive runs at constant speed."""
+        return self.constant_speed is not None
+
+    @property
+    def states_instants(self) -> bool:
+        """Whether the parameter states instants; the value of a drive by a law does not, since it may come again."""
+        return self.by_time or self.is_uniform
+
+    @property
+    def turns(self) -> bool:
+        """Whether the parameter is the angle of a link, so that a full turn brings that link back."""
+        return not self.by_time and self.drives[0].turns
+
+    @property
+    def units(self) -> list[str]:
+        """SI units of the values of all drives."""
+        return [one.unit for one in self.drives]
+
+    def drive(self, name: str) -> DriveCoordinate:
+        """The coordinate of the drive of an id; InputError where there is no such drive."""
+        for one in self.drives:
+            if one.name == name:
+                return one
+        what = _("there is no drive {name}").format(name=shown(name))
+        raise InputError("", what, nearest(name, [one.name for one in self.drives]))
+
+    def along(self, name: str) -> MotionParameter:
+        """The parameter of the motion by one drive while the others are held."""
+        return MotionParameter((self.drive(name),), by_time=False)
+
+    def in_time(self) -> MotionParameter:
+        """The parameter of a motion of the same drives by time, even of a single one."""
+        return MotionParameter(self.drives, by_time=True)
+
+    def values(self, motion: Any) -> Any:
+        """Values of the parameter (sample) of a dataset with `time` and `drive_value`."""
+        return _values(motion, self.variable)
+
+    def instants(self, motion: Any) -> Any:
+        """Instants (sample) of a dataset with `time` and `drive_value`, as `at` of the computations takes them."""
+        return _values(motion, self.instant)
+
+    def times(self, values: Number, start: float, speed: float | None = None) -> Number:
+        """Times [s] at which a drive at constant speed passes values; `start` is its value at t = 0.
+
+        `speed` stands in place of the drive's own: the mean speed of a machine. Neither may be zero.
+        """
+        return (values - start) / (self._speed if speed is None else speed)
+
+    def value_at(self, time: float, start: float) -> float:
+        """Value [rad or m] of a drive at constant speed at a time [s]; `start` is its value at t = 0."""
+        return start + self._speed * time
+
+    @property
+    def _speed(self) -> float:
+        speed = self.constant_speed
+        assert speed is not None, "only one drive at constant speed converts values and times"
+        return speed
+
+
+def drive_coordinate(name: str, driven: str, space: str, speed: float | None) -> DriveCoordinate:
+    """The coordinate of a drive in the plane or on the sphere."""
+    return DriveCoordinate(kind_of_value(driven, space), SYMBOLS[driven], name, driven, speed)
+
+
+def kind_of_value(driven: str, space: str) -> Kind:
+    """Kind of the value of a drive: an angle for the angle of a link, and for every arc on the sphere."""
+    return "angle" if driven == "angle" or space == "sphere" else "length"
+
+
+def _values(motion: Any, variable: MotionVariable) -> Any:
+    values = motion["time"] if variable is TIME else motion["drive_value"].isel(drive=0)
+    return values.to_numpy()
+
+
+UNDRIVEN = MotionParameter((drive_coordinate("", "angle", "plane", 0.0),), by_time=False)
+"""Of a description without drives, while it is read: values are those of a link that turns."""
