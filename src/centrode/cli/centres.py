@@ -117,8 +117,9 @@ def named_pairs(texts: Iterable[str]) -> list[tuple[str, str]]:
 
 
 def _usual(description: ct.Mechanism) -> list[float]:
-    """The instants of the study, else the initial position."""
-    return list(description.study.instants) or [ct.initial_place(description)]
+    """The instants of the study, where its values of the drive state instants; else the initial position."""
+    stated = description.study.instants if description.motion_parameter.states_instants else ()
+    return list(stated) or [ct.initial_place(description)]
 
 
 def _check_rows(names: tuple[str, ...], asked: list[tuple[str, str]] | None) -> None:

@@ -1,4 +1,4 @@
-"""The parameter of a motion: time or the value of the one drive; its kind, unit and symbol, and how instants are stated.
+"""The parameter of a motion: time or the value of the one drive; its kind, unit, symbol, and what states an instant.
 
 With one drive the parameter is the value of that drive, so positions do not depend on its law; with several drives it
 is time. An instant of a motion is a value of the drive where one drive runs at constant speed. Otherwise it is a time,
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Kind: TypeAlias = Literal["time", "angle", "length"]
 """A kind of quantity by its name in `units.KINDS`."""
 
-Number = TypeVar("Number", bound=Any)
+Number: TypeAlias = Any
 
 SPEED_KINDS: Mapping[Kind, str] = {"angle": "angular speed", "length": "speed"}
 """Kind of the value of a drive -> kind of its speed."""
@@ -62,6 +62,8 @@ class MotionVariable:
 
 
 TIME = MotionVariable("time", "t")
+ANGLE = MotionVariable("angle", "φ")
+"""Of a cam or of its carrier: what the motion of a cam is a function of."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ class MotionParameter:
     @property
     def variable(self) -> MotionVariable:
         """The parameter itself; it gives the places of limits and change points."""
-        return TIME if self.by_time else self.drives[0]
+        return TIME if self.by_time or not self.drives else self.drives[0]
 
     @property
     def instant(self) -> MotionVariable:
@@ -148,7 +150,7 @@ class MotionParameter:
     @property
     def turns(self) -> bool:
         """Whether the parameter is the angle of a link, so that a full turn brings that link back."""
-        return not self.by_time and self.drives[0].turns
+        return not self.by_time and bool(self.drives) and self.drives[0].turns
 
     @property
     def units(self) -> list[str]:
@@ -179,7 +181,7 @@ class MotionParameter:
         """Instants (sample) of a dataset with `time` and `drive_value`, as `at` of the computations takes them."""
         return _values(motion, self.instant)
 
-    def times(self, values: Number, start: float, speed: float | None = None) -> Number:
+    def times(self, values: Number, start: float, speed: Any = None) -> Number:
         """Times [s] at which a drive at constant speed passes values; `start` is its value at t = 0.
 
         `speed` stands in place of the drive's own: the mean speed of a machine. Neither may be zero.
@@ -205,6 +207,11 @@ def drive_coordinate(name: str, driven: str, space: str, speed: float | None) ->
 def kind_of_value(driven: str, space: str) -> Kind:
     """Kind of the value of a drive: an angle for the angle of a link, and for every arc on the sphere."""
     return "angle" if driven == "angle" or space == "sphere" else "length"
+
+
+def parameter_values(motion: Any) -> Any:
+    """Values of the parameter (sample) of a labelled motion, by the number of drives that it has."""
+    return _values(motion, TIME if motion.sizes["drive"] > 1 else ANGLE)
 
 
 def _values(motion: Any, variable: MotionVariable) -> Any:

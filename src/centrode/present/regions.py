@@ -171,5 +171,5 @@ def _frame(axes: Axes, mechanism: Mechanism, region: xarray.Dataset) -> None:
         axis.set_major_formatter(Decimals())
         angle_ticks(axis, float(shown[0]), float(shown[-1]), unit, 9)
         drive = region["drive"].to_numpy()[0 if name == "first" else 1]
-        text = text_of_drive(next(one for one in mechanism.drives if one.id == drive))
+        text = text_of_drive(mechanism.motion_parameter.drive(str(drive)))
         axis.set_label_text(labelled(text, unit))

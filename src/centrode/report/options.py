@@ -10,10 +10,9 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cams.files import AnyCam
 from centrode.model.mechanism import Mechanism
+from centrode.model.motion_parameter import ANGLE
 from centrode.model.problems import nearest, shown
 from centrode.model.reports import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
-from centrode.model.units import to_si
-from centrode.study.running import range_value
 
 Wished = TypeVar("Wished")
 
@@ -76,13 +75,12 @@ def settled(description: Mechanism | AnyCam, options: ReportOptions, known: Iter
 
 
 def instant(description: Mechanism | AnyCam, text: float | str, where: str) -> float:
-    """The place of a motion that a number or a text with a unit names [rad, m or s]; `where` it was given."""
-    if isinstance(description, Mechanism):
-        return range_value(description, text, where)
-    try:
-        return to_si(text, "angle")
-    except InputError as error:
-        raise InputError(where, error.what, error.repair) from None
+    """Value of the drive, a time with several drives, an angle of a cam [rad, m or s], of a number or a text.
+
+    Raises InputError, which names `where`, for a unit of another kind.
+    """
+    known = description.motion_parameter.variable if isinstance(description, Mechanism) else ANGLE
+    return known.read(text, where)
 
 
 def _first(wish: Wished | None, other: Wished | None) -> Wished | None:

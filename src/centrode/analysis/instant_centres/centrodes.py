@@ -16,6 +16,7 @@ from centrode.analysis.instant_centres.relative import seen_by
 from centrode.analysis.instant_centres.turning_bodies import turning_bodies_of
 from centrode.errors import Status
 from centrode.kinematics.dataset import named
+from centrode.model.motion_parameter import parameter_values
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(4)
 
@@ -103,9 +104,7 @@ def _pieces(found: Polodes, present: npt.NDArray[np.bool_]) -> npt.NDArray[np.in
 
 def _steps(motion: xr.Dataset) -> Array:
     """By how much the parameter of the rates grows from sample to sample."""
-    by_drive = "velocity_coefficient" in motion
-    parameter = motion["drive_value"].isel(drive=0) if by_drive else motion["time"]
-    return np.asarray(np.gradient(parameter.to_numpy()) if motion.sizes["sample"] > 1 else np.zeros(1))
+    return np.asarray(np.gradient(parameter_values(motion)) if motion.sizes["sample"] > 1 else np.zeros(1))
 
 
 def _tamed(chord: Array, first: Array, last: Array) -> tuple[Array, Array]:

@@ -51,7 +51,7 @@ def _at(study: ReportStudy, here: xr.Dataset, k: int) -> list[Block]:
 
 def _table_of_links(study: ReportStudy, links: list[LinkMotion]) -> Table:
     """What the sums are made of: masses and coefficients."""
-    numbers, by = in_si(study.numbers), "m" if study.mechanism.drives[0].kind != "angle" else "rad"
+    numbers, by = in_si(study.numbers), study.mechanism.motion_parameter.drives[0].unit
     units = ("kg", "kg m^2", f"m/{by}" if by == "rad" else "1", "1" if by == "rad" else "rad/m")
     heads = ("$m$", "$J$", "$v'$", "$phi'$")
     columns = [tuple(shown(one.link) for one in links)]
