@@ -28,7 +28,7 @@ def test_centres_without_places_begin_where_the_motion_does(
 
 def test_instants_of_a_report_are_values_of_the_drive() -> None:
     """As its help and `[report] instants` have it, whatever the law."""
-    mechanism = ct.example("six-bar-press-run-up")
+    mechanism = ct.example("wiper")
     assert instant(mechanism, "1.5 rad", "--at") == 1.5
     with pytest.raises(InputError, match="an angle"):
         instant(mechanism, "1 s", "--at")

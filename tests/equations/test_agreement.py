@@ -10,7 +10,6 @@ from hypothesis import assume, given, settings
 
 import centrode as ct
 from centrode.equations.derivation import Equations
-from centrode.kinematics.spans import is_uniform
 from centrode.structure.rank import jacobian
 from growing import descriptions, mechanism_of
 from growing_higher import higher_descriptions
@@ -44,7 +43,7 @@ def compared(mechanism: ct.Mechanism) -> tuple[Equations, Values, float]:
 def motion_at_start(mechanism: ct.Mechanism, found: Equations) -> Any:
     path = found.board.ready.kinematics.path
     # of a drive with a law, what is asked for is a time
-    return ct.motion(mechanism, at=np.array([path.initial if is_uniform(path) else 0.0]))
+    return ct.motion(mechanism, at=np.array([path.initial if path.parameter.is_uniform else 0.0]))
 
 
 def check_rates(mechanism: ct.Mechanism) -> None:
