@@ -12,7 +12,7 @@ from centrode.kinematics.motion import motion
 from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.quantities import status_word
-from centrode.report.numbers import Numbers
+from centrode.render.document.numbers import Numbers
 from centrode.report.study import ReportStudy
 from centrode.study.centres import initial_place
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from centrode.locale import mark
-from centrode.report.blocks import Chapter
+from centrode.render.document.blocks import Chapter
 from centrode.report.chapters.cams.chapters import (
     cam_data_chapter,
     cam_motion_chapter,

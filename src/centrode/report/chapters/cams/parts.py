@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from centrode.report.blocks import Block, Check, Section, Table, shown
+from centrode.render.document.blocks import Block, Check, Section, Table, shown
+from centrode.render.document.rows import rows_table, told
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.report.rows import rows_table, told
 from centrode.report.telling import listed
 from centrode.study.cams.results import PARTS
 from centrode.study.cams.said import Asked, CamPart

@@ -9,10 +9,10 @@ import numpy as np
 from centrode.cams.followers.described import bounded, follower_cam
 from centrode.cams.followers.motion import FollowerMotion, follower_motion
 from centrode.locale import _
-from centrode.report.blocks import Block, Check, Section, Table
+from centrode.render.document.blocks import Block, Check, Section, Table
+from centrode.render.document.rows import told
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.report.rows import told
 from centrode.study.cams.results import FOLLOWER_PARTS
 from centrode.study.cams.said import Asked, CamPart
 

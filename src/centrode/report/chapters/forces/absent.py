@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from centrode.errors import CentrodeError, MotionError, NotComputedYet
 from centrode.locale import _
-from centrode.report.blocks import Chapter, Paragraph, Section, shown
+from centrode.render.document.blocks import Chapter, Paragraph, Section, shown
 from centrode.report.chapters.forces.results import machine_of
 
 if TYPE_CHECKING:

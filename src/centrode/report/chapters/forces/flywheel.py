@@ -8,12 +8,12 @@ import numpy as np
 
 from centrode.locale import _, ngettext
 from centrode.present.forces.machine_figures import machine_figures
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table
+from centrode.render.document.formulas import factor, in_si, with_unit
 from centrode.report.chapters.forces.absent import without_machine
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.results import has_forces, machine_of
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.report.formulas import factor, in_si, with_unit
 from centrode.report.telling import facts, measured, pictures
 from centrode.study.forces.machines import flywheel_rows
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
-from centrode.report.blocks import shown
+from centrode.render.document.blocks import shown
 from centrode.report.moments import moments_of
 
 if TYPE_CHECKING:

@@ -9,12 +9,12 @@ import numpy as np
 
 from centrode.locale import _
 from centrode.present.forces.machine_figures import machine_figures
-from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table, shown
+from centrode.render.document.blocks import Block, Chapter, Formula, Paragraph, Section, Table, shown
+from centrode.render.document.formulas import factor, in_si, squared, with_unit
 from centrode.report.chapters.forces.absent import without_machine
 from centrode.report.chapters.forces.places import few, titles
 from centrode.report.chapters.forces.results import has_forces, machine_of, steady_at_instants
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.report.formulas import factor, in_si, squared, with_unit
 from centrode.report.telling import pictures
 
 if TYPE_CHECKING:

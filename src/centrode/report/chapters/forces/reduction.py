@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.locale import _
 from centrode.present.forces.reduction_figures import reduction_figures
-from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table
+from centrode.render.document.blocks import Block, Chapter, Formula, Paragraph, Section, Table
 from centrode.report.chapters.forces.places import few, head_of_places, places_of, unit_of_place
 from centrode.report.chapters.forces.reduced_sums import sums_at_instants
 from centrode.report.chapters.forces.results import has_forces, reduced

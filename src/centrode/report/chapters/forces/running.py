@@ -11,7 +11,7 @@ from centrode.dynamics.simulation.regime import steady_regime
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.forces.simulation_figures import simulation_figures
-from centrode.report.blocks import Chapter, Check, Formula, Paragraph, Section, Table
+from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph, Section, Table
 from centrode.report.chapters.forces.places import few
 from centrode.report.chapters.forces.results import has_forces, simulated
 from centrode.report.chapters.forces.tables import Column, over_samples

@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.errors import Status
 from centrode.locale import _
-from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
+from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
 from centrode.report.chapters.forces.places import few, head_of_places, places_of, unit_of_place
 from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.report.moments import Moment, moments_of
