@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from centrode.render.document import figures
 from centrode.render.document.blocks import (
     Block,
     Chapter,
@@ -24,7 +25,6 @@ from centrode.render.document.blocks import (
     Table,
     shown,
 )
-from centrode.render.document import figures
 
 HOSTILE = (
     '#panic(1) *b* _i_ `c` <tag> @ref // c /* d ~ $ x $ \\ \\u{41} "q" [x] #let y = 1; </script><script>alert(1)'

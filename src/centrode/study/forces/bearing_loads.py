@@ -15,9 +15,9 @@ from centrode.kinematics.several_drives.holding import unit_of_value
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import display_unit
+from centrode.sheets.sheet import Scalar
 from centrode.study.forces.bearings import places_of
 from centrode.study.forces.named_reactions import each_reaction
-from centrode.study.scalars import Scalar
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Table: TypeAlias = tuple[list[str], list[list[str]]]
