@@ -1,7 +1,8 @@
 """The catalogues of centrode's sentences: `update` them from the code, `compile` them, `check` them.
 
-The code's sentences are the literals in `_()`, `ngettext()` and `mark()`, and the titles of the built-in
-mechanisms. A .po file carries no dates and no version of any tool, and a .mo file follows from its .po byte by byte.
+The code's sentences are the literals in `_()`, `ngettext()`, `mark()`, `Sentence()` and `Counted()`, and the titles of
+the built-in mechanisms. A .po file carries no dates and no version of any tool, and a .mo file follows from its .po byte
+by byte.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from babel.messages.pofile import read_po, write_po
 ROOT = Path(__file__).parent.parent
 CODE = ROOT / "src" / "centrode"
 CLICK = ROOT / "tools" / "click_messages.py"
-KEYWORDS = {"_": None, "mark": None, "ngettext": (1, 2)}
+KEYWORDS = {"_": None, "mark": None, "Sentence": None, "ngettext": (1, 2), "Counted": (1, 2)}
 SLAVIC = (
     "nplurals=3; plural=(n%10==1 && n%100!=11 ? 0 : n%10>=2 && n%10<=4 && (n%100<10 || n%100>=20) ? 1 : 2);"
 )

@@ -109,10 +109,7 @@ from .present import polygon_figures as polygon_figures
 from .dynamics.steady_motion.steady import steady_motion as steady_motion
 from .dynamics.steady_motion.flywheel import flywheel as flywheel
 from .dynamics.steady_motion.flywheel import Flywheel as Flywheel
-from .study.forces.machines import machine_results as machine_results
-from .study.forces.machines import flywheel_rows as flywheel_rows
-from .study.forces.machines import flywheel_scalars as flywheel_scalars
-from .present import machine_figures as machine_figures
+from .dynamics.steady_motion.steady import machine_results as machine_results
 
 # Motion under loads and a drive
 from .model.simulations import Simulation as Simulation
@@ -253,6 +250,13 @@ from .sweeps.designs import grid as grid
 from .sweeps.drawing import sample as sample
 from .sweeps.files import read_sweep as read_sweep
 from .study.sweep_summary import sweep_rows as sweep_rows
+
+# Any result, shown
+from .topics.presentation import summary as summary
+from .topics.presentation import tables as tables
+from .topics.presentation import figures as figures
+from .topics.presentation import write as write
+from .topics.presentation import sheet_of as sheet_of
 
 # Presentations
 from .present import sweep_csv as sweep_csv

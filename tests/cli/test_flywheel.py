@@ -101,7 +101,9 @@ def test_files_of_a_flywheel(centrode: Centrode, compressor: Path) -> None:
     assert summary["machine_inertia"] == {"value": found.inertia, "unit": "kg m^2"}
     assert found.rim is not None
     assert summary["flywheel_rim_outer"] == {"value": found.rim.outer, "unit": "m"}
-    assert {name: one.as_dict() for name, one in ct.flywheel_scalars(found).items()} == summary
+    assert {
+        name: one.as_dict() for name, one in ct.sheet_of(ct.machine_results(mechanism)).scalars.items()
+    } == summary
 
 
 def test_a_run_computes_the_machine(centrode: Centrode, folder: Path) -> None:
@@ -134,7 +136,7 @@ def test_a_run_without_a_fluctuation(centrode: Centrode, compressor: Path) -> No
     assert done.rows["inertia present"] == "30 kg m²"
     assert "inertia needed" not in done.rows
     mechanism = ct.read_mechanism("compressor.toml")
-    drawn = ct.machine_figures(mechanism, ct.steady_motion(mechanism, 5))
+    drawn = ct.figures(ct.machine_results(mechanism, 5))
     assert sorted(drawn) == [name for name in FIGURES if name != "wittenbauer"]
     summary = json.loads((compressor / "r" / "summary.json").read_text())
     assert 0.03 < summary["machine_obtained"]["value"] < 0.04

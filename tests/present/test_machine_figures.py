@@ -17,8 +17,8 @@ SAMPLES = 721
 @pytest.fixture(scope="module")
 def press() -> tuple[Any, dict[str, Figure]]:
     mechanism = ct.example("six-bar-press")
-    data = ct.steady_motion(mechanism, SAMPLES)
-    return data, ct.machine_figures(mechanism, data)
+    results = ct.machine_results(mechanism, SAMPLES)
+    return results.steady, ct.figures(results)
 
 
 def texts(figure: Figure) -> list[str]:
@@ -74,7 +74,7 @@ def test_wittenbauers_tangents(press: tuple[Any, dict[str, Figure]]) -> None:
 
 def test_names_and_what_is_left_out() -> None:
     mechanism = engine("[[machine.shafts]]\ninertia = 30")
-    figures = ct.machine_figures(mechanism, ct.steady_motion(mechanism, 9))
+    figures = ct.figures(ct.machine_results(mechanism, 9))
     assert "wittenbauer" not in figures
     assert {"works", "energies", "moments", "drive-speed", "real-velocities", "real-accelerations"} <= set(
         figures

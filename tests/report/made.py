@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from centrode.report import figures
-from centrode.report.blocks import (
+from centrode.render.document import figures
+from centrode.render.document.blocks import (
     Block,
     Chapter,
     Check,

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import centrode as ct
-from centrode.report.blocks import Chapter, Check, Formula, Moving, Table
+from centrode.render.document.blocks import Chapter, Check, Formula, Moving, Table
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters.cams import chapters as cams
 from centrode.report.chapters.cams.parts import part_of

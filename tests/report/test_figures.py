@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from centrode.locale import speaking
 from centrode.present.spelled_figures import spell_decimals
 from centrode.present.style import Decimals, house_style
-from centrode.report.figures import FLAT, picture
+from centrode.render.document.figures import FLAT, picture
 
 TITLE = "Press 2.5"
 

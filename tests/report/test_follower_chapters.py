@@ -13,7 +13,7 @@ import centrode as ct
 from centrode.cams.followers.motion import FollowerMotion
 from centrode.laws import CURVES as LAWS
 from centrode.laws import Segment, SegmentedLaw
-from centrode.report.blocks import Block, Chapter, Check, Formula, Moving, Outline, Paragraph, Table
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Moving, Outline, Paragraph, Table
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters.followers import forces_checks, lift_checks, profile_checks
 from centrode.report.chapters.followers.curves import CURVES, PEAKS, shares_of

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.report.blocks import Chapter, Check, Formula, Paragraph, Picture, Table
+from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph, Picture, Table
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters.forces import by_links, reduced_sums
 from centrode.report.making import report

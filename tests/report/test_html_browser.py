@@ -15,7 +15,7 @@ import centrode as ct
 from centrode.locale import speaking
 from centrode.present.equations.page import Relation, System, sections
 from centrode.present.equations.typst import TypstSpelling
-from centrode.report import blocks
+from centrode.render.document import blocks
 from centrode.report.html.page import FONT, HERE, html_page
 from centrode.report.moving import moving_of
 from centrode.report.moving_wheel import moving_wheel

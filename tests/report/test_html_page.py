@@ -12,7 +12,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from centrode.report.blocks import Chapter, Formula, Paragraph, Report, Section, Table
+from centrode.render.document.blocks import Chapter, Formula, Paragraph, Report, Section, Table
 from centrode.report.html.page import html_page
 
 from .made import HOSTILE, report

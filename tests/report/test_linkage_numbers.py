@@ -14,8 +14,8 @@ from centrode.equations.instants import instant_of, rates_compared
 from centrode.locale import speaking
 from centrode.present.equations.page import Relation, System, sections
 from centrode.present.equations.typst import TypstSpelling
-from centrode.report.blocks import Chapter, Check, Formula, Paragraph
-from centrode.report.blocks import System as SystemBlock
+from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph
+from centrode.render.document.blocks import System as SystemBlock
 from centrode.report.making import report
 from centrode.report.options import ReportOptions
 from report.typst_reading import TypstReader

@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import Status
-from centrode.report.blocks import Chapter, Check, Paragraph, Table
+from centrode.render.document.blocks import Chapter, Check, Paragraph, Table
 from centrode.report.chapters.linkages.identities import identity_checks, off_rigid
 from centrode.report.chapters.linkages.long_tables import ROWS, WIDE, chosen_rows
 from centrode.report.making import report

@@ -10,15 +10,15 @@ import pytest
 import centrode as ct
 from centrode.locale import speaking
 from centrode.model.mechanism import Display
-from centrode.report.blocks import Chapter, Check, Formula, Moving, Paragraph, Picture, Table
+from centrode.render.document.blocks import Chapter, Check, Formula, Moving, Paragraph, Picture, Table
+from centrode.render.document.numbers import Numbers
+from centrode.render.document.rows import small, told
+from centrode.render.document.scaled import drawn_to_scale, scale_of
 from centrode.report.making import report
 from centrode.report.mathematics import checked
-from centrode.report.numbers import Numbers
 from centrode.report.options import ReportOptions
 from centrode.report.pdf.document import pdf_document
 from centrode.report.pdf.source import Source
-from centrode.report.rows import small, told
-from centrode.report.scaled import drawn_to_scale, scale_of
 from centrode.report.vectors import mathematics, rates_in, symbol, vector_parts
 
 NUMBERS = Numbers(Display(), 5)

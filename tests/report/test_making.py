@@ -10,8 +10,8 @@ import pytest
 import centrode as ct
 from centrode.errors import InputError, MotionError
 from centrode.locale import choose_language, chosen_language
+from centrode.render.document.blocks import Chapter
 from centrode.report import making
-from centrode.report.blocks import Chapter
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from centrode.report.blocks import shown
+from centrode.render.document.blocks import shown
 from centrode.report.marked import Part, parts_of
 
 TEXTS = st.text(st.sampled_from('$\\a "#<é\n'), max_size=12) | st.text(max_size=12)

@@ -7,7 +7,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.report.blocks import Moving, Outline, Ring
+from centrode.render.document.blocks import Moving, Outline, Ring
 from centrode.report.moving import moving_of
 from centrode.report.moving_wheel import STEP, moving_wheel
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from centrode.locale import speaking
 from centrode.model.asked import Display
-from centrode.report.numbers import MINUS, Numbers, respelled, spelled_unit
+from centrode.render.document.numbers import MINUS, Numbers, respelled, spelled_unit
 
 FINITE = st.floats(-1e9, 1e9, allow_subnormal=False)
 RAISED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")

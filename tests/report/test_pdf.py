@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from centrode.report.blocks import Chapter, Formula, Paragraph, Report, Section, Table
+from centrode.render.document.blocks import Chapter, Formula, Paragraph, Report, Section, Table
 from centrode.report.pdf.document import pdf_document
 from centrode.report.pdf.source import Source
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.report.blocks import Chapter, Check, Formula, Table
+from centrode.render.document.blocks import Chapter, Check, Formula, Table
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters.sphere.tables import sphere_tables_chapter
 from centrode.report.making import report

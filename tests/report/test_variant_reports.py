@@ -9,7 +9,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.report.blocks import Paragraph, Report, Table
+from centrode.render.document.blocks import Paragraph, Report, Table
 from centrode.report.variants import writing
 from centrode.report.variants.sheet import answer_sheet
 from centrode.report.variants.writing import VariantReport

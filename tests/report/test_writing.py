@@ -10,8 +10,8 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
+from centrode.render.document.blocks import Report
 from centrode.report import writing
-from centrode.report.blocks import Report
 
 REPORT = Report("a", "b", "en", ())
 

@@ -33,7 +33,6 @@ from centrode.cli.draw import draw
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
-from centrode.cli.flywheel import flywheel
 from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
 from centrode.cli.plan import plan
@@ -47,11 +46,13 @@ from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.simulate import simulate
 from centrode.cli.sweep import sweep
+from centrode.cli.topic_command import topic_command
 from centrode.cli.translation import language_option, translated, wished_language, with_language
 from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
 from centrode.files.inputs import guarded
 from centrode.locale import _, choose_language_of_process, mark
+from centrode.topics.registry import TOPICS
 
 COMMANDS: tuple[click.Command, ...] = (
     run,
@@ -68,7 +69,7 @@ COMMANDS: tuple[click.Command, ...] = (
     variants,
     limits,
     region,
-    flywheel,
+    *map(topic_command, TOPICS),
     simulate,
     balance,
     cam,

@@ -18,7 +18,7 @@ from centrode.errors import MotionError
 from centrode.locale import _, mark, ngettext
 
 if TYPE_CHECKING:
-    from centrode.report.blocks import Report
+    from centrode.render.document.blocks import Report
 
 # What they import is too much for a list of commands.
 _options, _writing = (

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import (
@@ -21,12 +22,13 @@ from centrode.cli.arguments import (
     stop_option,
 )
 from centrode.cli.expected import announce_size
-from centrode.cli.flywheel import write as write_machine
 from centrode.cli.progress import Progress
 from centrode.cli.reactions import write as write_reactions
 from centrode.cli.tables import tables_options
+from centrode.cli.topic_command import write_sheet
 from centrode.errors import MotionError
 from centrode.locale import _, mark
+from centrode.views.flywheel import sheet as machine_sheet
 
 if TYPE_CHECKING:
     from centrode.study.running import StudyResults
@@ -90,7 +92,7 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
         )
         ct.write_motion_netcdf(study.coefficients, folder / "coefficients.nc")
     if study.machine is not None:
-        write_machine(mechanism, study.machine, folder, progress, figures=figures)
+        write_sheet(machine_sheet(study.machine), folder, mechanism.display, progress, figures=figures)
     if study.reactions is not None:
         loads = study.bearing_loads
         write_reactions(mechanism, study.reactions, folder, progress, figures=figures, loads=loads)
@@ -121,6 +123,7 @@ def summary_text(study: StudyResults, name: str) -> str:
         rows += ct.greatest_reaction(study.mechanism, study.reactions)
     lines = [_(study.mechanism.title) or name, "", output.table(rows)]
     if study.machine is not None:
-        lines += ["", output.table(ct.flywheel_rows(study.mechanism, study.machine.flywheel))]
+        facts = machine_sheet(study.machine).facts
+        lines += ["", render.facts_text(facts, study.mechanism.display)]
     lines += [_("note: {note}").format(note=note) for note in study.notes]
     return "\n".join(lines)

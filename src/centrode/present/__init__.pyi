@@ -49,7 +49,6 @@ from .forces.polygon_drawing import polygon_figures as polygon_figures
 from .forces.balance_tables import write_balance_csv as write_balance_csv
 from .forces.balance_tables import write_harmonics_csv as write_harmonics_csv
 from .forces.balance_figures import balance_figures as balance_figures
-from .forces.machine_figures import machine_figures as machine_figures
 from .forces.simulation_figures import simulation_figures as simulation_figures
 
 # Cams

@@ -7,7 +7,8 @@ from itertools import combinations_with_replacement, product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.present.tables import drive_units, unit_of, write_columns
+from centrode.present.tables import write_columns
+from centrode.views.columns import drive_units, unit_of
 
 if TYPE_CHECKING:
     import xarray

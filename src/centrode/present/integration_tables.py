@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from centrode.errors import Status
 from centrode.present.shown import shown_as
-from centrode.present.tables import columns_of, field, numeric_columns
+from centrode.present.tables import field
+from centrode.views.columns import columns_of, numeric_columns
 
 if TYPE_CHECKING:
     import xarray

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import codecs
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from centrode.present.decimal_comma import spell_with_comma
 from centrode.present.missing import telling_what_is_missing
+
+WorkbookColumn: TypeAlias = Sequence[float] | Sequence[str]
 
 
 @telling_what_is_missing
@@ -17,6 +21,15 @@ def _workbook_of_csv() -> Callable[[Path, Path], None]:
     found: Callable[[Path, Path], None] = importlib.import_module(
         "centrode.present.workbooks"
     ).workbook_of_csv
+    return found
+
+
+@telling_what_is_missing
+def _workbook_writer() -> Callable[[Path, Sequence[str], Sequence[WorkbookColumn]], None]:
+    """What writes columns as a workbook, loaded only where workbooks are wanted."""
+    found: Callable[[Path, Sequence[str], Sequence[WorkbookColumn]], None] = importlib.import_module(
+        "centrode.present.workbooks"
+    ).write_workbook
     return found
 
 
@@ -41,9 +54,21 @@ class TableSpelling:
             _workbook_of_csv()
 
     def spell(self, folder: Path) -> None:
-        """Spell the CSV files of a folder, once: a table with decimal commas is not read again."""
+        """Spell the CSV files of a folder, once: a table that was written with decimal commas is left as it is."""
         for table in sorted(folder.rglob("*.csv")):
-            self.spell_table(table, table.with_suffix(".xlsx"))
+            with table.open("rb") as file:
+                if file.read(len(codecs.BOM_UTF8)) == codecs.BOM_UTF8:
+                    continue
+            workbook = table.with_suffix(".xlsx")
+            if self.comma or not workbook.exists():
+                self.spell_table(table, workbook)
+
+    def write_workbook(
+        self, path: Path, headers: Sequence[str], columns: Callable[[], Sequence[WorkbookColumn]]
+    ) -> None:
+        """Write columns as a workbook where workbooks are wanted."""
+        if self.xlsx:
+            _workbook_writer()(path, headers, columns())
 
     def spell_table(self, table: Path, workbook: Path) -> None:
         """Spell one CSV file, once, with `workbook` beside it where one is asked for."""

@@ -3,66 +3,18 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import product
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from centrode.errors import Status
 from centrode.present.shown import shown_as
+from centrode.views.columns import numeric_columns
 
 if TYPE_CHECKING:
     import xarray
 
     from centrode.model.mechanism import Display
-
-VARIABLES = (
-    "turned",
-    "moment_of_loads",
-    "driving_moment",
-    "work_of_loads",
-    "work_of_drive",
-    "work",
-    "inertia_of_links",
-    "inertia_slope_of_links",
-    "energy_of_links",
-    "energy_change",
-    "drive_speed",
-    "drive_acceleration",
-    "drive_speed_first_order",
-    "drive_acceleration_first_order",
-    "inertia",
-    "moment_of_friction",
-    "power_of_drive",
-    "power_of_loads",
-    "work_of_friction",
-    "work_of_other_loads",
-    "kinetic_energy",
-    "potential_energy",
-    "energy_residual",
-    "angle",
-    "angular_velocity",
-    "angular_acceleration",
-    "joint_angle",
-    "joint_velocity",
-    "joint_acceleration",
-    "position",
-    "velocity",
-    "acceleration",
-    "slide",
-    "slide_velocity",
-    "slide_acceleration",
-    "contact",
-    "angular_velocity_coefficient",
-    "angular_acceleration_coefficient",
-    "joint_velocity_coefficient",
-    "joint_acceleration_coefficient",
-    "velocity_coefficient",
-    "acceleration_coefficient",
-    "slide_velocity_coefficient",
-    "slide_acceleration_coefficient",
-)
-
 
 BLOCK = 10_000
 """Rows of a table that are turned into text at once."""
@@ -102,37 +54,6 @@ def motion_table(
     columns.append([Status(code).word for code in dataset["status"].values.tolist()])
     columns.append(dataset["residual"].values.tolist())
     return headers, columns
-
-
-def numeric_columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.DataArray]]:
-    """Header without unit, SI unit and values of every column of numbers, in the order of the table."""
-    yield "time", unit_of(dataset["time"]), dataset["time"]
-    drives = [str(name) for name in dataset["drive"].values]
-    for number, name in enumerate(drives):
-        yield f"drive_{name}", drive_units(dataset)[number], dataset["drive_value"].isel(drive=number)
-    for variable in VARIABLES:
-        if variable in dataset:
-            yield from columns_of(dataset[variable], variable)
-
-
-def columns_of(values: xarray.DataArray, variable: str) -> Iterator[tuple[str, str, xarray.DataArray]]:
-    """One column for each link, guide, or axis of a point."""
-    dims = [str(dim) for dim in values.dims if dim != "sample"]
-    for labels in product(*(values[dim].values.tolist() for dim in dims)):
-        header = "_".join([variable, *map(str, labels)])
-        yield header, unit_of(values), values.sel(dict(zip(dims, labels, strict=True)))
-
-
-def unit_of(values: xarray.DataArray) -> str:
-    """SI unit of a variable; none for a plain number."""
-    unit = str(values.attrs.get("units", ""))
-    return "" if unit == "1" else unit
-
-
-def drive_units(dataset: xarray.Dataset) -> list[str]:
-    """SI unit of each drive's value: `units` names one for all, or one for each drive."""
-    units = unit_of(dataset["drive_value"]).split() or [""]
-    return units * dataset.sizes["drive"] if len(units) == 1 else units
 
 
 def write_motion_csv(

@@ -12,7 +12,7 @@ import lazy_loader
 from centrode.report.writing import lacking
 
 if TYPE_CHECKING:
-    from centrode.report.blocks import Report
+    from centrode.render.document.blocks import Report
     from centrode.report.making import report
     from centrode.report.options import ReportOptions
     from centrode.report.variants.writing import write_variant_reports
@@ -23,8 +23,7 @@ __all__ = ["Report", "ReportOptions", "report", "write_report", "write_variant_r
 _attached, __dir__, _names = lazy_loader.attach(
     __name__,
     submod_attrs={
-        "blocks": ["Report"],
-        "making": ["report"],
+        "making": ["Report", "report"],
         "options": ["ReportOptions"],
         "variants.writing": ["write_variant_reports"],
         "writing": ["write_report"],

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 from centrode.locale import _
 from centrode.present.equations import page
-from centrode.report.blocks import Block, Formula, Paragraph, Section, System, Table, shown
-from centrode.report.numbers import respelled
-from centrode.report.rows import degrees
+from centrode.render.document.blocks import Block, Formula, Paragraph, Section, System, Table, shown
+from centrode.render.document.numbers import respelled
+from centrode.render.document.rows import degrees
 
 
 def section_of(section: page.Section) -> Section:

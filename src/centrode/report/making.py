@@ -10,7 +10,7 @@ from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.cams.files import AnyCam
 from centrode.model.mechanism import Mechanism
-from centrode.report.blocks import Chapter, Report
+from centrode.render.document.blocks import Chapter, Report
 from centrode.report.chapters import CHAPTERS, Kind
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy

@@ -11,7 +11,7 @@ from centrode.errors import Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.quantities import status_word
-from centrode.report.numbers import Numbers
+from centrode.render.document.numbers import Numbers
 from centrode.report.study import ReportStudy
 from centrode.study.centres import initial_place
 

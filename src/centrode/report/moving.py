@@ -17,10 +17,10 @@ from centrode.present.scene import Scene, corners
 from centrode.present.sphere.globe import Globe, globe_of
 from centrode.present.sphere.globe_drawing import draw_globe
 from centrode.present.style import house_style
-from centrode.report.blocks import Moving, shown
-from centrode.report.figures import picture
+from centrode.render.document.blocks import Moving, shown
+from centrode.render.document.figures import picture
+from centrode.render.document.numbers import NARROW, Numbers
 from centrode.report.moving_shapes import rings_of, shapes_of
-from centrode.report.numbers import NARROW, Numbers
 
 if TYPE_CHECKING:
     import xarray

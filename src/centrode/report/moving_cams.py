@@ -16,10 +16,10 @@ from centrode.present.animations.followers import GAP, WALLS, FollowerLayer
 from centrode.present.animations.layers import View
 from centrode.present.drawing import MARGIN
 from centrode.present.style import GROUND, INK, MUTED, house_style
-from centrode.report.blocks import Moving, Outline, shown
+from centrode.render.document.blocks import Moving, Outline, shown
+from centrode.render.document.figures import picture
+from centrode.render.document.numbers import Numbers
 from centrode.report.circles import AT_REST, LIFT, Array, Samples, circle, hatched
-from centrode.report.figures import picture
-from centrode.report.numbers import Numbers
 
 if TYPE_CHECKING:
     from centrode.cams.followers.bodies import FollowerCam

@@ -14,7 +14,7 @@ from centrode.present.scene import Scene, span
 from centrode.present.sphere.globe import Globe
 from centrode.present.style import GROUND, INK, pens
 from centrode.present.wheels import BARREL, OVER, slides
-from centrode.report.blocks import Outline, Ring
+from centrode.render.document.blocks import Outline, Ring
 from centrode.report.circles import AT_REST, LIFT, Array, Samples, circle, hatched
 from centrode.report.moving_cams import cam_shapes
 

@@ -24,10 +24,10 @@ from centrode.present.cams.walking_drawing import (
 )
 from centrode.present.signs import slider_outline
 from centrode.present.style import GROUND, MUTED, house_style
-from centrode.report.blocks import Moving, Outline, shown
+from centrode.render.document.blocks import Moving, Outline, shown
+from centrode.render.document.figures import picture
+from centrode.render.document.numbers import Numbers
 from centrode.report.circles import LIFT, Array, circle, hatched
-from centrode.report.figures import picture
-from centrode.report.numbers import Numbers
 
 if TYPE_CHECKING:
     from centrode.cams.wheel.walking import Mover, Pose

@@ -10,7 +10,7 @@ from centrode.equations.letters import Letter, Parts, Wave
 from centrode.equations.spelling import spelled
 from centrode.equations.sums import Term
 from centrode.present.equations.typst import LONG, TypstSpelling, unbracketed
-from centrode.report.numbers import Numbers
+from centrode.render.document.numbers import Numbers
 
 MOST_TERMS, MOST_NUMBERS = 6, 26
 """Terms and numbers of the longest formula that is written with its numbers: beyond them nobody follows."""

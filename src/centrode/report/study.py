@@ -13,7 +13,7 @@ from centrode.model.cams.description import Cam
 from centrode.model.cams.files import AnyCam
 from centrode.model.cams.plate import PlateCam
 from centrode.model.mechanism import Mechanism
-from centrode.report.numbers import Numbers
+from centrode.render.document.numbers import Numbers
 from centrode.report.options import Wishes
 from centrode.study.cams.results import CamResults, cam_results
 from centrode.study.checking import Check, check

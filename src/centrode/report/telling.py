@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from centrode.report.blocks import Check, Picture, Table
-from centrode.report.figures import picture
-from centrode.report.numbers import NOTHING, Numbers, spelled_number
-from centrode.report.rows import rows_table, told
-from centrode.report.scaled import INCH, drawn_to_scale
+from centrode.render.document.blocks import Check, Picture, Table
+from centrode.render.document.figures import picture
+from centrode.render.document.numbers import NOTHING, Numbers, spelled_number
+from centrode.render.document.rows import rows_table, told
+from centrode.render.document.scaled import INCH, drawn_to_scale
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

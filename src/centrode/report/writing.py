@@ -13,7 +13,7 @@ from centrode.errors import InputError
 from centrode.files.drafts import draft_folder, refusals
 from centrode.locale import _, speaking
 from centrode.model.problems import nearest, shown
-from centrode.report.blocks import Report
+from centrode.render.document.blocks import Report
 
 # What documents need is an extra: only where they are asked for.
 _html, _pdf = (

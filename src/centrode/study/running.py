@@ -11,6 +11,7 @@ from centrode.dynamics.burden import Burden
 from centrode.dynamics.friction.contacts import contacts_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
+from centrode.dynamics.steady_motion.steady import MachineResults, machine_results
 from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
@@ -19,11 +20,11 @@ from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.kinematics.spans import span_at
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
+from centrode.sheets.sheet import Scalar
 from centrode.study.checking import Check, check_of
 from centrode.study.forces.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
-from centrode.study.forces.machines import MachineResults, flywheel_scalars, machine_results
-from centrode.study.scalars import Scalar
 from centrode.study.wording import Words, extremes
+from centrode.views import flywheel
 
 NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 
@@ -84,7 +85,7 @@ def study(
         reactions,
         loads,
         _scalars(checked, solved)
-        | (flywheel_scalars(machine.flywheel) if machine else {})
+        | dict(flywheel.scalars(machine.flywheel) if machine else ())
         | bearing_load_scalars(mechanism, loads),
         _failure(solved, words),
         tuple(notes),

@@ -119,13 +119,18 @@ def flywheel(mechanism: Mechanism, mean: Mean = "middle") -> Flywheel:
     -----
     Works are exact to `error`; the exact speed has the fluctuation and the mean to rounding, some 1e-14.
     """
+    need_fluctuation(mechanism)
+    return flywheel_of(solution_of(mechanism, mean))
+
+
+def need_fluctuation(mechanism: Mechanism) -> None:
+    """Raise InputError for a machine whose description does not limit the fluctuation of its speed."""
     if mechanism.machine is not None and mechanism.machine.fluctuation is None:
         raise InputError(
             "[machine]",
             _("fluctuation is missing"),
             _("give the one that is allowed, such as fluctuation = 0.05"),
         )
-    return flywheel_of(solution_of(mechanism, mean))
 
 
 def flywheel_of(found: Solution) -> Flywheel:

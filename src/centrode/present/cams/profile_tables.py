@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from centrode.present.shown import shown_as
-from centrode.present.tables import field, unit_of
+from centrode.present.tables import field
+from centrode.views.columns import unit_of
 
 if TYPE_CHECKING:
     import xarray

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from centrode.present.cams.profile_tables import write_profile_csv
-from centrode.present.tables import columns_of, unit_of, write_columns
+from centrode.present.tables import write_columns
+from centrode.views.columns import columns_of, unit_of
 
 if TYPE_CHECKING:
     import xarray

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.present.tables import columns_of, drive_units, unit_of, write_columns
+from centrode.present.tables import write_columns
+from centrode.views.columns import columns_of, drive_units, unit_of
 
 if TYPE_CHECKING:
     import xarray

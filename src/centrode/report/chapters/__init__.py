@@ -6,11 +6,12 @@ raises CentrodeError where it cannot be made.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from typing import NamedTuple, TypeAlias
 
 from centrode.locale import mark
-from centrode.report.blocks import Chapter
+from centrode.render.document.blocks import Chapter
 from centrode.report.chapters.cams.chapters import (
     cam_data_chapter,
     cam_motion_chapter,
@@ -27,11 +28,9 @@ from centrode.report.chapters.followers.lift import lift_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.followers.sizing import base_radius_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
-from centrode.report.chapters.forces.flywheel import flywheel_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.forces.joints import reactions_chapter
 from centrode.report.chapters.forces.polygons import polygons_chapter
-from centrode.report.chapters.forces.real_motion import real_motion_chapter
 from centrode.report.chapters.forces.reduction import reduction_chapter
 from centrode.report.chapters.forces.running import simulation_chapter
 from centrode.report.chapters.forces.shaken import balance_chapter
@@ -53,6 +52,8 @@ from centrode.report.chapters.sphere.pictures import axes_chapter, sphere_plots_
 from centrode.report.chapters.sphere.relations import sphere_equations_chapter
 from centrode.report.chapters.sphere.tables import sphere_tables_chapter
 from centrode.report.study import ReportStudy
+from centrode.report.topics import topic_chapter
+from centrode.topics.registry import TOPICS
 
 Make: TypeAlias = Callable[[ReportStudy], Chapter | None]
 
@@ -71,6 +72,15 @@ def either(*makers: Make) -> Make:
         return next((chapter for one in makers if (chapter := one(study)) is not None), None)
 
     return make
+
+
+def topic_chapters() -> dict[str, Kind]:
+    """The chapters of every topic of the registry."""
+    return {
+        chapter.name: Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
+        for topic in TOPICS
+        for chapter in topic.chapters
+    }
 
 
 CHAPTERS: Mapping[str, Kind] = {
@@ -92,8 +102,7 @@ CHAPTERS: Mapping[str, Kind] = {
     "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "reduction": Kind(mark("Reduction to the drive"), reduction_chapter),
-    "flywheel": Kind(mark("Flywheel"), flywheel_chapter),
-    "real-motion": Kind(mark("Real motion"), real_motion_chapter),
+    **topic_chapters(),
     "simulation": Kind(mark("Motion under loads"), simulation_chapter),
     "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from itertools import zip_longest
 
 from centrode.locale import _
-from centrode.report.blocks import (
+from centrode.render.document.blocks import (
     Block,
     Check,
     Formula,

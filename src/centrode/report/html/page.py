@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from centrode.locale import _, speaking
-from centrode.report.blocks import Chapter, Report, Section
+from centrode.render.document.blocks import Chapter, Report, Section
 from centrode.report.html.elements import Elements, blocks_of, formulas_in
 from centrode.report.html.mathematics import formulas_of
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from centrode.locale import _
 from centrode.present.style import DASHES, GROUND, PALETTE
-from centrode.report.blocks import Moving, Outline, Ring
+from centrode.render.document.blocks import Moving, Outline, Ring
 
 Array = NDArray[np.float64]
 WIDE, TALLEST = 6400, 5200

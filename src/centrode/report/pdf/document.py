@@ -7,7 +7,7 @@ from typing import Any
 
 import typst
 
-from centrode.report.blocks import Report
+from centrode.render.document.blocks import Report
 from centrode.report.pdf.source import Source
 
 STYLE = Path(__file__).with_name("style.typ")

@@ -9,7 +9,7 @@ from functools import singledispatchmethod
 
 from centrode.locale import _
 from centrode.present.equations.typst import quoted
-from centrode.report.blocks import (
+from centrode.render.document.blocks import (
     Block,
     Chapter,
     Check,

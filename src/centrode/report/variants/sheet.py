@@ -11,9 +11,9 @@ import numpy as np
 from centrode.locale import _, chosen_language, ngettext
 from centrode.model.paths import kind_at
 from centrode.model.units import KINDS
-from centrode.report.blocks import Block, Chapter, Paragraph, Report, Section, Table, shown
-from centrode.report.numbers import NOTHING, Numbers
-from centrode.report.rows import told
+from centrode.render.document.blocks import Block, Chapter, Paragraph, Report, Section, Table, shown
+from centrode.render.document.numbers import NOTHING, Numbers
+from centrode.render.document.rows import told
 from centrode.study.variants.computing import STATUS_WORDS
 from centrode.version import __version__
 

@@ -12,7 +12,7 @@ from centrode.locale import _, chosen_language, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.model.reports import DIGITS
 from centrode.present.variant_folders import Progress, write_variants
-from centrode.report.blocks import Report
+from centrode.render.document.blocks import Report
 from centrode.report.chapters import CHAPTERS
 from centrode.report.making import report
 from centrode.report.options import ReportOptions, settled

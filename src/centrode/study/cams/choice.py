@@ -7,8 +7,8 @@ from centrode.cams.choosing.measures import MEASURES
 from centrode.locale import _, ngettext
 from centrode.model.cams.description import Cam
 from centrode.model.cams.values import CONSTANT
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Table, Units
-from centrode.study.scalars import Scalar
 
 MEGA = 1e-6
 UNITS = {

@@ -10,8 +10,8 @@ import xarray as xr
 from centrode.cams.contacts.labelled import cam_contact
 from centrode.locale import _
 from centrode.model.cams.description import Cam
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
-from centrode.study.scalars import Scalar
 
 MEGA = 1e-6
 

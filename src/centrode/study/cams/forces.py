@@ -13,8 +13,8 @@ from centrode.cams.sampled import angles_of
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
-from centrode.study.scalars import Scalar
 
 MEGA = 1e-6
 

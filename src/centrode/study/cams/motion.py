@@ -13,8 +13,8 @@ from centrode.cams.sampled import angles_of
 from centrode.locale import _, mark
 from centrode.model.cams.plate import PlateCam
 from centrode.quantities import QUANTITIES
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Table, Units
-from centrode.study.scalars import Scalar
 
 DERIVATIVES = (
     mark("the lift"),

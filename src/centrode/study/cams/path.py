@@ -15,8 +15,8 @@ from centrode.cams.sampled import angles_of, ends_of
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
-from centrode.study.scalars import Scalar
 
 FURTHER = math.tau
 """Angle [rad] up to which a stall beyond the range is looked for."""

@@ -13,8 +13,8 @@ from centrode.cams.followers.sizing import Least, best_offset, least_base_radius
 from centrode.errors import MotionError
 from centrode.locale import _, mark
 from centrode.model.cams.plate import PlateCam
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Rows, Units
-from centrode.study.scalars import Scalar
 
 ROUNDING = 1e-9
 """Margins that are rounding."""

@@ -10,8 +10,8 @@ from centrode.cams.profiles.tables import count_of, profile_dataset
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
-from centrode.study.scalars import Scalar
 
 
 def profile_part(cam: Cam, asked: Asked) -> CamPart | None:

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import AnyCam
 from centrode.model.cams.plate import PlateCam
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
 from centrode.study.cams.forces import forces_part
@@ -24,7 +25,6 @@ from centrode.study.cams.profile import profile_part
 from centrode.study.cams.routes import routes_part
 from centrode.study.cams.said import Asked, CamPart
 from centrode.study.cams.walking import walking_part
-from centrode.study.scalars import Scalar
 
 
 class MakesPart(Protocol):

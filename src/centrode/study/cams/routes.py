@@ -10,8 +10,8 @@ import xarray as xr
 from centrode.cams.comparison import cam_routes
 from centrode.locale import _, ngettext
 from centrode.model.cams.description import Cam
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Table, Units
-from centrode.study.scalars import Scalar
 
 MOST_LINES = 19
 PLACES = 3

@@ -11,7 +11,7 @@ import xarray as xr
 
 from centrode.model.cams.files import AnyCam
 from centrode.quantities import display_unit
-from centrode.study.scalars import Scalar
+from centrode.sheets.sheet import Scalar
 
 Rows: TypeAlias = list[tuple[str, str]]
 

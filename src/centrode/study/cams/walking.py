@@ -11,8 +11,8 @@ from centrode.cams.wheel.walking import Mover
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
+from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
-from centrode.study.scalars import Scalar
 
 LEAST_ANGLE = 1e-9
 """Smaller angles [rad] are said to be zero."""

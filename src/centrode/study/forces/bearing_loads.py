@@ -14,8 +14,8 @@ from centrode.dynamics.kinetostatics.reactions import reactions as reactions_of
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import display_unit
+from centrode.sheets.sheet import Scalar
 from centrode.study.forces.named_reactions import each_reaction
-from centrode.study.scalars import Scalar
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Table: TypeAlias = tuple[list[str], list[list[str]]]

@@ -10,10 +10,10 @@ from centrode.locale import _
 from centrode.present.cams.bodies import cam_body_figures
 from centrode.present.cams.drawing import cam_curves_figure, cam_path_figure, cam_routes_figure
 from centrode.present.cams.profile_drawing import profile_figure
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section
+from centrode.render.document.figures import picture
 from centrode.report.chapters.cams.given import given_of
 from centrode.report.chapters.cams.parts import cam_of, course, part_of, sections_of, told_part
-from centrode.report.figures import picture
 from centrode.report.moving_wheel import moving_wheel
 from centrode.report.telling import measured
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from centrode.locale import _
 from centrode.present.cams.choice import choice_figures
 from centrode.present.cams.contact import contact_figure
-from centrode.report.blocks import Chapter, Formula, Paragraph
+from centrode.render.document.blocks import Chapter, Formula, Paragraph
+from centrode.render.document.figures import picture
 from centrode.report.chapters.cams.parts import cam_of, course, part_of, sections_of, told_part
-from centrode.report.figures import picture
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy

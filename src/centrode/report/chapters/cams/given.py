@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from centrode.locale import _
-from centrode.report.blocks import Block, Paragraph, Table, shown
-from centrode.report.numbers import Numbers
+from centrode.render.document.blocks import Block, Paragraph, Table, shown
+from centrode.render.document.numbers import Numbers
 
 if TYPE_CHECKING:
     from centrode.model.cams.description import Cam

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from centrode.report.blocks import Block, Check, Section, Table, shown
-from centrode.report.chapters.forces.places import few
+from centrode.render.document.blocks import Block, Check, Section, Table, shown
+from centrode.render.document.rows import rows_table, told
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.report.rows import rows_table, told
 from centrode.report.telling import listed
 from centrode.study.cams.results import PARTS
 from centrode.study.cams.said import Asked, CamPart
 from centrode.study.cams.said import Table as Told
+from centrode.views.columns import rows_shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -56,7 +56,7 @@ def course(study: ReportStudy, data: xr.Dataset, columns: list[tuple[str, str]],
         values, unit = data[name].to_numpy(), str(data[name].attrs["units"])
         scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
         found.append(Column(f"${letter}$", shown_unit, scale * values))
-    return over_samples(study.numbers, found, few(data.sizes["sample"]), caption)
+    return over_samples(study.numbers, found, rows_shown(data.sizes["sample"]), caption)
 
 
 def sections_of(*titled: tuple[str, tuple[Block, ...]]) -> tuple[Section, ...]:

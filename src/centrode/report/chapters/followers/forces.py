@@ -10,7 +10,9 @@ import numpy as np
 from centrode.cams.followers.forces.acting import follower_forces
 from centrode.locale import _
 from centrode.present.cams.forces import cam_forces_figure
-from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Table
+from centrode.render.document.blocks import Block, Chapter, Formula, Paragraph, Table
+from centrode.render.document.figures import picture
+from centrode.render.document.rows import rows_table
 from centrode.report.chapters.followers.forces_checks import (
     at_speed_of_jumping,
     by_virtual_work,
@@ -19,8 +21,6 @@ from centrode.report.chapters.followers.forces_checks import (
 )
 from centrode.report.chapters.followers.forces_spelled import Worked
 from centrode.report.chapters.followers.parts import course, part_of, sections_of, told_failures
-from centrode.report.figures import picture
-from centrode.report.rows import rows_table
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,7 +18,7 @@ from centrode.report.telling import measured
 if TYPE_CHECKING:
     from centrode.cams.followers.forces.acting import FollowerForces
     from centrode.cams.followers.forces.demand import Burden
-    from centrode.report.blocks import Check
+    from centrode.render.document.blocks import Check
 
 NODES = 16
 """Of the rule of Gauss and Chebyshev, which integrates an ellipse exactly."""

@@ -11,12 +11,12 @@ import numpy as np
 from centrode.cams.followers.forces.acting import FollowerForces
 from centrode.cams.followers.forces.meeting_of import meeting_of
 from centrode.cams.followers.guidance import Oscillating
-from centrode.report.formulas import factor, in_si, with_unit
+from centrode.render.document.formulas import factor, in_si, with_unit
 
 if TYPE_CHECKING:
     from centrode.model.cams.parts import Material
     from centrode.model.cams.plate import PlateCam
-    from centrode.report.numbers import Numbers
+    from centrode.render.document.numbers import Numbers
 
 Lines = Iterator[tuple[str, ...]]
 ROUNDING = 1e-12

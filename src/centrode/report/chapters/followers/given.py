@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
-from centrode.report.blocks import Block, Chapter, Section, Table
+from centrode.render.document.blocks import Block, Chapter, Section, Table
+from centrode.render.document.numbers import NARROW, spelled_unit
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.report.numbers import NARROW, spelled_unit
 from centrode.study.cams.motion import CONTACTS, KINDS
 
 if TYPE_CHECKING:
     from centrode.model.cams.lifting import LiftSegment
     from centrode.model.cams.parts import Material
     from centrode.model.cams.plate import PlateCam
-    from centrode.report.numbers import Numbers
+    from centrode.render.document.numbers import Numbers
     from centrode.report.study import ReportStudy
 
 

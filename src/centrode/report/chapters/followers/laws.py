@@ -8,11 +8,11 @@ import numpy as np
 
 from centrode.locale import _
 from centrode.present.cams.motion_drawing import laws_figure
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section, Table
+from centrode.render.document.figures import picture
+from centrode.render.document.rows import rows_table, told
 from centrode.report.chapters.followers.curves import PEAKS
 from centrode.report.chapters.followers.parts import part_of
-from centrode.report.figures import picture
-from centrode.report.rows import rows_table, told
 from centrode.report.telling import listed, measured
 
 if TYPE_CHECKING:

@@ -13,7 +13,10 @@ from centrode.cams.followers.labelled import motion_names
 from centrode.locale import _
 from centrode.present.cams.motion_drawing import cam_motion_figure
 from centrode.quantities import QUANTITIES
-from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Table
+from centrode.render.document.blocks import Block, Chapter, Formula, Paragraph, Table
+from centrode.render.document.figures import picture
+from centrode.render.document.numbers import NOTHING
+from centrode.render.document.rows import rows_table
 from centrode.report.chapters.followers.curves import CURVES
 from centrode.report.chapters.followers.lift_checks import integrated, proved
 from centrode.report.chapters.followers.parts import (
@@ -27,9 +30,6 @@ from centrode.report.chapters.followers.parts import (
 )
 from centrode.report.chapters.followers.segments import segment_blocks
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.report.figures import picture
-from centrode.report.numbers import NOTHING
-from centrode.report.rows import rows_table
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy

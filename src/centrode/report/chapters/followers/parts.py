@@ -9,12 +9,12 @@ import numpy as np
 from centrode.cams.followers.described import bounded, follower_cam
 from centrode.cams.followers.motion import FollowerMotion, follower_motion
 from centrode.locale import _
-from centrode.report.blocks import Block, Check, Section, Table
-from centrode.report.chapters.forces.places import few
+from centrode.render.document.blocks import Block, Check, Section, Table
+from centrode.render.document.rows import told
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.report.rows import told
 from centrode.study.cams.results import FOLLOWER_PARTS
 from centrode.study.cams.said import Asked, CamPart
+from centrode.views.columns import rows_shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -73,10 +73,10 @@ def course(
         values, unit = data[name].to_numpy(), str(data[name].attrs["units"])
         scale, shown_unit = (MEGA, "MPa") if unit == "Pa" else (1.0, unit)
         found.append(Column(f"${letter}$", shown_unit, scale * values))
-    kept = few(data.sizes["sample"], ROWS)
+    kept = list(rows_shown(data.sizes["sample"], ROWS))
     if brief:
         kept = _unlike(kept, found[1:])
-        if len(kept) < len(few(data.sizes["sample"], ROWS)):
+        if len(kept) < len(rows_shown(data.sizes["sample"], ROWS)):
             caption = _("{caption}; of alike rows the first and the last").format(caption=caption)
     return over_samples(study.numbers, found, kept, caption)
 

@@ -9,12 +9,12 @@ from centrode.cams.followers.described import stretches_text
 from centrode.locale import _
 from centrode.present.cams.bodies import cam_body_figures
 from centrode.present.cams.plate_curves import plate_curves_figure
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph
+from centrode.render.document.figures import picture
+from centrode.render.document.rows import rows_table, told
 from centrode.report.chapters.followers.parts import course, part_of, sections_of, told_failures
 from centrode.report.chapters.followers.profile_checks import by_formulas, by_instant_centre, not_undercut
 from centrode.report.chapters.followers.spelled import Spelled
-from centrode.report.figures import picture
-from centrode.report.rows import rows_table, told
 
 if TYPE_CHECKING:
     from centrode.cams.followers.bodies import FollowerCam

@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.cams.followers.forces.meeting_of import meeting_of
 from centrode.locale import _
-from centrode.report.blocks import Check
+from centrode.render.document.blocks import Check
 from centrode.report.chapters.followers.parts import ROUNDED
 from centrode.report.chapters.followers.textbook import Array, Textbook
 from centrode.report.telling import measured

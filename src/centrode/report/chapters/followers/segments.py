@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from centrode.cams.followers.comparing import peaks_of
 from centrode.laws.segments import THROUGH_POINTS
 from centrode.locale import _
-from centrode.report.blocks import Block, Formula, Paragraph, Table
+from centrode.render.document.blocks import Block, Formula, Paragraph, Table
+from centrode.render.document.formulas import factor, with_unit
 from centrode.report.chapters.followers.curves import PEAKS
 from centrode.report.chapters.followers.parts import letter_of, motion_of, rate
-from centrode.report.formulas import factor, with_unit
 
 if TYPE_CHECKING:
     from centrode.laws.pieces import Piece

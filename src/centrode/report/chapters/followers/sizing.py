@@ -14,12 +14,12 @@ from centrode.cams.followers.layouts import layout_of
 from centrode.cams.followers.margins import exact_margin
 from centrode.errors import CentrodeError
 from centrode.locale import _
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Table, shown
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Table, shown
+from centrode.render.document.numbers import NOTHING
+from centrode.render.document.rows import small
 from centrode.report.chapters.followers.parts import body_of, motion_of, sections_of
 from centrode.report.chapters.followers.profile_checks import closed_forms
 from centrode.report.chapters.followers.spelled import Spelled
-from centrode.report.numbers import NOTHING
-from centrode.report.rows import small
 
 if TYPE_CHECKING:
     from centrode.cams.followers.bodies import FollowerCam

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.cams.followers.guidance import Oscillating
+from centrode.render.document.formulas import with_unit
 from centrode.report.chapters.followers.spelled_motion import Lines, SpelledMotion
-from centrode.report.formulas import with_unit
 
 if TYPE_CHECKING:
     pass

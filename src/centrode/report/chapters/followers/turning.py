@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from centrode.locale import _
-from centrode.report.blocks import Chapter, Section
+from centrode.render.document.blocks import Chapter, Section
 from centrode.report.chapters.followers.parts import body_of
 from centrode.report.moving_cams import moving_follower
 

@@ -11,15 +11,15 @@ from centrode.dynamics.masses import masses_of, massless_links
 from centrode.locale import _, mark
 from centrode.model.spoken import LOADS, load_name
 from centrode.quantities import display_unit
-from centrode.report.blocks import Block, Chapter, Paragraph, Section, Table
-from centrode.report.rows import told
+from centrode.render.document.blocks import Block, Chapter, Paragraph, Section, Table
+from centrode.render.document.rows import told
 from centrode.report.telling import facts, listed
 
 if TYPE_CHECKING:
     from centrode.dynamics.bodies import Mass
     from centrode.model.loads import Load
     from centrode.model.mechanism import Mechanism
-    from centrode.report.numbers import Numbers
+    from centrode.render.document.numbers import Numbers
     from centrode.report.study import ReportStudy
 
 AMOUNTS = (

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
-from centrode.report.blocks import Block, Table, shown
+from centrode.render.document.blocks import Block, Table, shown
+from centrode.render.document.formulas import in_si
 from centrode.report.chapters.forces.by_links import motions_of_links
 from centrode.report.chapters.forces.results import motion_at_instants, reactions_at_instants
-from centrode.report.formulas import in_si
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy

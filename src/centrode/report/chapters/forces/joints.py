@@ -11,14 +11,14 @@ from centrode.locale import _
 from centrode.model.spoken import reaction_name
 from centrode.present.forces.bearing_figures import bearing_figures
 from centrode.present.forces.reaction_figures import reaction_figures
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, shown
-from centrode.report.chapters.forces.absent import left_out
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section, shown
+from centrode.render.document.numbers import respelled
 from centrode.report.chapters.forces.inertia import inertia_at
 from centrode.report.chapters.forces.places import not_reached, titles
 from centrode.report.chapters.forces.results import has_forces, reactions_at_instants, reactions_of
 from centrode.report.chapters.forces.virtual_work import by_virtual_work
-from centrode.report.numbers import respelled
 from centrode.report.telling import facts, listed, measured, pictures
+from centrode.report.topics import left_out
 from centrode.study.forces.bearing_loads import bearing_load_rows, bearing_loads
 from centrode.study.forces.bearings import bearings, motion_beside
 from centrode.study.forces.joints import joint_table

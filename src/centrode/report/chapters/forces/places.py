@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
-from centrode.report.blocks import shown
+from centrode.render.document.blocks import shown
 from centrode.report.moments import moments_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from centrode.report.study import ReportStudy
-
-COURSE = 25
-"""Rows of a table over a motion."""
 
 
 def instants(study: ReportStudy) -> tuple[float, ...]:
@@ -43,17 +40,6 @@ def head_of_places(study: ReportStudy) -> str:
 def places_of(study: ReportStudy, data: xr.Dataset) -> np.ndarray:
     """Places of the samples of a dataset [rad, m or s]."""
     return np.asarray(study.mechanism.motion_parameter.instants(data))
-
-
-def few(count: int, most: int = COURSE) -> list[int]:
-    """A few of many samples, both ends among them: every k-th where that gives not much fewer than `most`."""
-    if count <= most:
-        return list(range(count))
-    least = -(-(count - 1) // (most - 1))
-    step = next((k for k in range(least, 2 * least + 1) if (count - 1) % k == 0), None)
-    if step is not None:
-        return list(range(0, count, step))
-    return [round(float(k)) for k in np.linspace(0, count - 1, most)]
 
 
 def not_reached() -> str:

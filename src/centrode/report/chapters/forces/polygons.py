@@ -13,12 +13,12 @@ from centrode.present.forces.lever_drawing import lever_column
 from centrode.present.forces.polygon_drawing import column_of, group_scale, polygon_figures
 from centrode.present.sheet_column import TOP, sheet_size
 from centrode.present.shown import shown_as
-from centrode.report.blocks import Block, Chapter, Check, Items, Paragraph, Picture, Section, shown
+from centrode.render.document.blocks import Block, Chapter, Check, Items, Paragraph, Picture, Section, shown
+from centrode.render.document.numbers import spelled_number
+from centrode.render.document.rows import told
+from centrode.render.document.scaled import drawn_to_scale
 from centrode.report.chapters.forces.places import instants, titles
 from centrode.report.chapters.forces.results import has_forces
-from centrode.report.numbers import spelled_number
-from centrode.report.rows import told
-from centrode.report.scaled import drawn_to_scale
 from centrode.report.telling import facts, listed, measured, worked
 from centrode.study.forces.force_polygons import (
     group_title,

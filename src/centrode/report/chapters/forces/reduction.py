@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.locale import _
 from centrode.present.forces.reduction_figures import reduction_figures
-from centrode.report.blocks import Block, Chapter, Formula, Paragraph, Section, Table
-from centrode.report.chapters.forces.places import few, head_of_places, places_of, unit_of_place
+from centrode.render.document.blocks import Block, Chapter, Formula, Paragraph, Section, Table
+from centrode.report.chapters.forces.places import head_of_places, places_of, unit_of_place
 from centrode.report.chapters.forces.reduced_sums import sums_at_instants
 from centrode.report.chapters.forces.results import has_forces, reduced
 from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.report.telling import facts, listed, pictures
 from centrode.study.forces.reducing import reduction_parts, reduction_rows
+from centrode.views.columns import rows_shown
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy
@@ -86,4 +87,4 @@ def _course(study: ReportStudy) -> Table:
     for name, symbol in COLUMNS:
         columns.append(Column(f"${symbol}$", str(data[name].attrs["units"]), data[name].to_numpy()))
     caption = _("Reduced inertia, its derivative and the reduced moment at even steps")
-    return over_samples(study.numbers, columns, few(data.sizes["sample"]), caption)
+    return over_samples(study.numbers, columns, rows_shown(data.sizes["sample"]), caption)

@@ -9,10 +9,8 @@ from centrode.dynamics.balancing.shaking import shaking
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.reduction import reduce
 from centrode.dynamics.simulation.simulate import simulate
-from centrode.dynamics.steady_motion.steady import steady_motion
 from centrode.report.chapters.forces.places import instants
 from centrode.report.moments import moments_of
-from centrode.study.forces.machines import MachineResults, machine_results
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,17 +39,6 @@ def reduced_at_instants(study: ReportStudy) -> xr.Dataset:
 def motion_at_instants(study: ReportStudy) -> xr.Dataset:
     """The motion at the instants."""
     return moments_of(study)[0].data
-
-
-def machine_of(study: ReportStudy) -> MachineResults:
-    """Energies, flywheel and real motion; raises where they cannot be computed."""
-    known = study.study.machine
-    return known or study.once("machine", lambda: machine_results(study.mechanism))
-
-
-def steady_at_instants(study: ReportStudy) -> xr.Dataset:
-    """The real motion at the instants."""
-    return study.once("steady at instants", lambda: steady_motion(study.mechanism, at=instants(study)))
 
 
 def reactions_of(study: ReportStudy) -> xr.Dataset:

@@ -11,12 +11,12 @@ from centrode.dynamics.simulation.regime import steady_regime
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.forces.simulation_figures import simulation_figures
-from centrode.report.blocks import Chapter, Check, Formula, Paragraph, Section, Table
-from centrode.report.chapters.forces.places import few
+from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph, Section, Table
 from centrode.report.chapters.forces.results import has_forces, simulated
 from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.report.telling import facts, measured, pictures
 from centrode.study.forces.simulating import regime_rows, simulation_rows
+from centrode.views.columns import rows_shown
 
 if TYPE_CHECKING:
     from centrode.report.study import ReportStudy
@@ -66,7 +66,7 @@ def _course(study: ReportStudy) -> Table:
         if name in found.variables
     ]
     return over_samples(
-        study.numbers, columns, few(found.sizes["sample"]), _("The motion at even steps of time")
+        study.numbers, columns, rows_shown(found.sizes["sample"]), _("The motion at even steps of time")
     )
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.forces.balance_figures import balance_figures
-from centrode.report.blocks import Block, Chapter, Formula, Items, Paragraph, Section, Table
+from centrode.render.document.blocks import Block, Chapter, Formula, Items, Paragraph, Section, Table
+from centrode.render.document.rows import told
 from centrode.report.chapters.forces.results import balanced, has_forces, shaken
-from centrode.report.rows import told
 from centrode.report.telling import facts, listed, measured, pictures
 from centrode.study.forces.balancing import balance_effects, balance_rows, balance_steps
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from centrode.report.blocks import Table
+from centrode.render.document.blocks import Table
 
 if TYPE_CHECKING:
-    from centrode.report.numbers import Numbers
+    from centrode.render.document.numbers import Numbers
 
 ROUNDING = 1e-12
 """What is below this share of the greatest of a column is zero."""

@@ -8,9 +8,9 @@ import numpy as np
 
 from centrode.errors import CentrodeError
 from centrode.locale import _
-from centrode.report.blocks import Block, Formula, Paragraph
+from centrode.render.document.blocks import Block, Formula, Paragraph
+from centrode.render.document.formulas import factor, in_si, squared, with_unit
 from centrode.report.chapters.forces.results import reactions_at_instants, reduced_at_instants
-from centrode.report.formulas import factor, in_si, squared, with_unit
 from centrode.report.telling import measured
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from centrode.locale import _
-from centrode.report.blocks import Table, shown
+from centrode.render.document.blocks import Table, shown
 from centrode.report.study import ReportStudy
 
 

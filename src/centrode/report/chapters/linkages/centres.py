@@ -14,10 +14,10 @@ from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.spoken import body_name
 from centrode.present.centres import centres_figure
-from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
-from centrode.report.figures import picture
+from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
+from centrode.render.document.figures import picture
+from centrode.render.document.rows import small, told
 from centrode.report.moments import Moment, moments_of
-from centrode.report.rows import small, told
 from centrode.report.study import ReportStudy
 from centrode.study.centres import body_names, centres_header, centres_rows
 

@@ -9,9 +9,9 @@ from centrode.errors import Status
 from centrode.locale import _
 from centrode.present.equations import page
 from centrode.present.equations.typst import TypstSpelling
-from centrode.report.blocks import Block, Chapter, Check, Section
+from centrode.render.document.blocks import Block, Chapter, Check, Section
+from centrode.render.document.rows import small
 from centrode.report.equation_blocks import section_of
-from centrode.report.rows import small
 from centrode.report.study import ReportStudy
 
 EPS = float(np.finfo(float).eps)

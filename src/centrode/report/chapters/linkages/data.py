@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam
 from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
-from centrode.report.blocks import Block, Chapter, Section, Table, shown
+from centrode.render.document.blocks import Block, Chapter, Section, Table, shown
+from centrode.render.document.numbers import Numbers
 from centrode.report.chapters.followers.given import given_rows, segment_tables, turning_text
-from centrode.report.numbers import Numbers
 from centrode.report.study import ReportStudy
 
 

@@ -14,12 +14,12 @@ from centrode.equations.letters import Letter
 from centrode.locale import _
 from centrode.present.equations.page import index_of
 from centrode.present.equations.typst import TypstSpelling
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Section, System
+from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section, System
+from centrode.render.document.rows import small
 from centrode.report.chapters.linkages.constraints import first_sections, page_sections
 from centrode.report.equation_blocks import section_of
 from centrode.report.moments import Moment, moments_of
 from centrode.report.numbered import NOTHING, cleaned, with_numbers
-from centrode.report.rows import small
 from centrode.report.study import ReportStudy
 
 SPELLING = TypstSpelling()

@@ -14,10 +14,20 @@ from centrode.locale import _
 from centrode.present.diagram_drawing import COLUMN, TOP
 from centrode.present.instant_drawing import diagram_figures
 from centrode.quantities import QUANTITIES
-from centrode.report.blocks import Block, Chapter, Check, Formula, Paragraph, Picture, Section, Table, shown
+from centrode.render.document.blocks import (
+    Block,
+    Chapter,
+    Check,
+    Formula,
+    Paragraph,
+    Picture,
+    Section,
+    Table,
+    shown,
+)
+from centrode.render.document.rows import rows_table, small, told
+from centrode.render.document.scaled import drawn_to_scale, scale_of
 from centrode.report.moments import Moment, moments_of
-from centrode.report.rows import rows_table, small, told
-from centrode.report.scaled import drawn_to_scale, scale_of
 from centrode.report.study import ReportStudy
 from centrode.report.vectors import rates_in, symbol, vector_parts
 from centrode.study.graphic import graphic_about, sine_lines, trial_lines

@@ -11,8 +11,8 @@ import xarray as xr
 from centrode.errors import Status
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.report.blocks import Check
-from centrode.report.rows import small
+from centrode.render.document.blocks import Check
+from centrode.render.document.rows import small
 from centrode.report.study import ReportStudy
 
 Array = npt.NDArray[np.float64]

@@ -7,9 +7,9 @@ import numpy as np
 from centrode.equations.integrated import integrate
 from centrode.locale import _
 from centrode.present.integrations import integration_figures
-from centrode.report.blocks import Block, Chapter, Check, Section
-from centrode.report.figures import picture
-from centrode.report.rows import rows_table, small
+from centrode.render.document.blocks import Block, Chapter, Check, Section
+from centrode.render.document.figures import picture
+from centrode.render.document.rows import rows_table, small
 from centrode.report.study import ReportStudy
 from centrode.study.integrating import closed_motion, integration_rows
 

@@ -14,8 +14,8 @@ from centrode.locale import _
 from centrode.model.mechanism import FRAME
 from centrode.present.equations.typst import word
 from centrode.quantities import QUANTITIES, status_word
-from centrode.report.blocks import Block, Paragraph, Table, shown
-from centrode.report.numbers import Numbers
+from centrode.render.document.blocks import Block, Paragraph, Table, shown
+from centrode.render.document.numbers import Numbers
 from centrode.report.study import ReportStudy
 from centrode.report.vectors import symbol
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from centrode.locale import _
-from centrode.report.blocks import Chapter, Section
+from centrode.render.document.blocks import Chapter, Section
 from centrode.report.moving import moving_of
 from centrode.report.study import ReportStudy
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from centrode.locale import _, mark
 from centrode.present.figures import motion_figures
-from centrode.report.blocks import Chapter, Section
-from centrode.report.figures import picture
+from centrode.render.document.blocks import Chapter, Section
+from centrode.render.document.figures import picture
 from centrode.report.moments import moments_of
 from centrode.report.study import ReportStudy
 

@@ -9,9 +9,9 @@ from centrode.analysis.position_plan import plan_of_positions
 from centrode.errors import Status
 from centrode.locale import _
 from centrode.present.plan_drawing import COLUMN, TOP, plan_figure
-from centrode.report.blocks import Chapter, Section, Table, shown
-from centrode.report.rows import rows_table
-from centrode.report.scaled import drawn_to_scale, scale_of
+from centrode.render.document.blocks import Chapter, Section, Table, shown
+from centrode.render.document.rows import rows_table
+from centrode.render.document.scaled import drawn_to_scale, scale_of
 from centrode.report.study import ReportStudy
 from centrode.report.vectors import symbol
 from centrode.study.positions import plan_rows

@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.report.blocks import Block, Chapter, Check, Formula, Items, Paragraph, Section, Table, shown
-from centrode.report.rows import small
+from centrode.render.document.blocks import (
+    Block,
+    Chapter,
+    Check,
+    Formula,
+    Items,
+    Paragraph,
+    Section,
+    Table,
+    shown,
+)
+from centrode.render.document.rows import small
 from centrode.report.study import ReportStudy
 from centrode.structure.assur import AssurGroup
 from centrode.structure.mobility import is_bare, slider_of

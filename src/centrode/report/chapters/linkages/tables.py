@@ -11,13 +11,13 @@ import xarray as xr
 from centrode.errors import STATUSES_OF_MOTION
 from centrode.locale import _, ngettext
 from centrode.quantities import status_word
-from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
+from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
+from centrode.render.document.numbers import NOTHING
+from centrode.render.document.rows import rows_table, sentence, small
 from centrode.report.chapters.linkages.analogs import coefficient_tables
 from centrode.report.chapters.linkages.identities import identity_checks
 from centrode.report.chapters.linkages.long_tables import chosen_rows, known, long_tables
 from centrode.report.moments import Moment, moments_of
-from centrode.report.numbers import NOTHING
-from centrode.report.rows import rows_table, sentence, small
 from centrode.report.study import ReportStudy
 
 ROWS = 37

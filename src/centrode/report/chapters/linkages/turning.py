@@ -11,9 +11,9 @@ from centrode.analysis.transmission import transmission_angles
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.transmission_curves import transmission_figure
-from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table
-from centrode.report.figures import picture
-from centrode.report.rows import rows_table, told
+from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table
+from centrode.render.document.figures import picture
+from centrode.render.document.rows import rows_table, told
 from centrode.report.study import ReportStudy
 from centrode.study.repairing import repair_rows
 from centrode.study.transmission import transmission_rows

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from centrode.locale import _
-from centrode.report.blocks import Chapter, Paragraph, Section
-from centrode.report.rows import told
+from centrode.render.document.blocks import Chapter, Paragraph, Section
+from centrode.render.document.rows import told
 from centrode.report.study import ReportStudy
 from centrode.study.words.describing import describe
 

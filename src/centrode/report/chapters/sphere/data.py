@@ -7,8 +7,8 @@ from math import cos, pi, sin
 
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Link, Mechanism
-from centrode.report.blocks import Block, Chapter, Paragraph, Section, Table, shown
-from centrode.report.numbers import Numbers
+from centrode.render.document.blocks import Block, Chapter, Paragraph, Section, Table, shown
+from centrode.render.document.numbers import Numbers
 from centrode.report.study import ReportStudy
 
 

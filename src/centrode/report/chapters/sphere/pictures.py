@@ -10,8 +10,8 @@ from centrode.analysis.instant_centres.centres import instant_centres
 from centrode.errors import CentrodeError
 from centrode.locale import _, mark
 from centrode.present.figures import motion_figures
-from centrode.report.blocks import Block, Chapter, Paragraph, Section, Table, shown
-from centrode.report.figures import picture
+from centrode.render.document.blocks import Block, Chapter, Paragraph, Section, Table, shown
+from centrode.render.document.figures import picture
 from centrode.report.moments import Moment, reached_moments
 
 if TYPE_CHECKING:

@@ -6,10 +6,10 @@ from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.equations import page
 from centrode.present.equations.typst import TypstSpelling
-from centrode.report.blocks import Chapter, Paragraph, Section
-from centrode.report.chapters.forces.absent import left_out
+from centrode.render.document.blocks import Chapter, Paragraph, Section
 from centrode.report.equation_blocks import section_of
 from centrode.report.study import ReportStudy
+from centrode.report.topics import left_out
 
 
 def sphere_equations_chapter(study: ReportStudy) -> Chapter | None:

@@ -9,12 +9,13 @@ import numpy as np
 
 from centrode.errors import Status
 from centrode.locale import _
-from centrode.report.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
-from centrode.report.chapters.forces.places import few, head_of_places, places_of, unit_of_place
+from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
+from centrode.report.chapters.forces.places import head_of_places, places_of, unit_of_place
 from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.report.moments import Moment, moments_of
 from centrode.report.telling import facts, measured
 from centrode.study.summary import motion_rows
+from centrode.views.columns import rows_shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -126,7 +127,7 @@ def _course(study: ReportStudy) -> Table:
             columns.append(Column(f"${letter}{below}$", "rad", one[value].to_numpy()))
             columns.append(Column(f"$dot({letter}){below}$", "rad/s", one[rate].to_numpy()))
     return over_samples(
-        study.numbers, columns, few(data.sizes["sample"], ROWS), _("The motion at even steps")
+        study.numbers, columns, rows_shown(data.sizes["sample"], ROWS), _("The motion at even steps")
     )
 
 

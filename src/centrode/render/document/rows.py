@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from centrode.equations.letters import Letter
 from centrode.locale import _
 from centrode.present.equations.typst import TypstSpelling, decimal
-from centrode.report.blocks import Table, shown
-from centrode.report.numbers import Numbers, respelled
+from centrode.render.document.blocks import Table, shown
+from centrode.render.document.numbers import Numbers, respelled
 
 CONDITION = re.compile(r"\b(sin|cos)\(([^()]*\bphi\d+[^()]*)\) = 0")
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]\d+)?")

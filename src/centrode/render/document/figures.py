@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from centrode.present.saving import METADATA
 from centrode.present.spelled_figures import respell, spell_decimals
 from centrode.present.style import house_style
-from centrode.report.blocks import Picture
-from centrode.report.rows import degrees
+from centrode.render.document.blocks import Picture
+from centrode.render.document.rows import degrees
 
 FLAT = 0.68
 """Height of curves by their width of which two, with their captions, find room on a page."""

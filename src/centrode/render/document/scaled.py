@@ -14,8 +14,8 @@ from matplotlib.transforms import Bbox
 
 from centrode.present.saving import METADATA
 from centrode.present.style import house_style
-from centrode.report.blocks import Picture
-from centrode.report.figures import spell_as_in_tables
+from centrode.render.document.blocks import Picture
+from centrode.render.document.figures import spell_as_in_tables
 
 INCH = 25.4
 ROOM = 2.0

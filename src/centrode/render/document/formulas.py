@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from centrode.model.asked import Display
 from centrode.present.equations.typst import quoted
-from centrode.report.numbers import Numbers
+from centrode.render.document.numbers import Numbers
 
 LONGEST = 6
 """Terms of a sum beyond which only its first and its last ones are written."""

@@ -1,0 +1,8 @@
+# One import an entry and one name an import: lazy_loader reads these lines.
+from .figures import figure_of as figure_of
+from .figures import figures_of as figures_of
+from .figures import write_pictures as write_pictures
+from .files import write_summary as write_summary
+from .files import write_tables as write_tables
+from .terminal import aligned as aligned
+from .terminal import facts_text as facts_text

@@ -1,0 +1,1 @@
+"""Documents: their blocks, how they spell numbers and formulas, their pictures."""

@@ -1,0 +1,99 @@
+"""Chapters of sheets as blocks of a document, in the language that is spoken."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TypeAlias, assert_never
+
+import numpy as np
+
+from centrode.locale import _
+from centrode.render import figures
+from centrode.render.document import blocks
+from centrode.render.document.figures import picture
+from centrode.render.document.numbers import Numbers, spelled_number
+from centrode.render.document.spelling import ROUNDING, DocumentSpelling
+from centrode.sheets.sheet import (
+    Block,
+    Check,
+    Column,
+    Fact,
+    FactTable,
+    Formula,
+    Illustration,
+    Paragraph,
+    Picture,
+    Section,
+    Sheet,
+    Table,
+)
+
+Pictures: TypeAlias = Mapping[str, Picture]
+
+
+def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.Chapter:
+    """A chapter of a sheet, spelled and with its pictures drawn."""
+    chapter, spelling = sheet.chapters[name], DocumentSpelling(numbers)
+    sections = tuple(_section(section, sheet.pictures, spelling) for section in chapter.sections)
+    return blocks.Chapter(name, spelling.text(chapter.title), sections)
+
+
+def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.Section:
+    made = [_block(block, pictures, spelling) for block in section.blocks if _is_there(block, pictures)]
+    return blocks.Section(spelling.text(section.title), tuple(made))
+
+
+def _is_there(block: Block, pictures: Pictures) -> bool:
+    """Whether there is something to show: pictures belong to some descriptions only."""
+    return not isinstance(block, Illustration) or block.picture in pictures
+
+
+def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> blocks.Block:
+    match block:
+        case Paragraph(text):
+            return blocks.Paragraph(spelling.text(text))
+        case Formula(lines):
+            return blocks.Formula(tuple(tuple(map(spelling.mathematics, line)) for line in lines))
+        case Table():
+            return _table(block, spelling)
+        case FactTable(facts, caption):
+            return _facts(facts, spelling.text(caption), spelling)
+        case Illustration(name, caption):
+            shown = pictures[name]
+            figure = figures.figure_of(shown, spelling.numbers.display)
+            return picture(figure, spelling.text(shown.title if caption is None else caption))
+        case Check():
+            return _check(block, spelling)
+        case _:
+            assert_never(block)
+
+
+def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:
+    heads = tuple(map(spelling.head, table.columns))
+    cells = [_cells(column, table.rows, spelling) for column in table.columns]
+    numbers = tuple(isinstance(column.values, np.ndarray) for column in table.columns)
+    return blocks.Table(heads, tuple(zip(*cells, strict=True)), spelling.text(table.caption), numbers)
+
+
+def _cells(column: Column, rows: Sequence[int] | None, spelling: DocumentSpelling) -> Sequence[str]:
+    """The rows of a column that a document shows; what rounding has left of zero is zero."""
+    values = column.values
+    if not isinstance(values, np.ndarray):
+        return [spelling.text(values[row]) for row in (range(len(values)) if rows is None else rows)]
+    least = ROUNDING * float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
+    return spelling.numbers.column(values if rows is None else values[list(rows)], column.unit, least)
+
+
+def _facts(facts: Sequence[Fact], caption: str, spelling: DocumentSpelling) -> blocks.Table:
+    rows = tuple((spelling.text(fact.label), spelling.text(fact.value)) for fact in facts)
+    return blocks.Table((_("what"), _("value")), rows, caption, (False, False))
+
+
+def _check(check: Check, spelling: DocumentSpelling) -> blocks.Check:
+    """A difference that is no number does not hold; of nothing no share can be given, and only nothing is right."""
+    share = check.difference / check.size if check.size else check.difference
+    shown = spelled_number(f"{share:.1e}") if share else "0"
+    statement = _(check.statement.message).format(
+        share=shown, **{name: spelling.text(value) for name, value in check.statement.values.items()}
+    )
+    return blocks.Check(statement, bool(share <= check.bound))

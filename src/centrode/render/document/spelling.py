@@ -1,0 +1,104 @@
+"""How texts of sheets become text and mathematics of documents: few digits, typeset units, the mark of the language."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, assert_never
+
+from centrode.present.equations.typst import quoted, shown
+from centrode.render.document.numbers import Numbers, spelled_number, spelled_unit
+from centrode.render.spelling import Spelling
+from centrode.sheets.texts import Expression, Factor, Leaf, Name, Number, Symbol
+
+if TYPE_CHECKING:
+    from centrode.sheets.sheet import Column
+
+ROUNDING = 1e-12
+"""What is below this share of the greatest of a column is zero."""
+
+
+class DocumentSpelling(Spelling):
+    """Texts in which mathematics stands between dollar signs, as blocks of documents hold them.
+
+    Attributes
+    ----------
+    numbers : Numbers
+        How many digits numbers have, and how they are spelled.
+    """
+
+    def __init__(self, numbers: Numbers) -> None:
+        super().__init__(numbers.display)
+        self.numbers = numbers
+
+    def name(self, text: str) -> str:
+        """What a user called something, in which nothing is taken for mathematics."""
+        return shown(text)
+
+    def number(self, number: Number) -> str:
+        """A number with its unit; degrees with their sign."""
+        factor, unit = self.shown_unit(number)
+        value = number.value * factor if factor != 1.0 else number.value
+        text = self._digits(value, number.digits)
+        if number.degrees_too and unit == "rad" and value:
+            return f"{text} rad ({self.numbers.plain(math.degrees(value))}°)"
+        label = "" if number.unit_hidden else spelled_unit(unit)
+        if label == "°":
+            return f"{text}°"
+        return f"{text} {label}" if label else text
+
+    def _digits(self, value: float, digits: str) -> str:
+        """A number in the format that its sentence wants, with no more digits than the document has."""
+        if not digits or not math.isfinite(value):
+            return self.numbers.plain(value)
+        text = format(value, digits)
+        sign = text[0] if text[0] in "+-" else ""
+        body, percent = (text[len(sign) :].removesuffix("%"), "%" if text.endswith("%") else "")
+        mantissa, exponent, power = body.partition("e")
+        mantissa = shortened(mantissa, self.numbers.digits)
+        spelled = spelled_number(("-" if sign == "-" else "") + mantissa + (f"e{power}" if exponent else ""))
+        return ("+" if sign == "+" else "") + spelled + percent
+
+    def symbol(self, symbol: Symbol) -> str:
+        """A letter with its index, as mathematics."""
+        index = symbol.index if symbol.slanted else f"upright({quoted(symbol.index)})"
+        return f"${symbol.letter}_({index})$" if symbol.index else f"${symbol.letter}$"
+
+    def expression(self, expression: Expression) -> str:
+        """Mathematics between dollar signs."""
+        return f"${self.mathematics(expression)}$"
+
+    def mathematics(self, leaf: Leaf) -> str:
+        """Mathematics without the dollar signs, numbers with their units."""
+        match leaf:
+            case str():
+                return leaf
+            case Expression(notation, values):
+                return notation.format(**{name: self.mathematics(value) for name, value in values.items()})
+            case Number():
+                size, label = self._size(leaf)
+                return f"{size} thin {quoted(label)}" if label and not leaf.unit_hidden else size
+            case Factor(number):
+                size, _label = self._size(number)
+                return f"({size})" if number.value < 0 or "dot" in size else size
+            case Name(text):
+                return quoted(text)
+            case _:
+                assert_never(leaf)
+
+    def _size(self, number: Number) -> tuple[str, str]:
+        """A number as mathematics, and the label of its unit."""
+        factor, unit = self.shown_unit(number)
+        return self.numbers.math(number.value * factor), spelled_unit(unit)
+
+    def head(self, column: Column) -> str:
+        """Head of a column: what it holds, with the unit behind it."""
+        name = self.text(column.head) or self.name(column.name)
+        return self.numbers.head(name, column.unit)
+
+
+def shortened(mantissa: str, digits: int) -> str:
+    """A decimal with at most so many digits; its whole part stays."""
+    whole = len(mantissa.partition(".")[0])
+    if "." not in mantissa or len(mantissa.replace(".", "").lstrip("0")) <= digits:
+        return mantissa
+    return f"{float(mantissa):.0f}" if whole >= digits else f"{float(mantissa):.{digits}g}"

@@ -1,0 +1,81 @@
+"""Sheets as files of a folder: tables as CSV and workbooks, datasets as netCDF, the summary as JSON."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.present.shown import shown_as
+from centrode.present.spelled_tables import PLAIN, TableSpelling
+from centrode.present.tables import write_motion_netcdf
+from centrode.render.spelling import PlainSpelling
+
+if TYPE_CHECKING:
+    from centrode.model.asked import Display
+    from centrode.sheets.sheet import Column, Scalar, Sheet, Table
+
+BLOCK = 10_000
+"""Rows that become text at once: as Python's own numbers they take many times the memory of an array."""
+
+
+def write_tables(sheet: Sheet, folder: Path, display: Display, spelling: TableSpelling = PLAIN) -> None:
+    """Write the tables of a sheet as CSV (and as workbooks where `spelling` says so), its datasets as netCDF."""
+    for name, table in sheet.tables.items():
+        write_table(table, folder / f"{name}.csv", display, spelling)
+    for name, dataset in sheet.datasets.items():
+        write_motion_netcdf(dataset, folder / f"{name}.nc")
+
+
+def write_summary(scalars: Mapping[str, Scalar], path: Path) -> None:
+    """Write numbers with their SI units as JSON."""
+    text = json.dumps({name: one.as_dict() for name, one in scalars.items()}, indent=2, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def write_table(table: Table, path: Path, display: Display, spelling: TableSpelling = PLAIN) -> None:
+    """Write a table as CSV in UTF-8, one line end everywhere; numbers read back bit for bit, one that is NaN is empty.
+
+    With decimal commas fields are apart by semicolons, and a byte order mark goes before them: without it spreadsheets
+    take UTF-8 for a code page of theirs. Names and words keep their dots.
+    """
+    encoding, delimiter, mark = ("utf-8-sig", ";", ",") if spelling.comma else ("utf-8", ",", ".")
+    words = PlainSpelling(display)
+    headers = [header(column, display) for column in table.columns]
+    with path.open("w", encoding=encoding, newline="") as file:
+        writer = csv.writer(file, delimiter=delimiter, lineterminator="\n")
+        writer.writerow(headers)
+        for first in range(0, len(table.columns[0].values), BLOCK):
+            fields = [_fields(column, slice(first, first + BLOCK), words, mark) for column in table.columns]
+            writer.writerows(zip(*fields, strict=True))
+    spelling.write_workbook(
+        path.with_suffix(".xlsx"), headers, lambda: [_cells(column, words) for column in table.columns]
+    )
+
+
+def header(column: Column, display: Display) -> str:
+    """Name of a column with the unit it is shown in: "velocity_B_x [mm/s]"."""
+    unit = shown_as(column.unit, display)[1]
+    return f"{column.name} [{unit}]" if unit not in ("", "1") else column.name
+
+
+def _cells(column: Column, words: PlainSpelling, rows: slice = slice(None)) -> list[float] | list[str]:
+    """Numbers in the unit shown, or texts."""
+    values = column.values[rows]
+    if not isinstance(values, np.ndarray):
+        return [words.text(text) for text in values]
+    factor = shown_as(column.unit, words.display)[0]
+    numbers: list[float] = (values if factor == 1.0 else values * factor).tolist()
+    return numbers
+
+
+def _fields(column: Column, rows: slice, words: PlainSpelling, mark: str) -> list[str]:
+    """Cells as fields: the shortest digits that read back as the same number."""
+    return [
+        cell if isinstance(cell, str) else ("" if cell != cell else repr(cell).replace(".", mark))
+        for cell in _cells(column, words, rows)
+    ]

@@ -1,0 +1,158 @@
+"""Texts before they are spelled: sentences in English with typed holes for names, numbers and further texts.
+
+A renderer chooses the language, the grammatical number, the decimal mark and the spelling of units; so a name is never
+mistaken for a number or a unit, whatever a user has called a link. The sentence itself holds no digit and no unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+
+@dataclass(frozen=True)
+class Name:
+    """What a user called something: every renderer shows it character by character."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Title:
+    """The title of a mechanism: translated where it is that of a built-in example, otherwise shown as it is."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Number:
+    """A quantity.
+
+    Attributes
+    ----------
+    value : float
+        In `unit`.
+    unit : str
+        SI unit ("kg m^2", "1" for a plain number); lengths and angles appear in the units of the display.
+    digits : str
+        Python's format of the number: ".6g", ".1e", "+.2%"; a document never shows more digits than it is set to, and
+        formulas and columns have a rule of their own. Empty: as many digits as the document is set to.
+    unit_fixed : bool
+        The unit stays whatever the display says: speeds of machines in rad/s, terms of one formula in SI.
+    unit_hidden : bool
+        Without the unit, which stands elsewhere in the sentence.
+    degrees_too : bool
+        Where angles appear in radians a document adds degrees in brackets, as people think of positions.
+    """
+
+    value: float
+    unit: str = "1"
+    digits: str = ".6g"
+    unit_fixed: bool = False
+    unit_hidden: bool = False
+    degrees_too: bool = False
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A number as a factor of a product in a formula: in brackets where it is negative or has a power of ten."""
+
+    number: Number
+
+
+@dataclass(frozen=True, init=False)
+class Sentence:
+    """A sentence or a phrase; `message` is its English text and its key in the catalogues.
+
+    Each hole `{name}` is filled with the text of that name in `values`. Between dollar signs stands mathematics in the
+    notation of `Expression`, which documents set.
+    """
+
+    message: str
+    values: Mapping[str, Text]
+
+    def __init__(self, message: str, /, **values: Text) -> None:
+        object.__setattr__(self, "message", message)
+        object.__setattr__(self, "values", values)
+
+
+@dataclass(frozen=True, init=False)
+class Counted:
+    """A sentence that depends on how many there are: the renderer chooses the grammatical number.
+
+    `{n}` is the count.
+    """
+
+    singular: str
+    plural: str
+    count: int
+    values: Mapping[str, Text]
+
+    def __init__(self, singular: str, plural: str, count: int, /, **values: Text) -> None:
+        object.__setattr__(self, "singular", singular)
+        object.__setattr__(self, "plural", plural)
+        object.__setattr__(self, "count", count)
+        object.__setattr__(self, "values", values)
+
+
+@dataclass(frozen=True)
+class Joined:
+    """Texts one behind the other.
+
+    Attributes
+    ----------
+    parts : texts
+    between : str
+        What parts them: ", ", "; ", or nothing.
+    """
+
+    parts: Sequence[Text]
+    between: str = ", "
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A letter of a formula.
+
+    Attributes
+    ----------
+    letter : str
+        As the vocabulary of quantities writes it, with primes: "φ", "J′".
+    index : str
+        Upright below it: "II"; names of points and axes as well.
+    slanted : bool
+        The index is a variable ("x"), not a name.
+    """
+
+    letter: str
+    index: str = ""
+    slanted: bool = False
+
+
+@dataclass(frozen=True, init=False)
+class Expression:
+    """Mathematics with typed leaves.
+
+    Attributes
+    ----------
+    notation : str
+        In typst's notation ("frac({work}, 2 pi)"), which the renderers of pages and of PDF read; holes are filled with
+        numbers, factors, names and expressions. Braces of the notation itself are doubled.
+    values : mapping of name -> leaf
+    """
+
+    notation: str
+    values: Mapping[str, Leaf]
+
+    def __init__(self, notation: str, /, **values: Leaf) -> None:
+        object.__setattr__(self, "notation", notation)
+        object.__setattr__(self, "values", values)
+
+
+Leaf: TypeAlias = "str | Number | Factor | Name | Expression"
+"""A piece of a formula; a string is notation without leaves of its own."""
+Text: TypeAlias = "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression"
+
+NOTHING = Joined(())
+"""An empty text."""

@@ -1,0 +1,59 @@
+"""A result of any topic: in words, in tables, in figures, as files of a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from centrode import render
+from centrode.errors import InputError
+from centrode.files.drafts import draft_folder
+from centrode.locale import _
+from centrode.topics.registry import TOPICS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from centrode.sheets.sheet import Sheet, Table
+
+
+def sheet_of(result: Any) -> Sheet:
+    """What there is to say about a result, as data; InputError for what is no result of a topic."""
+    kind = type(result)
+    for topic in TOPICS:
+        if (topic.result.module, topic.result.name) == (kind.__module__, kind.__qualname__):
+            return cast("Sheet", topic.view(result))
+    known = ", ".join(topic.result.name for topic in TOPICS)
+    raise InputError(
+        kind.__name__,
+        _("is not a result that can be shown"),
+        _("show one of {known}").format(known=known),
+    )
+
+
+def summary(result: Any) -> str:
+    """The facts of a result as lines of text, in the language that is spoken and the units of its description."""
+    return render.facts_text(sheet_of(result).facts, result.mechanism.display)
+
+
+def tables(result: Any) -> Mapping[str, Table]:
+    """The tables of a result by name; columns are arrays in SI."""
+    return sheet_of(result).tables
+
+
+def figures(result: Any) -> dict[str, Figure]:
+    """The figures of a result by name; needs matplotlib."""
+    return render.figures_of(sheet_of(result).pictures, result.mechanism.display)
+
+
+def write(result: Any, folder: str | Path) -> None:
+    """Write tables, datasets, figures and the summary of a result into a folder, which appears whole or not at all.
+
+    Raises InputError where the folder cannot be written.
+    """
+    sheet, display = sheet_of(result), result.mechanism.display
+    with draft_folder(Path(folder)) as draft:
+        render.write_tables(sheet, draft, display)
+        render.write_pictures(sheet.pictures, draft, display)
+        render.write_summary(sheet.scalars, draft / "summary.json")

@@ -1,0 +1,1 @@
+"""Views: what there is to say about each result, one module a topic; they make sheets and render nothing."""

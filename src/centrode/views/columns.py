@@ -1,0 +1,122 @@
+"""Columns of datasets: which variables a table of a motion has, in which order and under which names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.errors import Status
+from centrode.sheets.sheet import Column, Table
+from centrode.sheets.texts import Name
+
+if TYPE_CHECKING:
+    import xarray
+
+VARIABLES = (
+    "turned",
+    "moment_of_loads",
+    "driving_moment",
+    "work_of_loads",
+    "work_of_drive",
+    "work",
+    "inertia_of_links",
+    "inertia_slope_of_links",
+    "energy_of_links",
+    "energy_change",
+    "drive_speed",
+    "drive_acceleration",
+    "drive_speed_first_order",
+    "drive_acceleration_first_order",
+    "inertia",
+    "moment_of_friction",
+    "power_of_drive",
+    "power_of_loads",
+    "work_of_friction",
+    "work_of_other_loads",
+    "kinetic_energy",
+    "potential_energy",
+    "energy_residual",
+    "angle",
+    "angular_velocity",
+    "angular_acceleration",
+    "joint_angle",
+    "joint_velocity",
+    "joint_acceleration",
+    "position",
+    "velocity",
+    "acceleration",
+    "slide",
+    "slide_velocity",
+    "slide_acceleration",
+    "contact",
+    "angular_velocity_coefficient",
+    "angular_acceleration_coefficient",
+    "joint_velocity_coefficient",
+    "joint_acceleration_coefficient",
+    "velocity_coefficient",
+    "acceleration_coefficient",
+    "slide_velocity_coefficient",
+    "slide_acceleration_coefficient",
+)
+
+
+def numeric_columns(dataset: xarray.Dataset) -> Iterator[tuple[str, str, xarray.DataArray]]:
+    """Header without unit, SI unit and values of every column of numbers, in the order of the table."""
+    yield "time", unit_of(dataset["time"]), dataset["time"]
+    drives = [str(name) for name in dataset["drive"].values]
+    for number, name in enumerate(drives):
+        yield f"drive_{name}", drive_units(dataset)[number], dataset["drive_value"].isel(drive=number)
+    for variable in VARIABLES:
+        if variable in dataset:
+            yield from columns_of(dataset[variable], variable)
+
+
+def columns_of(values: xarray.DataArray, variable: str) -> Iterator[tuple[str, str, xarray.DataArray]]:
+    """One column for each link, guide, or axis of a point."""
+    dims = [str(dim) for dim in values.dims if dim != "sample"]
+    for labels in product(*(values[dim].values.tolist() for dim in dims)):
+        header = "_".join([variable, *map(str, labels)])
+        yield header, unit_of(values), values.sel(dict(zip(dims, labels, strict=True)))
+
+
+def unit_of(values: xarray.DataArray) -> str:
+    """SI unit of a variable; none for a plain number."""
+    unit = str(values.attrs.get("units", ""))
+    return "" if unit == "1" else unit
+
+
+def drive_units(dataset: xarray.Dataset) -> list[str]:
+    """SI unit of each drive's value: `units` names one for all, or one for each drive."""
+    units = unit_of(dataset["drive_value"]).split() or [""]
+    return units * dataset.sizes["drive"] if len(units) == 1 else units
+
+
+SHOWN_ROWS = 25
+"""Rows of a table over a motion that a document shows."""
+
+
+def motion_table(dataset: xarray.Dataset, points: Sequence[str] | None = None) -> Table:
+    """The table of a motion, one row a sample; of the points named, of all if None.
+
+    Raises ValueError for more than one motion.
+    """
+    if extra := set(dataset["status"].dims) - {"sample"}:
+        raise ValueError(f"a table shows one motion: select along {sorted(map(str, extra))} first")
+    selected = dataset if points is None else dataset.sel(point=list(points))
+    columns = [Column(name, values.to_numpy(), unit) for name, unit, values in numeric_columns(selected)]
+    words = tuple(Name(Status(code).word) for code in dataset["status"].to_numpy().tolist())
+    return Table((*columns, Column("status", words), Column("residual", dataset["residual"].to_numpy())))
+
+
+def rows_shown(count: int, most: int = SHOWN_ROWS) -> tuple[int, ...]:
+    """Numbers of a few of many rows, both ends among them; every k-th where that gives not much fewer than `most`."""
+    if count <= most:
+        return tuple(range(count))
+    least = -(-(count - 1) // (most - 1))
+    step = next((k for k in range(least, 2 * least + 1) if (count - 1) % k == 0), None)
+    if step is not None:
+        return tuple(range(0, count, step))
+    return tuple(round(float(k)) for k in np.linspace(0, count - 1, most))

@@ -1,0 +1,149 @@
+"""Curves of a motion: which stand together in a panel, and what they are drawn over."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from centrode.quantities import QUANTITIES
+from centrode.sheets.plots import Abscissa, AxisLabel, Curve, CurvePanel
+from centrode.sheets.texts import Name, Sentence, Symbol
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+
+Array: TypeAlias = NDArray[np.float64]
+Rows: TypeAlias = tuple[tuple[CurvePanel, ...], ...]
+MAGNITUDE = "magnitude"
+CURVES, PANELS = 7, 4
+"""The most curves that can be told apart in a panel, and the most panels below each other that are not crowded."""
+
+
+@dataclass(frozen=True)
+class PlottedMotion:
+    """A motion and what its figures share.
+
+    Attributes
+    ----------
+    mechanism, dataset : the motion
+    places : "link", "point", "guide" -> name -> its place, which gives it the same pen in every figure
+    """
+
+    mechanism: Mechanism
+    dataset: xarray.Dataset
+
+    @functools.cached_property
+    def places(self) -> Mapping[str, Mapping[str, int]]:
+        """Places of links, points and guides among their kind."""
+        kinds = {"link": self.mechanism.link_names, "point": self.mechanism.moving_points}
+        return {kind: {name: place for place, name in enumerate(names)} for kind, names in kinds.items()}
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the components of a place."""
+        return tuple(self.dataset["axis"].to_numpy().tolist())
+
+
+def panels_of_links(motion: PlottedMotion, variable: str) -> Rows:
+    """One panel below another, with as many links each as can be told apart; magnitudes of vectors."""
+    part = MAGNITUDE if "axis" in motion.dataset[variable].dims else ""
+    groups = dealt(turning_links(motion.mechanism))
+    return tuple((_panel(motion, variable, "link", names, part),) for names in groups)
+
+
+def panels_of_points(motion: PlottedMotion, variable: str) -> Rows:
+    """Components and magnitude below each other; further points in further columns."""
+    groups = dealt(motion.places["point"])
+    return tuple(
+        tuple(_panel(motion, variable, "point", names, part, legend=part == "x") for names in groups)
+        for part in (*motion.components, MAGNITUDE)
+    )
+
+
+def turning_links(mechanism: Mechanism) -> list[str]:
+    """The links without those that a guide of the frame keeps from turning."""
+    still = {guide.link for guide in mechanism.guides if guide.on == "frame"}
+    return [name for name in mechanism.link_names if name not in still]
+
+
+def dealt(names: Iterable[str]) -> list[list[str]]:
+    """The names dealt evenly to as few panels as keep at most `CURVES` in one."""
+    names = list(names)
+    count = min(PANELS, max(1, -(-len(names) // CURVES)))
+    cuts = [round(number * len(names) / count) for number in range(count + 1)]
+    return [names[first:last] for first, last in pairwise(cuts)]
+
+
+def over_samples(label: AxisLabel, values: Array) -> Abscissa:
+    """An abscissa whose values are in drawing order, without gaps."""
+    return Abscissa(label, values, np.arange(len(values)))
+
+
+def quantity_label(name: str) -> AxisLabel:
+    """Title, symbol and unit of a quantity of the vocabulary."""
+    quantity = QUANTITIES[name]
+    return AxisLabel(Sentence(quantity.long_name), Symbol(quantity.symbol), quantity.unit)
+
+
+def quantities_panel(
+    dataset: xarray.Dataset, variables: Sequence[str], symbol: Symbol, approximate: Sequence[str] = ()
+) -> CurvePanel:
+    """Curves of several variables of one unit, by their titles; those in `approximate` beside the exact ones."""
+    curves = tuple(
+        Curve(Sentence(QUANTITIES[name].long_name), dataset[name].to_numpy(), place, name in approximate)
+        for place, name in enumerate(variables)
+    )
+    scale = max(float(np.max(np.abs(curve.values), initial=0.0)) for curve in curves)
+    return CurvePanel(AxisLabel(symbol=symbol, unit=QUANTITIES[variables[0]].unit), curves, scale)
+
+
+def _panel(
+    motion: PlottedMotion,
+    variable: str,
+    kind: str,
+    names: Iterable[str],
+    part: str = "",
+    *,
+    legend: bool = True,
+) -> CurvePanel:
+    """Curves of one variable of links, points or guides, of one component or the magnitude."""
+    values = motion.dataset[variable]
+    unit = str(values.attrs.get("units", QUANTITIES[variable].unit))
+    curves = tuple(
+        Curve(Name(name), _part(values.sel({kind: name}), part), motion.places[kind][name]) for name in names
+    )
+    symbol = Symbol(QUANTITIES[variable].symbol, part if part != MAGNITUDE else "", slanted=True)
+    return CurvePanel(AxisLabel(symbol=symbol, unit=unit), curves, _scale(motion.dataset, variable), legend)
+
+
+def _part(values: xarray.DataArray, part: str) -> Array:
+    """A curve of a scalar, or of a vector's component or magnitude."""
+    if part == MAGNITUDE:
+        return np.asarray(functools.reduce(np.hypot, values.transpose("axis", ...).to_numpy()))
+    return np.asarray((values.sel(axis=part) if part else values).to_numpy())
+
+
+def _scale(dataset: xarray.Dataset, variable: str) -> float:
+    """A great value of a variable: its greatest, or for angular accelerations the squared angular velocity.
+
+    So a link that translates shows accelerations of zero, not noise.
+    """
+    greatest = _peak(dataset, variable)
+    if "angular_acceleration" in variable:
+        greatest = max(greatest, _peak(dataset, variable.replace("acceleration", "velocity")) ** 2)
+    return greatest
+
+
+def _peak(dataset: xarray.Dataset, variable: str) -> float:
+    """The greatest magnitude of a variable; 0 if it has no value."""
+    values = dataset[variable].to_numpy()
+    known = np.abs(values[np.isfinite(values)])
+    return float(known.max()) if known.size else 0.0
