@@ -16,8 +16,8 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.kinematics.roots import bracketed_roots
 from centrode.laws import Law, TextLaw
+from centrode.numerics.search import newton_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Places: TypeAlias = npt.NDArray[np.intp]
@@ -126,7 +126,7 @@ def _turns(law: TextLaw, number: int, low: Array, high: Array) -> Array:
         jet = _kept(law, x, 2)[number]
         return np.broadcast_to(jet.derivative(1), x.shape), np.broadcast_to(jet.derivative(2), x.shape)
 
-    return bracketed_roots(slope, low, high)
+    return newton_roots(slope, low, high)
 
 
 def _changes(law: TextLaw, number: int, nodes: Array) -> Array:
