@@ -107,6 +107,11 @@ def test_a_bracket_with_its_root_at_an_end():
     assert square.tolist() == [0.0, 1.0]
 
 
+def test_one_sign_at_both_ends_gives_the_end_nearer_to_zero():
+    found = interpolated_roots(lambda x: x + 1.0, np.array([0.0, -9.0]), np.array([4.0, -2.0]))
+    assert found.tolist() == [0.0, -2.0]
+
+
 def test_absence_in_a_bracket_is_absence_of_its_root():
     def broken(x):
         return np.where((x > 0.2) & (x < 0.8), np.nan, x - 0.5)
@@ -117,6 +122,7 @@ def test_absence_in_a_bracket_is_absence_of_its_root():
     )
     assert np.isnan(found[0])
     assert found[1] == 2.5
+    assert np.isnan(interpolated_roots(broken, np.array([0.3]), np.array([1.0]))[0])
 
 
 def test_one_number():

@@ -17,7 +17,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.laws import Law, TextLaw
-from centrode.numerics.search import newton_roots
+from centrode.numerics.search import bisect, newton_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Places: TypeAlias = npt.NDArray[np.intp]
@@ -25,7 +25,6 @@ Number: TypeAlias = Any
 
 NODES = 4096
 """Of the mesh of time."""
-HALVINGS = 64
 MOST = 128
 """Places at which one number changes its sign that are looked at, the earliest ones."""
 NEAR, FAR = 2.0**-44, 2.0**-24
@@ -137,12 +136,7 @@ def _changes(law: TextLaw, number: int, nodes: Array) -> Array:
 
     at = sign(nodes)
     cells = np.flatnonzero(at[:-1] != at[1:])[:MOST]
-    low, high, begins = nodes[cells], nodes[cells + 1], at[cells]
-    for _halving in range(HALVINGS if len(cells) else 0):
-        middle = 0.5 * (low + high)
-        same = sign(middle) == begins
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return high
+    return bisect(lambda x: sign(x) == at[cells], nodes[cells], nodes[cells + 1])[1]
 
 
 def _kept(law: TextLaw, time: Array, order: int) -> list[Jet]:

@@ -141,7 +141,8 @@ def interpolated_roots(function: Function, low: Array, high: Array) -> Array:
 
     Inverse quadratic interpolation through the last three places where it can be trusted, else bisection. Exact to
     two units in the last place of the greater end of the bracket, as far as the function's own rounding allows;
-    where the function jumps over zero, the place of the jump. NaN where a bracket holds a place without a value.
+    where the function jumps over zero, the place of the jump. Where it has one sign at both ends, the end at which it
+    is nearer to zero. NaN where a place without a value is met.
     Source: T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145-149.
     """
     if not len(low):
@@ -150,7 +151,8 @@ def interpolated_roots(function: Function, low: Array, high: Array) -> Array:
     x, other = np.array(low, dtype=np.float64), np.array(high, dtype=np.float64)
     value, value_other = function(x), function(other)
     best, share = np.where(np.abs(value) <= np.abs(value_other), x, other), np.full(len(x), 0.5)
-    active = (value != 0.0) & (value_other != 0.0)
+    best = np.where(np.isnan(value) | np.isnan(value_other), np.nan, best)
+    active = np.sign(value) * np.sign(value_other) < 0.0
     for _step in range(2 * STEPS):
         if not active.any():
             break
