@@ -277,6 +277,11 @@ def test_tops_with_gaps_kinks_and_edges():
     assert abs(edge[0] - 3.33) <= 8.0 * EPS
     assert edge[0] == height[0]
     assert tops(lambda x: x * np.nan, nodes)[0].size == 0
+    assert tops(lambda x: 0.0 * x, nodes, most=1)[1].tolist() == [0.0]
+    # without a bound: the place where it is lost
+    with np.errstate(divide="ignore"):
+        endless, infinite = tops(lambda x: 1.0 / np.abs(x - 5.0), nodes, most=1)
+    assert (endless[0], infinite[0]) == (5.0, np.inf)
 
 
 def test_tops_near_the_greatest_and_so_many():

@@ -34,7 +34,7 @@ PARTS = 32
 """Into so many parts the stretch about a top is cut at a time."""
 ROUNDS = 12
 """So often: a stretch is left that is narrower than rounding."""
-LEVEL = 4.0 * 2.0**-52
+LEVEL = 64.0 * 2.0**-52
 """Values that differ by a smaller share are one but for rounding: a top as level as this is found."""
 MOST_TURNS = 1000
 """Changes of a slope's sign that are looked into; a constant has as many as nodes, all of rounding."""
@@ -262,8 +262,9 @@ def maxima_between(function: Function, low: Array, high: Array) -> tuple[Array, 
     Notes
     -----
     Each stretch is cut into `PARTS` and the two parts about the best cut are cut again, until the top is level but
-    for rounding. So values are exact to rounding, at kinks and edges too; places of smooth tops to some 1e-8 of the
-    stretch. Of equal values the first cut counts. Minus infinity where a row has no value at all.
+    for rounding. So values are exact to `LEVEL` of themselves, at kinks and edges too; places of smooth tops to 2e-7
+    times the square root of value over curvature. Of equal values the first cut counts. Minus infinity where a row
+    has no value at all.
     """
     place, value = np.array(low, dtype=np.float64), np.full(len(low), -np.inf)
     shares, rows = np.linspace(0.0, 1.0, PARTS + 1), np.arange(len(low))
@@ -276,16 +277,25 @@ def maxima_between(function: Function, low: Array, high: Array) -> tuple[Array, 
         top = found[rows, best]
         better = top > value
         place, value = np.where(better, cuts[rows, best], place), np.where(better, top, value)
-        # at an edge beyond which nothing is known the stretch is never level: it is cut down to rounding
-        level = (top == -np.inf) | (found.min(axis=1) >= top - LEVEL * np.abs(top))
-        low, high = cuts[rows, np.maximum(best - 1, 0)], cuts[rows, np.minimum(best + 1, PARTS)]
+        before, after = np.maximum(best - 1, 0), np.minimum(best + 1, PARTS)
+        # what is still above the best cut is less than its fall to the cuts beside it; beside an edge beyond which
+        # nothing is known that fall has no bound, and the stretch is cut down to rounding
+        with np.errstate(invalid="ignore"):
+            beside = np.minimum(found[rows, before], found[rows, after])
+            level = np.isinf(top) | (beside >= top - LEVEL * np.abs(top))
+        low, high = cuts[rows, before], cuts[rows, after]
         if level.all():
             break
     return place, value
 
 
 def tops(
-    function: Function, nodes: Array, *, near: float = np.inf, most: int = MOST_TURNS, period: bool = False
+    function: Function,
+    nodes: Array,
+    *,
+    near: float | None = None,
+    most: int = MOST_TURNS,
+    period: bool = False,
 ) -> tuple[Array, Array]:
     """Places and values (k) of the highest tops of a function, the highest node's first.
 
@@ -297,7 +307,7 @@ def tops(
         Growing; a node is a top if neither neighbour exceeds it.
     near : float
         Share of the greatest magnitude below the highest node within which another top may be the greater one
-        between the nodes.
+        between the nodes; without it every top may be.
     most : int
         So many of the highest tops are looked into.
     period : bool
@@ -310,14 +320,16 @@ def tops(
     """
     values = np.asarray(function(nodes), dtype=np.float64)
     known = np.where(np.isnan(values), -np.inf, values)
-    if not np.isfinite(known).any():
+    if not (known > -np.inf).any():
         return np.empty(0), np.empty(0)
     if period:
         before, after = np.roll(known, 1), np.roll(known, -1)
     else:
         before, after = np.append(-np.inf, known[:-1]), np.append(known[1:], -np.inf)
-    floor = known.max() - near * np.max(np.abs(known), where=np.isfinite(known), initial=0.0)
-    found = np.flatnonzero((known >= before) & (known >= after) & (known >= floor) & (known > -np.inf))
+    found = np.flatnonzero((known >= before) & (known >= after) & (known > -np.inf))
+    if near is not None:
+        size = np.max(np.abs(known), where=np.isfinite(known), initial=0.0)
+        found = found[known[found] >= known.max() - near * size]
     found = found[np.argsort(-known[found], kind="stable")][:most]
     if period:
         step = abs(nodes[1] - nodes[0])

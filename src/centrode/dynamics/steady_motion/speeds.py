@@ -14,11 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from centrode.dynamics.steady_motion.balance import Balance, Mean
-from centrode.dynamics.steady_motion.extremes import Extremes, extremes
 from centrode.dynamics.steady_motion.quadrature import Array
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.numerics.search import root
+from centrode.numerics.search import Extremes, extremes, root
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class Speed:
 
     def extremes(self) -> Extremes:
         """Least and greatest speed."""
-        return extremes(self.balance.cycle.panels, self.at, self.acceleration)
+        return extremes(self.at, self.acceleration, self.balance.cycle.panels.ends_and_nodes)
 
     def time(self, turned: Array) -> Array:
         """Time [s] from the beginning of the cycle."""
@@ -132,7 +131,7 @@ def with_inertia(balance: Balance, mean: float, inertia: float, kind: Mean) -> S
     """The speed with a mean [rad/s] and an inertia J_I [kg m^2]; raises InputError where it would not last."""
     cycle = balance.cycle
     carried = extremes(
-        cycle.panels, lambda turned: inertia + cycle.inertia.at(turned), lambda turned: cycle.slope.at(turned)
+        lambda turned: inertia + cycle.inertia.at(turned), cycle.slope.at, cycle.panels.ends_and_nodes
     )
     if not carried.least > 0.0:
         raise InputError(
