@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from centrode.dynamics.steady_motion.extremes import extremes
 from centrode.dynamics.steady_motion.quadrature import MOST_PANELS, NODES, Panels, resolved
+from centrode.numerics.search import extremes
 
 Array = npt.NDArray[np.float64]
 EPS = float(np.finfo(np.float64).eps)
@@ -68,7 +68,7 @@ def test_noise_ends_at_the_greatest_number_of_panels() -> None:
 
 def test_extremes_between_the_nodes() -> None:
     panels = Panels(TURN)
-    found = extremes(panels, lambda x: np.sin(3 * x + 0.2), lambda x: 3 * np.cos(3 * x + 0.2))
+    found = extremes(lambda x: np.sin(3 * x + 0.2), lambda x: 3 * np.cos(3 * x + 0.2), panels.ends_and_nodes)
     assert abs(found.greatest - 1.0) <= 4 * EPS
     assert abs(found.least + 1.0) <= 4 * EPS
     assert abs(math.cos(3 * found.at_greatest + 0.2)) <= 16 * EPS * 10
@@ -77,9 +77,9 @@ def test_extremes_between_the_nodes() -> None:
 def test_extremes_at_jumps_of_the_slope_and_at_the_ends() -> None:
     edges = np.unique(np.append(TURN, [1.0, 4.0]))
     found = extremes(
-        Panels(edges),
         lambda x: np.abs(x - 1.0) - 3.0 * np.maximum(x - 4.0, 0.0),
         lambda x: np.where(x < 1.0, -1.0, np.where(x < 4.0, 1.0, -2.0)),
+        Panels(edges).ends_and_nodes,
     )
     assert (found.greatest, found.at_greatest) == pytest.approx((3.0, 4.0), abs=8 * EPS)
     ends = 2 * math.pi
@@ -87,5 +87,5 @@ def test_extremes_at_jumps_of_the_slope_and_at_the_ends() -> None:
 
 
 def test_extremes_of_a_constant() -> None:
-    found = extremes(Panels(TURN), np.ones_like, np.zeros_like)
+    found = extremes(np.ones_like, np.zeros_like, Panels(TURN).ends_and_nodes)
     assert (found.least, found.greatest, found.range) == (1.0, 1.0, 0.0)

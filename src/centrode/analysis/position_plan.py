@@ -14,6 +14,7 @@ from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.numerics.search import interpolated_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -22,8 +23,6 @@ MOST = 36
 SAMPLES = 721
 SAME = 1e-9
 """Part of a turn within which its end and its beginning are one place."""
-NEWTON = 40
-"""Steps to an extreme position; each but the last few halves an interval at least."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +67,7 @@ def plan_of_positions(mechanism: Mechanism, positions: int = 12, link: str | Non
 
     Notes
     -----
-    The extreme position is a zero of the velocity coefficient by Newton's method, exact to rounding over the second
+    The extreme position is a zero of the velocity coefficient, exact to rounding over the second
     coefficient.
     """
     if mechanism.space != "plane":
@@ -152,13 +151,18 @@ def _extremes(
 
 def _stops(mechanism: Mechanism, path: xr.Dataset, by: Array, name: str) -> tuple[float, ...]:
     """Where a link's angle or a guide's displacement turns back."""
-    rate = _coefficient(mechanism, path, name, "velocity")
+    rate = _rate(mechanism, path, name)
     size = float(np.max(np.abs(rate)))
     unit = 1.0 if name in mechanism.link_names else _length(path)
     if size <= 1e-9 * unit:
         return ()  # it does not move at all
-    turns = np.flatnonzero((rate[:-1] * rate[1:] < 0) | (rate[:-1] == 0))
-    places = [_refined(mechanism, name, float(by[k]), float(by[k + 1]), float(rate[k])) for k in turns]
+    cells = np.flatnonzero(rate[:-1] * rate[1:] < 0)
+
+    def there(value: Array) -> Array:
+        return _rate(mechanism, motion(mechanism, at=value), name)
+
+    turned = interpolated_roots(there, by[cells], by[cells + 1])
+    places = [*turned.tolist(), *by[:-1][rate[:-1] == 0].tolist()]
     turn = by[-1] - by[0]
     # the end of the turn is its beginning
     places = [place - turn if abs(by[-1] - place) < SAME * abs(turn) else place for place in places]
@@ -171,28 +175,8 @@ def _length(path: xr.Dataset) -> float:
     return float(np.nanmax(places) - np.nanmin(places)) or 1.0
 
 
-def _coefficient(mechanism: Mechanism, data: xr.Dataset, name: str, order: str) -> Array:
+def _rate(mechanism: Mechanism, data: xr.Dataset, name: str) -> Array:
+    """Velocity coefficients of a link's angle or of a guide's displacement."""
     if name in mechanism.link_names:
-        return np.asarray(data[f"angular_{order}_coefficient"].sel(link=name).to_numpy())
-    return np.asarray(data[f"slide_{order}_coefficient"].sel(guide=name).to_numpy())
-
-
-def _refined(mechanism: Mechanism, name: str, low: float, high: float, at_low: float) -> float:
-    """The zero of a velocity coefficient between two values: Newton's method kept within a shrinking interval."""
-    if at_low == 0.0:
-        return low
-    value = (low + high) / 2
-    for _step in range(NEWTON):
-        data = motion(mechanism, at=[value])
-        rate = float(_coefficient(mechanism, data, name, "velocity")[0])
-        slope = float(_coefficient(mechanism, data, name, "acceleration")[0])
-        if rate * at_low > 0:
-            low = value
-        else:
-            high = value
-        step = value - rate / slope if slope != 0.0 else math.nan
-        new = step if min(low, high) <= step <= max(low, high) else (low + high) / 2
-        if rate == 0.0 or abs(new - value) <= 4 * np.finfo(float).eps * max(1.0, abs(value)):
-            return new
-        value = new
-    return value
+        return np.asarray(data["angular_velocity_coefficient"].sel(link=name).to_numpy())
+    return np.asarray(data["slide_velocity_coefficient"].sel(guide=name).to_numpy())

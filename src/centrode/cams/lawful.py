@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from centrode.cams.curvature_laws import CurvatureLaw, derivatives
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.numerics.search import bisect
 
 Array = NDArray[np.float64]
 
 NODES_OF_A_TURN = 2880
 MOST_NODES = 100_000
-HALVINGS = 60
 
 
 def check_span(law: CurvatureLaw, start: float, stop: float) -> None:
@@ -50,7 +50,10 @@ def unlawful_place(law: CurvatureLaw, stop: float) -> float | None:
     first = int(wrong[0])
     if not first:
         return float(places[0])
-    return _boundary(law, float(places[first - 1]), float(places[first]))
+    ends = bisect(
+        lambda phi: _lawful(derivatives(law, phi)[0]), places[first - 1 : first], places[first : first + 1]
+    )
+    return float(ends[1][0])
 
 
 def lawful(law: CurvatureLaw, phi: float) -> bool:
@@ -80,26 +83,12 @@ def _mesh(law: CurvatureLaw, stop: float) -> Array:
 
 
 def _lows(law: CurvatureLaw, places: Array, slopes: Array) -> Array:
-    """The places of least curvature between nodes, by halving where the slope changes its sign."""
+    """The places of least curvature between nodes, by bisection where the slope changes its sign."""
     sense = 1.0 if places[-1] >= places[0] else -1.0
     down, up = sense * slopes[:-1] < 0, sense * slopes[1:] > 0
     low, high = places[:-1][down & up], places[1:][down & up]
-    for _halving in range(HALVINGS if low.size else 0):
-        middle = 0.5 * (low + high)
-        falling = sense * derivatives(law, middle, 1)[1] < 0
-        low, high = np.where(falling, middle, low), np.where(falling, high, middle)
-    return np.asarray(high)
+    return bisect(lambda phi: sense * derivatives(law, phi, 1)[1] < 0, low, high)[1]
 
 
 def _lawful(values: Array) -> NDArray[np.bool_]:
     return np.isfinite(values) & (values > 0)
-
-
-def _boundary(law: CurvatureLaw, good: float, bad: float) -> float:
-    for _halving in range(HALVINGS):
-        middle = 0.5 * (good + bad)
-        if lawful(law, middle):
-            good = middle
-        else:
-            bad = middle
-    return bad

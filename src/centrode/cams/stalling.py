@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.polynomial import polynomial
+
 from centrode.cams.curvature_laws import CurvatureLaw
 from centrode.cams.recursions import Series, arc_series
+from centrode.numerics.search import Array, newton_roots
 
 ORDER = 24
 MOST_ARCS = 30
-NEWTON = 50
 
 
 class State(NamedTuple):
@@ -56,18 +59,15 @@ def _reach(series: tuple[Series, ...], rho: float) -> float:
 
 
 def _root(coefficients: Series, arc: float) -> float:
-    """The root of a series between 0, where it is positive, and `arc`, where it is not: Newton kept in brackets."""
-    low, high, x = 0.0, arc, 0.5 * arc
-    for _step in range(NEWTON):
-        value = _value(coefficients, x)
-        low, high = (x, high) if value > 0 else (low, x)
-        slope = _value([k * c for k, c in enumerate(coefficients)][1:], x)
-        guess = x - value / slope if slope else low
-        new = guess if min(low, high) <= guess <= max(low, high) else 0.5 * (low + high)
-        if new == x:
-            break
-        x = new
-    return x
+    """The root of a series between 0, where it is positive, and `arc`, where it is not."""
+    powers = np.array(coefficients)
+    slopes = polynomial.polyder(powers)
+
+    def cosine(x: Array) -> tuple[Array, Array]:
+        return np.asarray(polynomial.polyval(x, powers)), np.asarray(polynomial.polyval(x, slopes))
+
+    low, high = np.sort([[0.0], [arc]], axis=0)
+    return float(newton_roots(cosine, low, high)[0])
 
 
 def _value(coefficients: Series, x: float) -> float:

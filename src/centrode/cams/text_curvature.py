@@ -16,11 +16,11 @@ from centrode.algebra.text import TextFormula, compile_formula
 from centrode.cams.curvature_laws import Number, full
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.numerics.search import bisect
 
 Array = NDArray[np.float64]
 
 NODES_OF_A_TURN = 2880
-HALVINGS = 60
 MOST_KINKS = 1000
 
 
@@ -139,12 +139,12 @@ class TextCurvature:
             raise InputError("[curvature] formula", what, _("take out abs, sign, min and max"))
         if not len(cells):
             return ()
-        low, high, first = places[cells], places[cells + 1], above[functions, cells]
-        column = np.arange(len(cells))
-        for _halving in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            before = (self._asked(middle) >= 0)[functions, column] == first
-            low, high = np.where(before, middle, low), np.where(before, high, middle)
+        first, column = above[functions, cells], np.arange(len(cells))
+
+        def before(phi: Array) -> NDArray[np.bool_]:
+            return np.asarray((self._asked(phi) >= 0)[functions, column] == first)
+
+        _last, high = bisect(before, places[cells], places[cells + 1])
         rounding = 4 * np.finfo(np.float64).eps * (self.stop - self.start)
         high = np.where(np.abs(high) < rounding, 0.0, high)  # what is meant by abs(phi)
         return tuple(np.unique(high[(high > self.start) & (high < self.stop)]).tolist())

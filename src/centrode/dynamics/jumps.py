@@ -12,7 +12,7 @@ import numpy.typing as npt
 from centrode.dynamics.coordinates import Coordinate
 from centrode.dynamics.loads import REST, Acting, Effort
 from centrode.dynamics.states import State
-from centrode.kinematics.roots import bracketed_roots
+from centrode.numerics.search import foretold_brackets, newton_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 StateAt: TypeAlias = Callable[[Array], State]
@@ -54,8 +54,8 @@ def _turning_points(coordinate: Coordinate, at: StateAt, nodes: Array, state: St
     value, slope = (np.broadcast_to(x, (1, len(nodes)))[0] for x in function(state))
     if _stands_still(value, state.scale):
         return
-    for low, high in _brackets(function, at, nodes, value, slope):
-        yield bracketed_roots(functools.partial(_at_values, function, at), low, high)
+    there = functools.partial(_at_values, function, at)
+    yield newton_roots(there, *foretold_brackets(there, nodes, value, slope))
     yield nodes[value == 0.0]
 
 
@@ -80,7 +80,7 @@ def _passings(coordinate: Coordinate, levels: Array, at: StateAt, nodes: Array, 
         found = np.broadcast_to(coordinate.value(there), (1, len(x)))[0] - passed
         return found, np.broadcast_to(coordinate.slope(there).value, (1, len(x)))[0]
 
-    return np.append(bracketed_roots(function, nodes[cells], nodes[cells + 1]), nodes[np.isin(value, levels)])
+    return np.append(newton_roots(function, nodes[cells], nodes[cells + 1]), nodes[np.isin(value, levels)])
 
 
 def _turning(coordinate: Coordinate) -> WithSlope:
@@ -94,34 +94,6 @@ def _turning(coordinate: Coordinate) -> WithSlope:
 def _at_values(function: WithSlope, at: StateAt, x: Array) -> tuple[Array, Array]:
     value, slope = (np.broadcast_to(part, (1, len(x)))[0] for part in function(at(x)))
     return value, slope
-
-
-def _brackets(
-    function: WithSlope, at: StateAt, nodes: Array, value: Array, slope: Array
-) -> Iterator[tuple[Array, Array]]:
-    """Ends of stretches with one change of sign each."""
-    with np.errstate(invalid="ignore"):
-        cells = np.flatnonzero(value[:-1] * value[1:] < 0.0)
-    if len(cells):
-        yield nodes[cells], nodes[cells + 1]
-    cells, inner = _dips(nodes, value, slope)
-    if len(cells):
-        there = _at_values(function, at, inner)[0]
-        deep = there * value[cells] < 0.0
-        if deep.any():
-            yield nodes[cells[deep]], inner[deep]
-            yield inner[deep], nodes[cells[deep] + 1]
-
-
-def _dips(nodes: Array, value: Array, slope: Array) -> tuple[npt.NDArray[np.intp], Array]:
-    """Cells whose tangents meet beyond zero although both ends have one sign, and where they meet."""
-    step = np.diff(nodes)
-    with np.errstate(all="ignore"):
-        meet = (value[1:] - value[:-1] - slope[1:] * step) / (slope[:-1] - slope[1:])
-        there = value[:-1] + slope[:-1] * meet
-        dips = (value[:-1] * value[1:] > 0.0) & (there * value[:-1] <= 0.0) & (meet > 0.0) & (meet < step)
-    cells = np.flatnonzero(dips)
-    return cells, nodes[cells] + meet[cells]
 
 
 def _distinct(places: Array) -> Array:

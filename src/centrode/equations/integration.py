@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.numerics.search import bisect
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -193,15 +194,14 @@ def _pole(equations: Equations, first: float, initial: Array, solver: Any) -> fl
 
 
 def _crossing(equations: Equations, course: Any) -> float:
-    """Where the determinant changes its sign within a step, by halving: it may be anything but smooth there."""
-    low, high = float(course.t_old), float(course.t)
-    sign = np.sign(determinant(equations, low, course(low)))
-    while low != (middle := 0.5 * (low + high)) != high:
-        if sign * determinant(equations, middle, course(middle)) > 0:
-            low = middle
-        else:
-            high = middle
-    return low
+    """Where the determinant changes its sign within a step, by bisection: it may be anything but smooth there."""
+    low, high = np.array([course.t_old]), np.array([course.t])
+    sign = np.sign(determinant(equations, float(low[0]), course(low[0])))
+
+    def before(time: Array) -> npt.NDArray[np.bool_]:
+        return np.asarray([sign * determinant(equations, float(t), course(t)) > 0 for t in time])
+
+    return float(bisect(before, low, high)[0][0])
 
 
 def _beyond(times: Array, stop: float | None) -> npt.NDArray[np.bool_]:

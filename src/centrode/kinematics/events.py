@@ -36,10 +36,10 @@ from centrode.kinematics.mesh import (
     first_changes,
     largest_of,
     low_minima,
-    sign_changes,
 )
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.kinematics.zeros import Zeros
+from centrode.numerics.search import sign_changes
 from centrode.structure.groups import Aim, Meet
 from centrode.structure.positions import Positions
 

@@ -14,7 +14,7 @@ from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.kinematics.bending import BENDS, Bending, bent_frame
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.paths import JETS
-from centrode.kinematics.roots import bracketed_roots
+from centrode.numerics.search import newton_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -58,7 +58,7 @@ class Guards:
             jet = self.jets(group, lanes, x, 1)
             return jet.value, jet.derivative(1)
 
-        return bracketed_roots(guard, low, high) if len(lanes) else np.zeros(0)
+        return newton_roots(guard, low, high)
 
     def minima(self, group: int, lanes: Lanes, low: Array, high: Array) -> Array:
         """Zeros of the slope between places at which it has opposite signs."""
@@ -67,7 +67,7 @@ class Guards:
             jet = self.jets(group, lanes, x, 2)
             return jet.derivative(1), jet.derivative(2)
 
-        return bracketed_roots(slope, low, high) if len(lanes) else np.zeros(0)
+        return newton_roots(slope, low, high)
 
 
 def guard_with_bound(continuation: Continuation, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:

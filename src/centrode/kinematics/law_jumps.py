@@ -16,8 +16,8 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.kinematics.roots import bracketed_roots
 from centrode.laws import Law, TextLaw
+from centrode.numerics.search import bisect, newton_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Places: TypeAlias = npt.NDArray[np.intp]
@@ -25,7 +25,6 @@ Number: TypeAlias = Any
 
 NODES = 4096
 """Of the mesh of time."""
-HALVINGS = 64
 MOST = 128
 """Places at which one number changes its sign that are looked at, the earliest ones."""
 NEAR, FAR = 2.0**-44, 2.0**-24
@@ -126,7 +125,7 @@ def _turns(law: TextLaw, number: int, low: Array, high: Array) -> Array:
         jet = _kept(law, x, 2)[number]
         return np.broadcast_to(jet.derivative(1), x.shape), np.broadcast_to(jet.derivative(2), x.shape)
 
-    return bracketed_roots(slope, low, high)
+    return newton_roots(slope, low, high)
 
 
 def _changes(law: TextLaw, number: int, nodes: Array) -> Array:
@@ -137,12 +136,7 @@ def _changes(law: TextLaw, number: int, nodes: Array) -> Array:
 
     at = sign(nodes)
     cells = np.flatnonzero(at[:-1] != at[1:])[:MOST]
-    low, high, begins = nodes[cells], nodes[cells + 1], at[cells]
-    for _halving in range(HALVINGS if len(cells) else 0):
-        middle = 0.5 * (low + high)
-        same = sign(middle) == begins
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return high
+    return bisect(lambda x: sign(x) == at[cells], nodes[cells], nodes[cells + 1])[1]
 
 
 def _kept(law: TextLaw, time: Array, order: int) -> list[Jet]:

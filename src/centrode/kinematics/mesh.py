@@ -58,18 +58,6 @@ def low_minima(mesh: Array, value: Array, slope: Array, looked: Mask | None = No
     return lanes[low], cells[low]
 
 
-def sign_changes(value: Array) -> tuple[Lanes, Lanes]:
-    """Cells between finite values of opposite signs."""
-    # most mechanisms of a batch have none, and their least value says so
-    rows = np.nonzero(~((np.min(value, axis=1) > 0.0) | (np.max(value, axis=1) < 0.0)))[0]
-    some = value[rows]
-    with np.errstate(all="ignore"):
-        found, cells = np.nonzero(
-            np.sign(np.where(np.isfinite(some), some, np.nan))[:, :-1] * np.sign(some[:, 1:]) < 0.0
-        )
-    return rows[found], cells
-
-
 def cut_cells(events: Sequence[Event], mesh: Array, value: Array) -> tuple[Lanes, Lanes, Array]:
     """Cells with a value at one end only: their lanes, numbers, and the limit that is nearest to that end."""
     finite = np.isfinite(value)

@@ -15,8 +15,7 @@ import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
 from centrode.analysis.turning.tours import Tour
-from centrode.kinematics.mesh import sign_changes
-from centrode.kinematics.roots import bracketed_roots
+from centrode.numerics.search import newton_roots, sign_changes
 from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -128,9 +127,7 @@ def _roots(
     def rate(values: Array) -> tuple[Array, Array]:
         return _chosen(tour, watched, which, values, lambda one, at: one.rate(at, len(values)))
 
-    if not len(which):
-        return np.zeros(0)
-    return bracketed_roots(rate, low, high)
+    return newton_roots(rate, low, high)
 
 
 def _values_at(tour: Tour, watched: Sequence[Watched], which: npt.NDArray[np.intp], places: Array) -> Array:

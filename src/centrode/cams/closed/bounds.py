@@ -9,9 +9,10 @@ import numpy as np
 
 from centrode.cams.closed.curves import ReturnCurve
 from centrode.cams.frames import Array, Frames, frames
-from centrode.cams.searching import Extremes, extremes
+from centrode.cams.nodes import nodes_of
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.numerics.search import Extremes, extremes
 
 MOST = 16
 """Functions added to the smoothest curve."""
@@ -166,15 +167,15 @@ class Margins:
 
 def sizes(curve: ReturnCurve) -> Extremes:
     """Extremes of the polar radius [m] over an arc."""
-    edges = (curve.ends.start, curve.ends.stop)
-    return extremes(lambda phi: curve.radius(phi)[0], lambda phi: curve.radius(phi, 1)[1], edges)
+    nodes = nodes_of((curve.ends.start, curve.ends.stop))
+    return extremes(lambda phi: curve.radius(phi)[0], lambda phi: curve.radius(phi, 1)[1], nodes)
 
 
 def bends(curve: ReturnCurve) -> Extremes:
     """Extremes of the curvature [1/m] over an arc."""
-    edges = (curve.ends.start, curve.ends.stop)
+    nodes = nodes_of((curve.ends.start, curve.ends.stop))
     return extremes(
-        lambda phi: frames(curve, phi).curvature, lambda phi: frames(curve, phi).curvature_slope, edges
+        lambda phi: frames(curve, phi).curvature, lambda phi: frames(curve, phi).curvature_slope, nodes
     )
 
 
@@ -185,8 +186,8 @@ def slants(curve: ReturnCurve) -> Extremes:
         frame = frames(curve, phi)  # gamma' = 1 - K ds/dphi
         return np.asarray(1.0 - frame.curvature * frame.speed)
 
-    edges = (curve.ends.start, curve.ends.stop)
-    return extremes(lambda phi: frames(curve, phi).pressure_angle, slope, edges)
+    nodes = nodes_of((curve.ends.start, curve.ends.stop))
+    return extremes(lambda phi: frames(curve, phi).pressure_angle, slope, nodes)
 
 
 def _mm(length: float) -> str:

@@ -12,9 +12,9 @@ from centrode.cams.closed.bounds import MOST, Bounds, Margins, bends, sizes, sla
 from centrode.cams.closed.curves import Ends, ReturnCurve, roughness
 from centrode.cams.closed.search import Search
 from centrode.cams.frames import frames
-from centrode.cams.searching import Extremes
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
+from centrode.numerics.search import Extremes
 
 __all__ = ["Bounds", "Returned", "designed"]
 

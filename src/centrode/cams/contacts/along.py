@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from centrode.cams.contacts.line import Contact, Pressed, pressed, source_stress
 from centrode.cams.path import RollerPath
+from centrode.numerics.search import tops
 
 Array = NDArray[np.float64]
 
@@ -18,8 +18,6 @@ ANGLES = 721
 """Angles among which the greatest value is looked for, before it is refined."""
 NEAR = 3
 """So many of the highest places are refined."""
-FINE = 1e-10
-"""An angle is refined to this [rad]; a flat top is known to some 1e-8."""
 
 
 @dataclass(frozen=True)
@@ -87,33 +85,16 @@ def stress_along(
 def greatest_along(ends: tuple[float, float], value: Callable[[Array], Array]) -> Greatest:
     """Greatest value between two angles [rad] of a function of angles (n,) [rad]; NaN where it is known nowhere."""
     phi = np.unique(np.append(np.linspace(*ends, ANGLES), np.clip(0.0, *ends)))
-    values = value(phi)
-    if not np.isfinite(values).any():
+
+    def known(at: Array) -> Array:
+        found = value(at)
+        return np.where(np.isfinite(found), found, np.nan)
+
+    places, values = tops(known, phi, most=NEAR)
+    if not places.size:
         return Greatest(float("nan"), float("nan"))
-    known = np.where(np.isfinite(values), values, -np.inf)
-    beside = np.pad(known, 1, constant_values=-np.inf)
-    tops = np.flatnonzero((known >= beside[:-2]) & (known >= beside[2:]) & np.isfinite(known))
-    best = Greatest(-np.inf, 0.0)
-    for top in sorted(tops, key=lambda at: -known[at])[:NEAR]:
-        best = max(best, _refined(value, phi, known, int(top)), key=lambda one: one.value)
-    return best
-
-
-def _refined(value: Callable[[Array], Array], phi: Array, known: Array, top: int) -> Greatest:
-    at_node = Greatest(float(known[top]), float(phi[top]))
-    low, high = phi[max(top - 1, 0)], phi[min(top + 1, len(phi) - 1)]
-    found = minimize_scalar(
-        lambda at: -_finite(value(np.array([at]))[0]),
-        bounds=(low, high),
-        method="bounded",
-        options={"xatol": FINE},
-    )
-    inner = Greatest(-float(found.fun), float(found.x))
-    return inner if inner.value > at_node.value else at_node
-
-
-def _finite(value: float) -> float:
-    return float(value) if np.isfinite(value) else -1e300
+    best = int(np.argmax(values))
+    return Greatest(float(values[best]), float(places[best]))
 
 
 def _state(path: RollerPath, phi: Array) -> tuple[Array, Array]:

@@ -11,12 +11,12 @@ from itertools import pairwise
 import numpy as np
 
 from centrode.cams.followers.contact import ORDER, Array, Contact, Face, Motion, Touch
-from centrode.cams.followers.crossing import FLAT_HALVINGS, crossings, inside, nodes_of
 from centrode.cams.followers.guidance import (
     Guidance,
 )
+from centrode.cams.nodes import inside, nodes_of
 from centrode.cams.profiles.equidistants import Undercut
-from centrode.cams.searching import Extremes, Function
+from centrode.numerics.search import Extremes, Function, extremes, roots
 
 KINK = 1e-9
 """Turns of the normal [rad], and steps of the contact over the base radius, that are rounding."""
@@ -135,7 +135,7 @@ class FollowerCam:
         values, _slopes = self._watched("stretch")
         # cusps lie on both sides of the lowest places, however near
         lowest = self.turns("stretch")
-        found = crossings(values, sorted({*self.edges, *lowest.tolist()}))
+        found = roots(values, nodes_of(sorted({*self.edges, *lowest.tolist()})))
         for start, stop in pairwise(self.edges):
             cusps = found[(found > start) & (found < stop)].tolist()
             for low, high in pairwise((start, *cusps, stop)):
@@ -165,15 +165,11 @@ class FollowerCam:
 
     def _extremes(self, name: str) -> Extremes:
         """Over the stretches between edges, with what holds before and behind each."""
-        values, _slopes = self._watched(name)
-        at = np.append(nodes_of(self.edges), self.turns(name))
-        found = values(at)
-        low, high = int(np.argmin(found)), int(np.argmax(found))
-        return Extremes(float(found[low]), float(at[low]), float(found[high]), float(at[high]))
+        return extremes(*self._watched(name), nodes_of(self.edges))
 
     def turns(self, name: str) -> Array:
         """Angles [rad] between edges at which a value of `WATCHED` is least or greatest, growing."""
-        return crossings(self._watched(name)[1], self.edges, FLAT_HALVINGS)
+        return roots(self._watched(name)[1], nodes_of(self.edges))
 
     def _watched(self, name: str) -> tuple[Function, Function]:
         """A value of the contact and its slope as functions of the angle."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.contact import Array, Contact, Face
-from centrode.cams.followers.crossing import inside
+from centrode.cams.nodes import inside
 from centrode.errors import InputError
 from centrode.locale import _
 

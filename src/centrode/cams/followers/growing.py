@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.contact import ORDER, Array, Motion
-from centrode.cams.followers.crossing import FLAT_HALVINGS, crossings, nodes_of
 from centrode.cams.followers.layouts import Layout
 from centrode.cams.followers.margins import Admissible, Margin, margin
+from centrode.cams.nodes import nodes_of
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
+from centrode.numerics.search import root, roots
 
 SMALLEST, GREATEST = 1e-4, 1e4
 """Ends of the search over the size of the lift."""
@@ -62,7 +61,7 @@ def _decisive(layout: Layout, motion: Motion, kept: Admissible) -> list[float]:
             _lift, slope, second = motion.lift(phi, 2)
             return np.asarray(second - steep * slope)
 
-        found += crossings(touches, motion.edges, FLAT_HALVINGS).tolist()
+        found += roots(touches, nodes_of(motion.edges)).tolist()
     return found
 
 
@@ -155,8 +154,3 @@ class Tried:
         }
         told = what.format(bound=bounds[best.by], angle=math.degrees(best.at))
         return MotionError("[bounds]", told, _("admit more, or change the follower"))
-
-
-def root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function that changes its sign is zero, to rounding."""
-    return float(brentq(function, low, high, xtol=1e-300, rtol=4 * np.finfo(float).eps))

@@ -10,7 +10,6 @@ import numpy as np
 
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.contact import Face, Motion, Point, Touch
-from centrode.cams.followers.crossing import nodes_of
 from centrode.cams.followers.guidance import (
     Guidance,
     Translating,
@@ -18,6 +17,7 @@ from centrode.cams.followers.guidance import (
     oscillating_face,
     translating,
 )
+from centrode.cams.nodes import nodes_of
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam

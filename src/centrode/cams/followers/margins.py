@@ -9,8 +9,8 @@ import numpy as np
 
 from centrode.cams.followers.bodies import Corner, FollowerCam
 from centrode.cams.followers.contact import Array, Contact
-from centrode.cams.followers.crossing import nodes_of
 from centrode.cams.followers.layouts import Layout
+from centrode.cams.nodes import nodes_of
 
 STILL = 1e-12
 """Slopes of the lift below this share of the greatest are those of a dwell."""

@@ -11,8 +11,8 @@ import numpy as np
 
 from centrode.cams.followers.bodies import Corner, FollowerCam
 from centrode.cams.followers.contact import Array, Contact, Face
-from centrode.cams.followers.crossing import inside
 from centrode.cams.followers.cutting import LEAST_SPACES, check_cutter, chord_pieces, cutter_speed
+from centrode.cams.nodes import inside
 from centrode.cams.profiles.outlines import Layer, Outline
 
 

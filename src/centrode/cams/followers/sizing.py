@@ -9,11 +9,12 @@ from scipy.optimize import minimize_scalar
 
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.contact import Motion
-from centrode.cams.followers.growing import BACK, NEAR, UNDECIDED, Tried, looked_at, root
+from centrode.cams.followers.growing import BACK, NEAR, UNDECIDED, Tried, looked_at
 from centrode.cams.followers.layouts import Layout
 from centrode.cams.followers.margins import Admissible, breaks, exact_margin
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
+from centrode.numerics.search import root
 
 OFFSET = 1e-9
 """A best offset is looked for to this share of the speed of the lift."""

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.cams.searching import Extremes, extremes
+from centrode.cams.nodes import mesh
 from centrode.laws import SegmentedLaw
+from centrode.numerics.search import Extremes, extremes
 
 Array = NDArray[np.float64]
 JETS = JetFunctions(ARRAYS)
@@ -47,7 +48,7 @@ class Stretch:
         return extremes(
             lambda phi: made(self.derivatives(phi, order))[0],
             lambda phi: made(self.derivatives(phi, order))[1],
-            self.ends,
+            mesh(*self.ends),
         )
 
 

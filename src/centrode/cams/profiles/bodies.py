@@ -14,6 +14,7 @@ from centrode.cams.closed.bounds import Bounds
 from centrode.cams.closed.designing import Returned, designed
 from centrode.cams.described import path_of
 from centrode.cams.frames import Array, frames
+from centrode.cams.nodes import nodes_of
 from centrode.cams.path import RollerPath, stalls_of
 from centrode.cams.profiles.equidistants import (
     Equidistant,
@@ -25,12 +26,12 @@ from centrode.cams.profiles.equidistants import (
     signed,
     undercut,
 )
-from centrode.cams.searching import roots
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import AnyCam, curved
 from centrode.model.cams.parts import Return
+from centrode.numerics.search import roots
 
 LEAST_BEND = 0.1
 """Least radius of curvature of a designed profile over the roller's radius, where the description gives none."""
@@ -105,8 +106,8 @@ class CamBody:
             off = equidistant(frames(arc.curve, phi), signed(self.roller, "inner"))
             return np.asarray(off.polar_angle - joint.at)
 
-        inner = roots(beyond, arc.edges)
-        start = inner[-1] if inner else arc.start
+        inner = roots(beyond, nodes_of(arc.edges))
+        start = float(inner[-1]) if inner.size else arc.start
         return Undercut(start, 2.0 * joint.at - start)
 
     @property

@@ -16,9 +16,10 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from centrode.cams.frames import Array, Frames, PolarCurve, frames
-from centrode.cams.searching import extremes, mesh, roots
+from centrode.cams.nodes import mesh, nodes_of
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.numerics.search import extremes, roots
 
 Side: TypeAlias = Literal["inner", "outer"]
 
@@ -101,7 +102,7 @@ def undercut(
     def stretch(phi: Array) -> Array:
         return 1.0 + distance * frames(curve, phi).curvature
 
-    cuts = [edges[0], *roots(stretch, edges), edges[-1]]
+    cuts = [edges[0], *roots(stretch, nodes_of(edges)).tolist(), edges[-1]]
     found: list[Undercut] = []
     for start, stop in pairwise(cuts):
         if stop <= start or float(np.median(stretch(mesh(start, stop)[1:-1]))) > 0.0:
@@ -125,7 +126,7 @@ def greatest_roller(curve: PolarCurve, edges: Sequence[float], side: Side = "inn
     found = extremes(
         lambda phi: sign * frames(curve, phi).curvature,
         lambda phi: sign * frames(curve, phi).curvature_slope,
-        edges,
+        nodes_of(edges),
     )
     if found.greatest <= 0.0:
         return math.inf, found.at_greatest

@@ -14,12 +14,11 @@ from numpy.polynomial import legendre
 from centrode.cams.frames import Array
 from centrode.cams.wheel.walking import Mover, quadrature_panels
 from centrode.dynamics.steady_motion.quadrature import NODES
+from centrode.numerics.search import maxima_between
 
 SAMPLES = 181
 SEARCH = 401
 """Points of a shoe among which its lowest is looked for first."""
-ROUNDS = 60
-"""Steps of the search between them, each of which leaves 2/3."""
 RETURNING = 721
 
 
@@ -93,11 +92,8 @@ def _heights(mover: Mover, phi: Array) -> Array:
     points = np.linspace(-mover.half, mover.half, SEARCH)
     best = np.argmax(below(np.broadcast_to(points, (len(phi), SEARCH))), axis=1)
     low, high = points[np.maximum(best - 1, 0)], points[np.minimum(best + 1, SEARCH - 1)]
-    for _round in range(ROUNDS):
-        one, two = low + (high - low) / 3.0, high - (high - low) / 3.0
-        better = below(one) > below(two)
-        low, high = np.where(better, low, one), np.where(better, two, high)
-    return np.asarray(np.maximum.reduce([below(low), below(high), below(points[best])]))
+    _places, lowest = maxima_between(below, low, high)
+    return np.maximum(lowest, below(points[best]))
 
 
 def _contact_speed(mover: Mover, phi: Array) -> Array:

@@ -17,10 +17,11 @@ import numpy as np
 from centrode.algebra.jets import Jet, quotient
 from centrode.cams.closed.arcs import Arc
 from centrode.cams.frames import JETS, Array, radius_jet
+from centrode.cams.nodes import nodes_of
 from centrode.cams.path import SymmetricPath
-from centrode.cams.searching import extremes
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
+from centrode.numerics.search import extremes
 
 NEAR = 0.03
 """Within so many radians of phi = 0, H'/sin phi is the quotient of two series."""
@@ -91,7 +92,7 @@ class Shoe:
         found = extremes(
             self.bend,
             lambda phi: np.asarray(self.support(phi, 1)[1] + self.support(phi, 3)[3]),
-            self.arc.edges,
+            nodes_of(self.arc.edges),
         )
         return found.least, found.at_least
 

@@ -16,11 +16,12 @@ import numpy as np
 
 from centrode.cams.closed.arcs import Arc, ClosedPath
 from centrode.cams.frames import Array
-from centrode.cams.searching import Extremes, extremes
+from centrode.cams.nodes import nodes_of
 from centrode.cams.wheel.shoe import Shoe, shoe
 from centrode.dynamics.steady_motion.quadrature import Panels, Series
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.numerics.search import Extremes, extremes
 
 LEAST_LEGS, MOST_LEGS = 3, 24
 PANEL = 0.1
@@ -132,7 +133,7 @@ class Mover:
             _radius, first, second = self.shoe.arc.curve.radius(phi, 2)
             return np.asarray(second * np.sin(phi) + first * np.cos(phi))
 
-        return extremes(self.rate, slope, self.shoe.arc.edges)
+        return extremes(self.rate, slope, nodes_of(self.shoe.arc.edges))
 
     @property
     def unevenness(self) -> float:

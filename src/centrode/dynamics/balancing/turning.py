@@ -24,12 +24,11 @@ from centrode.dynamics.states import State
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.search import tops
 
 Curve: TypeAlias = Callable[[Array], Array]
 
 NODES_PER_TURN = 360
-PARTS, ROUNDS = 32, 5
-"""Into so many parts a stretch about a top is cut, so often: its place then is known to 1e-7 of a node's width."""
 NEAR = 0.02
 """Share of the greatest value at the nodes within which another top may be the greater one between them."""
 MOST_TOPS = 40
@@ -122,30 +121,16 @@ def heavy(mechanism: Mechanism) -> tuple[Mass, ...]:
     return masses
 
 
-def tops(curve: Curve, nodes: Array) -> tuple[Array, Array]:
+def tops_of(curve: Curve, nodes: Array) -> tuple[Array, Array]:
     """Places and values of the tops of a periodic curve that come near its greatest value.
 
     `nodes` are evenly over a cycle. Two tops between neighbouring nodes are missed.
     """
-    step = nodes[1] - nodes[0]
-    values = curve(nodes)
-    floor = float(values.max()) - NEAR * float(np.abs(values).max())
-    found = np.flatnonzero(
-        (values >= np.roll(values, 1)) & (values >= np.roll(values, -1)) & (values >= floor)
-    )
-    found = found[np.argsort(values[found])[::-1]][:MOST_TOPS]
-    middle, width = nodes[found], abs(step)
-    shares, rows = np.linspace(-1.0, 1.0, 2 * PARTS + 1), np.arange(len(found))
-    for _round in range(ROUNDS):
-        places = middle[:, None] + width * shares
-        heights = curve(places.reshape(-1)).reshape(places.shape)
-        best = np.argmax(heights, axis=1)
-        middle, width = places[rows, best], width / PARTS
-    return middle, heights[rows, best]
+    return tops(curve, nodes, near=NEAR, most=MOST_TOPS, period=True)
 
 
 def top(curve: Curve, nodes: Array) -> Top:
     """The greatest value of a periodic curve: exact to rounding, its place to some 1e-8 of a turn."""
-    places, values = tops(curve, nodes)
+    places, values = tops_of(curve, nodes)
     best = int(np.argmax(values))
     return Top(float(values[best]), float(places[best]))

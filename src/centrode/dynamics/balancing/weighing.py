@@ -13,7 +13,7 @@ from centrode.dynamics.balancing.full import SAME
 from centrode.dynamics.balancing.inertial import Array, Complex, Effects
 from centrode.dynamics.balancing.making import LEAST
 from centrode.dynamics.balancing.minimax import Term
-from centrode.dynamics.balancing.turning import Turning, tops
+from centrode.dynamics.balancing.turning import Turning, tops_of
 
 PULL = 1e-9
 """Weight of the greatest product over `unit`: of counterweights that do the same the smaller ones are taken."""
@@ -149,7 +149,7 @@ class Problem:
         added: list[Array] = []
         whole = self.effects(x, self.own, self.columns)
         for name, _weight in self.aim.parts:
-            places, heights = tops(lambda q, name=name: self._size(x, name, q), self.turning.nodes)  # type: ignore[misc]
+            places, heights = tops_of(lambda q, name=name: self._size(x, name, q), self.turning.nodes)  # type: ignore[misc]
             greatest = float(np.max(np.abs(getattr(whole, name))))
             added.append(places[heights > greatest * (1.0 + BETWEEN)])
         if not any(len(places) for places in added):

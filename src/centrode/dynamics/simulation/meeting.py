@@ -8,10 +8,10 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-import scipy.optimize
 
 from centrode.dynamics.simulation.course import RATE, VALUE
 from centrode.dynamics.simulation.field import Field
+from centrode.numerics.search import bisect, root
 
 State: TypeAlias = npt.NDArray[np.float64]
 
@@ -24,14 +24,11 @@ def loosening(field: Field, value: float, first: float, last: float) -> float | 
     times: list[float] = np.linspace(first, last, REST_SCANS).tolist()
     for before, after in pairwise(times):
         if field.leaving(after, value) != 0.0:
-            low, high = before, after
-            while high - low > 1e-14 * last and low < 0.5 * (low + high) < high:
-                middle = 0.5 * (low + high)
-                if field.leaving(middle, value) == 0.0:
-                    low = middle
-                else:
-                    high = middle
-            return high
+
+            def rests(time: State) -> npt.NDArray[np.bool_]:
+                return np.asarray([field.leaving(float(t), value) == 0.0 for t in time])
+
+            return float(bisect(rests, np.array([before]), np.array([after]))[1][0])
     return None
 
 
@@ -56,7 +53,7 @@ def first_event(
         if start == 0.0 or start * missed(solver.t) > 0.0:
             when = solver.t if start * missed(solver.t) > 0.0 else _behind_start(missed, before, solver.t)
         else:
-            when = float(scipy.optimize.brentq(missed, before, solver.t, xtol=1e-300, rtol=1e-15))
+            when = root(missed, before, solver.t)
         found.append((when, component, target))
     return min(found, default=None)
 
@@ -67,7 +64,7 @@ def _behind_start(missed: Callable[[float], float], first: float, last: float) -
     values = [missed(float(x)) for x in places]
     for k in range(1, len(places)):
         if values[k - 1] * values[k] <= 0.0:
-            return float(scipy.optimize.brentq(missed, places[k - 1], places[k], xtol=1e-300, rtol=1e-15))
+            return root(missed, places[k - 1], places[k])
     return last
 
 

@@ -16,6 +16,7 @@ from centrode.dynamics.simulation.return_map import ReturnMap, fixed_point, peri
 from centrode.dynamics.simulation.setting import Setting, setting_of
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulations import Simulation
+from centrode.numerics.search import tops
 
 NEUTRAL = 1e-5
 """A multiplier as near to 1 says that any speed comes back, but for the rounding of its differences."""
@@ -135,11 +136,7 @@ def _in_turn(value: float, start: float, period: float, sense: float) -> float:
 
 
 def _extreme(course: Course, sense: float, sign: float) -> tuple[float, float]:
-    """Time and greatest value of `sign` times the speed, by cutting ever finer; the speed there."""
-    low, high = course.first, course.last
-    for _round in range(6):
-        times = np.linspace(low, high, PARTS if _round == 0 else 41)
-        speeds = sense * course.at(times)[0][RATE]
-        best = int(np.argmax(sign * speeds))
-        low, high = float(times[max(best - 1, 0)]), float(times[min(best + 1, len(times) - 1)])
-    return float(times[best]), float(speeds[best])
+    """Time and greatest value of `sign` times the speed; the speed there."""
+    nodes = np.linspace(course.first, course.last, PARTS)
+    times, speeds = tops(lambda t: sign * sense * course.at(t)[0][RATE], nodes, most=1)
+    return float(times[0]), sign * float(speeds[0])

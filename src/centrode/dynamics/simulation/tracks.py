@@ -21,6 +21,7 @@ from centrode.dynamics.steady_motion.quadrature import NODES, resolved
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.branches import AT_THE_START
 from centrode.locale import _
+from centrode.numerics.search import maxima_between
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -39,7 +40,6 @@ LEAST_INERTIA = 1e-9
 """Inertia, over the greatest one, below which the motion is not carried."""
 LOW = 0.05
 """Share of the greatest inertia below which its minima are looked at."""
-ROUNDS, PARTS = 6, 12
 CHECKED = (-0.97, -0.31, 0.53)
 """Places within each panel, from -1 to 1, at which the series are compared with the reduction itself."""
 _POWERS = np.stack(
@@ -198,8 +198,10 @@ class Tracks:
         greatest = float(np.max(inertia))
         inner = inertia[1:-1]
         dips = 1 + np.flatnonzero((inner <= inertia[:-2]) & (inner <= inertia[2:]) & (inner < LOW * greatest))
-        found = [self._least_inertia(places[k - 1], places[k + 1]) for k in dips]
-        at, least = min(found, key=lambda one: one[1], default=(self.first, greatest))
+        lows, inertias = self._least_inertias(places[dips - 1], places[dips + 1])
+        at, least = min(
+            zip(lows, inertias, strict=True), key=lambda one: one[1], default=(self.first, greatest)
+        )
         if not least > LEAST_INERTIA * greatest:
             what = _(
                 "nothing carries the motion where the drive is at {value:.6g}: the inertia is zero there"
@@ -210,14 +212,14 @@ class Tracks:
                 _("give the driven link an inertia, or [[machine.shafts]]"),
             )
 
-    def _least_inertia(self, low: float, high: float) -> tuple[float, float]:
-        """Place and value of the least inertia between two places, by cutting ever finer."""
-        for _round in range(ROUNDS):
-            places = np.linspace(low, high, PARTS + 1)
-            inertia = self.rows.at(places)[INERTIA]
-            best = int(np.argmin(inertia))
-            low, high = float(places[max(best - 1, 0)]), float(places[min(best + 1, PARTS)])
-        return float(places[best]), float(inertia[best])
+    def _least_inertias(self, low: Array, high: Array) -> tuple[Array, Array]:
+        """Places and values of the least inertia between places."""
+
+        def lightness(places: Array) -> Array:
+            return np.asarray(-self.rows.at(places.reshape(-1))[INERTIA].reshape(places.shape))
+
+        at, greatest = maxima_between(lightness, low, high)
+        return at, -greatest
 
     def _look_for_limits(self, low: float, high: float) -> None:
         """Learn where the motion ends: at limits, and where it has no derivatives for another reason."""

@@ -9,10 +9,10 @@ import numpy as np
 
 from centrode.dynamics.steady_motion.cycle import Cycle
 from centrode.dynamics.steady_motion.driving import Shape
-from centrode.dynamics.steady_motion.extremes import Extremes, extremes
 from centrode.dynamics.steady_motion.quadrature import Array, Series
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.numerics.search import Extremes, extremes
 
 Mean: TypeAlias = Literal["middle", "time"]
 MEANS = get_args(Mean)
@@ -67,9 +67,9 @@ class Balance:
     def energy_extremes(self, square: float) -> Extremes:
         """Extremes of `energy_change`."""
         return extremes(
-            self.cycle.panels,
             lambda turned: self.energy_change(turned, square),
             lambda turned: self.resultant(turned, square),
+            self.cycle.panels.ends_and_nodes,
         )
 
 

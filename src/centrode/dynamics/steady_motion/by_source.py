@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from centrode.dynamics.steady_motion.balance import Balance
-from centrode.dynamics.steady_motion.extremes import Extremes, extremes
 from centrode.dynamics.steady_motion.quadrature import Array
+from centrode.numerics.search import Extremes, extremes
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,9 @@ class SpeedBySource:
     def extremes(self) -> Extremes:
         """Least and greatest speed."""
         return extremes(
-            self.balance.cycle.panels, self.at, lambda turned: self.balance.resultant(turned, self.mean**2)
+            self.at,
+            lambda turned: self.balance.resultant(turned, self.mean**2),
+            self.balance.cycle.panels.ends_and_nodes,
         )
 
 

@@ -45,6 +45,11 @@ class Panels:
         return _nodes(self.edges[:-1], self.edges[1:]).reshape(-1)
 
     @cached_property
+    def ends_and_nodes(self) -> Array:
+        """Edges and nodes together, growing: where extremes are looked for."""
+        return np.unique(np.concatenate([self.nodes, self.edges]))
+
+    @cached_property
     def weights(self) -> Array:
         """Weights of the nodes (panels * NODES): the integral is the sum of weight times value."""
         return (0.5 * np.diff(self.edges)[:, None] * _WEIGHTS).reshape(-1)

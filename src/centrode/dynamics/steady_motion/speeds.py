@@ -9,20 +9,15 @@ inertia of a machine as in I. I. Artobolevskii, Theory of Mechanisms and Machine
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from centrode.dynamics.steady_motion.balance import Balance, Mean
-from centrode.dynamics.steady_motion.extremes import Extremes, extremes
 from centrode.dynamics.steady_motion.quadrature import Array
 from centrode.errors import InputError
 from centrode.locale import _
-
-STEPS = 100
-CLOSE = 4e-15
-"""Relative change of a speed below which it has been found."""
+from centrode.numerics.search import Extremes, extremes, root
 
 
 @dataclass(frozen=True)
@@ -59,7 +54,7 @@ class Speed:
 
     def extremes(self) -> Extremes:
         """Least and greatest speed."""
-        return extremes(self.balance.cycle.panels, self.at, self.acceleration)
+        return extremes(self.at, self.acceleration, self.balance.cycle.panels.ends_and_nodes)
 
     def time(self, turned: Array) -> Array:
         """Time [s] from the beginning of the cycle."""
@@ -129,14 +124,14 @@ def with_fluctuation(balance: Balance, mean: float, fluctuation: float, kind: Me
 
     # the mean in time lies between the extremes: at most half their distance from the middle
     least = max(mean - spread, spread * (1.0 + 1e-6))
-    return about(_root(missed, least, mean + spread, mean))
+    return about(root(missed, least, mean + spread))
 
 
 def with_inertia(balance: Balance, mean: float, inertia: float, kind: Mean) -> Speed:
     """The speed with a mean [rad/s] and an inertia J_I [kg m^2]; raises InputError where it would not last."""
     cycle = balance.cycle
     carried = extremes(
-        cycle.panels, lambda turned: inertia + cycle.inertia.at(turned), lambda turned: cycle.slope.at(turned)
+        lambda turned: inertia + cycle.inertia.at(turned), cycle.slope.at, cycle.panels.ends_and_nodes
     )
     if not carried.least > 0.0:
         raise InputError(
@@ -162,29 +157,4 @@ def with_inertia(balance: Balance, mean: float, inertia: float, kind: Mean) -> S
             _("give [[machine.shafts]] with more inertia, or fluctuation to find a flywheel"),
         )
     greatest = least + margin + 2.0 * carried.greatest * mean**2 + swing.range
-    return Speed(balance, inertia, _root(missed, least + margin, greatest, greatest))
-
-
-def _root(missed: Callable[[float], float], low: float, high: float, scale: float) -> float:
-    """Where a growing function passes zero between two places: regula falsi by the Illinois rule."""
-    f_low, f_high = missed(low), missed(high)
-    if f_low >= 0.0:
-        return low
-    if f_high <= 0.0:
-        return high
-    side = 0
-    place = low
-    for _step in range(STEPS):
-        before, place = place, (low * f_high - high * f_low) / (f_high - f_low)
-        value = missed(place)
-        if value == 0.0 or abs(place - before) <= CLOSE * abs(scale):
-            break
-        if value > 0.0:
-            high, f_high = place, value
-            f_low *= 0.5 if side == 1 else 1.0
-            side = 1
-        else:
-            low, f_low = place, value
-            f_high *= 0.5 if side == -1 else 1.0
-            side = -1
-    return place
+    return Speed(balance, inertia, root(missed, least + margin, greatest))

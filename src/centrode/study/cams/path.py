@@ -70,9 +70,9 @@ def _sizes(cam: Cam, path: RollerPath) -> tuple[Rows, dict[str, Scalar]]:
     units = Units(cam)
     radius, gamma, bent = radius_extremes(path), pressure_extremes(path), curvature_extremes(path)
     steepest, at = (
-        (gamma.greatest, gamma.greatest_at)
+        (gamma.greatest, gamma.at_greatest)
         if gamma.greatest >= -gamma.least
-        else (gamma.least, gamma.least_at)
+        else (gamma.least, gamma.at_least)
     )
     between = _("{least} at {least_at} to {greatest} at {greatest_at}")
     rows = [
@@ -80,9 +80,9 @@ def _sizes(cam: Cam, path: RollerPath) -> tuple[Rows, dict[str, Scalar]]:
             _("radius ρ"),
             between.format(
                 least=units.text(radius.least),
-                least_at=units.angle(radius.least_at),
+                least_at=units.angle(radius.at_least),
                 greatest=units.text(radius.greatest),
-                greatest_at=units.angle(radius.greatest_at),
+                greatest_at=units.angle(radius.at_greatest),
             ),
         ),
         (

@@ -8,16 +8,17 @@ import numpy as np
 
 from centrode.cams.followers.bodies import FollowerCam
 from centrode.cams.followers.contact import Face
-from centrode.cams.followers.crossing import FLAT_HALVINGS, crossings, nodes_of
 from centrode.cams.followers.cutting import check_cutter
 from centrode.cams.followers.described import bounded, follower_cam, stretches_text
 from centrode.cams.followers.guidance import Oscillating
 from centrode.cams.followers.outlines import follower_outlines
 from centrode.cams.followers.tabled import follower_profile, points_dataset
+from centrode.cams.nodes import nodes_of
 from centrode.cams.sampled import angles_of
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam
+from centrode.numerics.search import roots
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.plate_bounds import bounds_told
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
@@ -68,8 +69,8 @@ def _size(cam: PlateCam, body: FollowerCam, units: Units) -> Rows:
 
 def _greatest(body: FollowerCam) -> float:
     """The greatest polar radius of the profile: it lies where the lift rests, as the normal then meets the centre."""
-    rests = crossings(lambda phi: np.asarray(body.motion.lift(phi, 1)[1]), body.edges, FLAT_HALVINGS)
-    phi = np.concatenate([nodes_of(body.edges), rests])
+    nodes = nodes_of(body.edges)
+    phi = np.append(nodes, roots(lambda phi: np.asarray(body.motion.lift(phi, 1)[1]), nodes))
     return float(np.hypot(*body.contact(phi).place.T).max())
 
 

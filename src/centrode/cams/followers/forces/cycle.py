@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.cams.followers.forces.demand import Lifting
+from centrode.numerics.search import tops
 
 Array = NDArray[np.float64]
 OfRows = Callable[[Array], Array]
@@ -18,12 +19,6 @@ OfRows = Callable[[Array], Array]
 
 NODES = 181
 """Angles of a stretch among which an extreme is looked for before it is refined."""
-
-INNER = 33
-"""Angles between the neighbours of the best one, again and again."""
-
-FINE = 1e-11
-"""An angle is refined to this share of its stretch; a flat top is known to some 1e-8 of it."""
 
 STEP = 1e-9
 """Slopes at an edge that differ by less, over the greatest slope, are taken for equal."""
@@ -47,25 +42,12 @@ def greatest(motion: Lifting, value: OfRows) -> Extreme:
 
 def greatest_between(edges: Sequence[float], value: Callable[[Array], Array]) -> Extreme:
     """The greatest value of a function of angles (n) [rad], smooth between edges, as `greatest`."""
-    found = [_peak(value, start, inside(start, stop)) for start, stop in pairwise(edges)]
-    return max(found, key=lambda one: -math.inf if math.isnan(one.value) else one.value)
-
-
-def _peak(value: Callable[[Array], Array], start: float, stop: float) -> Extreme:
-    """The greatest value of a stretch: the best of a mesh, then of ever finer ones about it."""
-    low, high, count = start, stop, NODES
-    best = Extreme(math.nan, start)
-    while True:
-        phi = np.linspace(low, high, count)
-        values = value(phi)
-        if np.isnan(values).all():
-            return best
-        top = int(np.nanargmax(values))
-        if not values[top] <= best.value:
-            best = Extreme(float(values[top]), float(phi[top]))
-        if high - low <= FINE * (stop - start):
-            return best
-        low, high, count = phi[max(top - 1, 0)], phi[min(top + 1, count - 1)], INNER
+    best = Extreme(math.nan, edges[0])
+    for start, stop in pairwise(edges):
+        places, values = tops(value, np.linspace(start, inside(start, stop), NODES), most=1)
+        if places.size and not values[0] <= best.value:
+            best = Extreme(float(values[0]), float(places[0]))
+    return best
 
 
 def least(motion: Lifting, value: OfRows) -> Extreme:

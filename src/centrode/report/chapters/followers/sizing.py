@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.crossing import nodes_of
 from centrode.cams.followers.described import admissible_of, bounded, least_cam
 from centrode.cams.followers.layouts import layout_of
 from centrode.cams.followers.margins import exact_margin
+from centrode.cams.nodes import nodes_of
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Table, shown
