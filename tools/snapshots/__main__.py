@@ -1,7 +1,7 @@
-"""`python -m tools.snapshots write | check | texts FOLDER`: digests of what the program gives, and the texts themselves.
+"""Digests of what the program gives: `python -m tools.snapshots write`, `check`, `texts FOLDER`.
 
-`write` makes the record, `check` compares with it (exit code 1 at a difference), `texts` writes everything as plain text
-into a folder, so that two trees can be compared with diff. Another tree is taken with PYTHONPATH=OTHER/src.
+`write` makes the record, `check` compares with it (exit code 1 at a difference), `texts` writes everything as plain
+text into a folder, so that two trees can be compared with diff. Another tree is taken with PYTHONPATH=OTHER/src.
 """
 
 from __future__ import annotations
@@ -10,17 +10,16 @@ import argparse
 import collections
 import functools
 import multiprocessing
-import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from tools.snapshots.artefacts import TOLERANCE, Digest
+from tools.snapshots.artefacts import TOLERANCE
 from tools.snapshots.cases import QUICK
-from tools.snapshots.comparison import BITS, DIFFERS, compare, digests_of
+from tools.snapshots.comparison import BITS, DIFFERS, compare
 from tools.snapshots.record import FOLDER, read_record, recorded_subjects, write_record
-from tools.snapshots.runs import artefacts_of, subjects
+from tools.snapshots.runs import subject_digests, subjects, write_texts
 
 INTERRUPTED = 130
 Answer = TypeVar("Answer")
@@ -46,11 +45,15 @@ def _parsed(words: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m tools.snapshots", description=__doc__)
     parser.add_argument("task", choices=("write", "check", "texts"))
     parser.add_argument("folder", nargs="?", type=Path, help="of `texts`: where they are written")
-    parser.add_argument("--only", nargs="+", default=[], metavar="SUBJECT", help="examples, face, help, refusals, studies")
+    parser.add_argument(
+        "--only", nargs="+", default=[], metavar="SUBJECT", help="examples, face, help, refusals, studies"
+    )
     parser.add_argument("--quick", action="store_true", help=f"only {', '.join(QUICK)}")
     parser.add_argument("--jobs", type=int, default=1, help="processes at once")
     parser.add_argument("--bits", action="store_true", help="of `check`: equal numbers are not enough")
-    parser.add_argument("--tolerance", type=float, default=TOLERANCE, help="of `check`: part of the scale of numbers")
+    parser.add_argument(
+        "--tolerance", type=float, default=TOLERANCE, help="of `check`: part of the scale of numbers"
+    )
     parser.add_argument("--missing", action="store_true", help="of `write`: only what has no record yet")
     parser.add_argument("--record", type=Path, default=FOLDER, help="folder of the record")
     given = parser.parse_args(words)
@@ -65,7 +68,7 @@ def _write(given: argparse.Namespace, chosen: list[str]) -> int:
     elif not given.only and not given.quick:
         for name in set(recorded_subjects(given.record)) - set(chosen):
             (given.record / f"{name}.txt").unlink()
-    for subject, (digests, _labels) in _progress(_digests, chosen, given.jobs):
+    for subject, (digests, _labels) in _progress(subject_digests, chosen, given.jobs):
         write_record(given.record, subject, digests)
         print(f"{subject}: {len(digests)} artefacts", flush=True)
     return 0
@@ -77,7 +80,7 @@ def _check(given: argparse.Namespace, chosen: list[str]) -> int:
         for name in sorted(set(recorded_subjects(given.record)) - set(chosen)):
             print(f"{DIFFERS:15s} {name}: it was recorded and is missing")
             counts[DIFFERS] += 1
-    for subject, (digests, labels) in _progress(_digests, chosen, given.jobs):
+    for subject, (digests, labels) in _progress(subject_digests, chosen, given.jobs):
         for verdict in compare(read_record(given.record, subject), digests, labels, given.tolerance):
             counts[verdict.kind] += 1
             if verdict.kind != BITS:
@@ -88,39 +91,29 @@ def _check(given: argparse.Namespace, chosen: list[str]) -> int:
 
 
 def _texts(given: argparse.Namespace, chosen: list[str]) -> int:
-    write = functools.partial(_write_texts, given.folder.resolve())
+    write = functools.partial(write_texts, given.folder.resolve())
     for subject, count in _progress(write, chosen, given.jobs):
         print(f"{subject}: {count} texts", flush=True)
     return 0
 
 
-def _write_texts(folder: Path, subject: str) -> int:
-    count = 0
-    for count, (name, artefact) in enumerate(artefacts_of(subject), start=1):
-        parts = [re.sub(r"[^\w.()=,+-]+", "-", part)[:100] for part in name.split("/")]
-        target = folder.joinpath(subject, *parts[:-1], f"{parts[-1]}.text")
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(artefact.text, encoding="utf-8", errors="surrogateescape")
-    return count
-
-
-def _digests(subject: str) -> tuple[dict[str, Digest], dict[str, list[str]]]:
-    return digests_of(dict(artefacts_of(subject)))
-
-
 def _progress(task: Callable[[str], Answer], chosen: list[str], jobs: int) -> Iterator[tuple[str, Answer]]:
     """What a task answers for each subject, in their order; on stderr how many are done."""
-    with multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=None) if jobs > 1 else _alone() as pool:
+    with (
+        multiprocessing.get_context("spawn").Pool(jobs, maxtasksperchild=None)
+        if jobs > 1
+        else Alone() as pool
+    ):
         answers: Iterable[Answer] = pool.imap(task, chosen)
         for number, (subject, answer) in enumerate(zip(chosen, answers, strict=True), start=1):
             print(f"{number}/{len(chosen)} {subject}", file=sys.stderr, flush=True)
             yield subject, answer
 
 
-class _alone:
+class Alone:
     """In this process what a pool does in several."""
 
-    def __enter__(self) -> _alone:
+    def __enter__(self) -> Alone:
         return self
 
     def __exit__(self, *_failure: object) -> None:

@@ -90,9 +90,11 @@ class Artefact:
     Attributes
     ----------
     comma : whether numbers in its words may have a decimal comma
+    brief : whether one sketch stands for all long series, as their numbers are recorded in full in another language
     """
 
     comma: bool = False
+    brief: bool = False
     parts: list[str | tuple[str, NDArray[np.float64]]] = field(default_factory=list)
 
     def say(self, text: str) -> None:
@@ -129,7 +131,12 @@ class Artefact:
             elif not any(label == part[0] and np.array_equal(values, part[1]) for label, values in long[-4:]):
                 long.append(part)  # curves over one abscissa repeat it
         found = [("single numbers", _sketch(_digits(np.array(loose))))] if loose else []
-        return found + [(label, _sketch(values)) for label, values in long]
+        sketches = [(label, _sketch(values)) for label, values in long]
+        return found + (
+            [("series", _together([one for _label, one in sketches]))]
+            if self.brief and sketches
+            else sketches
+        )
 
     def digest(self) -> Digest:
         """The digest."""
@@ -153,7 +160,10 @@ def differences(
     """What differs between two digests beyond the tolerance, each as a sentence; `labels` are those of the series."""
     found = ["words differ"] if recorded.words != given.words else []
     if len(recorded.sketches) != len(given.sketches):
-        return [*found, f"{len(recorded.sketches)} series of numbers were recorded, {len(given.sketches)} are given"]
+        return [
+            *found,
+            f"{len(recorded.sketches)} series of numbers were recorded, {len(given.sketches)} are given",
+        ]
     scale = max((one.scale for one in (*recorded.sketches, *given.sketches)), default=0.0)
     for label, before, after in zip(labels, recorded.sketches, given.sketches, strict=True):
         if (before.count, before.absent) != (after.count, after.absent):
@@ -186,7 +196,21 @@ def _sketch(values: NDArray[np.float64]) -> Sketch:
     finite = np.isfinite(values)
     known = np.where(finite, values, 0.0)
     total = math.fsum(known * _weights(len(known)))
-    return Sketch(len(values), int(len(values) - finite.sum()), float(np.max(np.abs(known), initial=0.0)), total)
+    return Sketch(
+        len(values), int(len(values) - finite.sum()), float(np.max(np.abs(known), initial=0.0)), total
+    )
+
+
+def _together(sketches: Sequence[Sketch]) -> Sketch:
+    """One sketch for several series, each by its own scale."""
+    noise = NOISE * max(one.scale for one in sketches)
+    totals = np.array([one.total / one.scale for one in sketches if one.scale > noise])
+    return Sketch(
+        sum(one.count for one in sketches),
+        sum(one.absent for one in sketches),
+        1.0,
+        math.fsum(totals * _weights(len(totals))),
+    )
 
 
 def _weights(count: int) -> NDArray[np.float64]:

@@ -109,7 +109,9 @@ def bytes_of(path: Path) -> str:
 
 def _letters(text: str) -> str:
     """A hash in letters, which are no numbers."""
-    return "".join(chr(ord("a") + int(digit, 16)) for digit in hashlib.sha256(text.encode()).hexdigest()[:HASH])
+    return "".join(
+        chr(ord("a") + int(digit, 16)) for digit in hashlib.sha256(text.encode()).hexdigest()[:HASH]
+    )
 
 
 def _plain(value: Any) -> str:

@@ -22,7 +22,9 @@ from tools.snapshots.artefacts import Artefact
 def figure_artefact(figure: Figure, comma: bool = False) -> Artefact:
     """All that a figure shows, less what matplotlib adds by itself at drawing."""
     made = Artefact(comma)
-    made.say(f"figure {'x'.join(f'{side:.6g}' for side in figure.get_size_inches())} {_colours(figure.get_facecolor())}")
+    made.say(
+        f"figure {'x'.join(f'{side:.6g}' for side in figure.get_size_inches())} {_colours(figure.get_facecolor())}"
+    )
     others = (*figure.texts, *figure.legends, *figure.lines, *figure.patches, *figure.images, *figure.artists)
     for artist in others:
         if artist is not figure.patch:
@@ -54,7 +56,9 @@ def _describe_axes(axes: Axes, made: Artefact) -> None:
 def _describe(artist: Artist, made: Artefact) -> None:
     if isinstance(artist, Text) and not artist.get_text():
         return
-    made.say(f"{type(artist).__name__} {artist.get_label()} order {artist.get_zorder()} seen {artist.get_visible()}")
+    made.say(
+        f"{type(artist).__name__} {artist.get_label()} order {artist.get_zorder()} seen {artist.get_visible()}"
+    )
     match artist:
         case Line2D():
             style = f"{artist.get_linestyle()} {artist.get_linewidth()} {artist.get_marker()} {artist.get_markersize()}"
@@ -66,7 +70,9 @@ def _describe(artist: Artist, made: Artefact) -> None:
                 made.add(name, np.ma.filled(np.ma.asarray(values, dtype=float), np.nan))
         case Text():
             made.say(artist.get_text())
-            made.say(f"{_colours(artist.get_color())} {artist.get_fontsize()} {artist.get_ha()} {artist.get_va()}")
+            made.say(
+                f"{_colours(artist.get_color())} {artist.get_fontsize()} {artist.get_ha()} {artist.get_va()}"
+            )
             places = [*map(float, artist.get_position()), float(artist.get_rotation())]
             if isinstance(artist, Annotation):
                 places += map(float, artist.xy)

@@ -33,7 +33,9 @@ def read_record(folder: Path, subject: str) -> dict[str, Digest]:
     found: dict[str, Digest] = {}
     for line in file.read_text(encoding="utf-8").splitlines() if file.exists() else []:
         name, _bar, digest = line.rpartition(" | ")
-        found[name] = found[digest.removeprefix(f"{SAME} ")] if digest.startswith(SAME) else Digest.parse(digest)
+        found[name] = (
+            found[digest.removeprefix(f"{SAME} ")] if digest.startswith(SAME) else Digest.parse(digest)
+        )
     return found
 
 

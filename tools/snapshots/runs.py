@@ -8,7 +8,7 @@ import os
 import re
 import tempfile
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -17,12 +17,19 @@ import numpy as np
 
 import centrode as ct
 from centrode.cli.main import COMMANDS, main
-from tools.snapshots.artefacts import Artefact
+from tools.snapshots.artefacts import Artefact, Digest
 from tools.snapshots.cases import (
-    LANGUAGES, Case, cam_cases, help_cases, linkage_cases, refusal_cases, study_cases,
-)  # fmt: skip
+    LANGUAGES,
+    Case,
+    cam_cases,
+    help_cases,
+    linkage_cases,
+    refusal_cases,
+    study_cases,
+)
+from tools.snapshots.comparison import digests_of
 from tools.snapshots.files import file_artefact, text_artefact
-from tools.snapshots.stand_ins import Seen, seen_instead_of_drawn
+from tools.snapshots.stand_ins import seen_instead_of_drawn
 
 BESIDE = ("face", "help", "refusals", "studies")
 """Subjects that are no examples."""
@@ -32,7 +39,9 @@ VERSION = re.compile(rf"(?<![\w.]){re.escape(ct.__version__)}(?![\w.])")
 
 def subjects() -> list[str]:
     """Every example, and what is recorded beside them."""
-    names = [line.split()[0] for line in _printed(["examples"]).splitlines() if re.match(r"[a-z][\w-]+  ", line)]
+    names = [
+        line.split()[0] for line in _printed(["examples"]).splitlines() if re.match(r"[a-z][\w-]+  ", line)
+    ]
     return [*sorted(names), *BESIDE]
 
 
@@ -45,7 +54,25 @@ def artefacts_of(subject: str) -> Iterator[tuple[str, Artefact]]:
     for language in LANGUAGES:
         for case in _cases(subject, text, language):
             for name, artefact in run(case, language):
+                artefact.brief = language != LANGUAGES[0]
                 yield f"{case.name}/{language}/{name}", artefact
+
+
+def subject_digests(subject: str) -> tuple[dict[str, Digest], dict[str, list[str]]]:
+    """Digests of the artefacts of a subject, and the labels of their series."""
+    return digests_of(dict(artefacts_of(subject)))
+
+
+def write_texts(folder: Path, subject: str) -> int:
+    """Write the artefacts of a subject as plain text, a file each; returns how many there are."""
+    count = 0
+    for name, artefact in artefacts_of(subject):
+        count += 1
+        parts = [re.sub(r"[^\w.()=,+-]+", "-", part)[:100] for part in name.split("/")]
+        target = folder.joinpath(subject, *parts[:-1], f"{parts[-1]}.text")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(artefact.text, encoding="utf-8", errors="surrogateescape")
+    return count
 
 
 def _cases(subject: str, text: str, language: str) -> Iterator[Case]:
@@ -62,7 +89,11 @@ def _cases(subject: str, text: str, language: str) -> Iterator[Case]:
 def run(case: Case, language: str) -> Iterator[tuple[str, Artefact]]:
     """What a case gives in a language: how it ended and what it said, then every file, then figures and frames."""
     comma = language != "en"
-    with tempfile.TemporaryDirectory() as folder, _inside(Path(folder), language), seen_instead_of_drawn(comma) as seen:
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        _inside(Path(folder), language),
+        seen_instead_of_drawn(comma) as seen,
+    ):
         for name, content in case.files.items():
             Path(name).write_text(content, encoding="utf-8")
         blocks: list[Artefact] = []
@@ -81,14 +112,10 @@ def run(case: Case, language: str) -> Iterator[tuple[str, Artefact]]:
                 shown |= {number for number, one in enumerate(seen.figures) if one is artefact}
                 yield str(path.as_posix()), _without_version(artefact)
         for number, figure in enumerate(seen.figures):
-            if number not in shown and not _drawn_twice(seen, number, shown):
+            if number not in shown:
                 yield f"figure {number}", figure
         for number, frame in enumerate(seen.frames, start=1):
             yield f"frame {number}", frame
-
-
-def _drawn_twice(seen: Seen, number: int, shown: set[int]) -> bool:
-    return any(seen.figures[number].parts == [] and other == number for other in shown)
 
 
 def _done(words: list[str], blocks: list[Artefact], comma: bool) -> tuple[int, str, str]:
@@ -151,7 +178,11 @@ def _inside(folder: Path, language: str) -> Iterator[None]:
     """The current folder and the environment's language for a while; remarks of libraries are no part of the record."""
     settings = {name: value for name, value in os.environ.items() if name not in SETTINGS}
     settings |= {"LANGUAGE": language, "COLUMNS": "80"}
-    with mock.patch.dict(os.environ, settings, clear=True), contextlib.chdir(folder), warnings.catch_warnings():
+    with (
+        mock.patch.dict(os.environ, settings, clear=True),
+        contextlib.chdir(folder),
+        warnings.catch_warnings(),
+    ):
         warnings.simplefilter("ignore")
         yield
 
@@ -163,4 +194,4 @@ def _lasting(text: str, folder: str) -> str:
 
 def _without_version(artefact: Artefact) -> Artefact:
     parts = [VERSION.sub("VERSION", part) if isinstance(part, str) else part for part in artefact.parts]
-    return Artefact(artefact.comma, parts)
+    return Artefact(artefact.comma, artefact.brief, parts)

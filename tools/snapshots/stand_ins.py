@@ -7,6 +7,7 @@ matplotlib hands over figures instead of drawing them, typst the source it is gi
 from __future__ import annotations
 
 import contextlib
+import functools
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -19,6 +20,7 @@ import typst
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.mathtext import MathTextParser
 
 from tools.snapshots.artefacts import Artefact
 from tools.snapshots.pictures import figure_artefact
@@ -26,6 +28,8 @@ from tools.snapshots.pictures import figure_artefact
 MARK = "figure number"
 """How a file begins that stands for a figure; its number in `Seen.figures` follows."""
 FORMULA = re.compile(r"\$ (.*?) \$(?=\n\n|\Z)", re.DOTALL)
+REMEMBERED = functools.lru_cache(20_000)(MathTextParser._parse_cached.__wrapped__)
+"""Sizes of formulas in labels, as often as they are asked for; matplotlib itself remembers 50."""
 PAGE_SOURCE = "document set by typst"
 
 
@@ -36,10 +40,13 @@ class Seen:
     comma: bool = False
     figures: list[Artefact] = field(default_factory=list)
     frames: list[Artefact] = field(default_factory=list)
+    last: Figure | None = None
 
-    def take(self, figure: Figure) -> int:
-        """Keep a figure; returns its number."""
-        self.figures.append(figure_artefact(figure, self.comma))
+    def take(self, figure: Figure, *, anew: bool = True) -> int:
+        """Keep a figure; returns its number. What was just printed is not looked at again unless it is `anew`."""
+        if anew or figure is not self.last:
+            self.figures.append(figure_artefact(figure, self.comma))
+        self.last = figure
         return len(self.figures) - 1
 
 
@@ -59,7 +66,7 @@ def seen_instead_of_drawn(comma: bool = False) -> Iterator[Seen]:
         put(target, f"{MARK} {seen.take(canvas.figure)}")
 
     def print_svg(canvas: Any, target: Any, **_options: Any) -> None:
-        number = seen.take(canvas.figure)
+        number = seen.take(canvas.figure, anew=hasattr(target, "write"))  # files come in pairs, PNG first
         if not hasattr(target, "write"):
             put(target, f"{MARK} {number}")
             return
@@ -80,6 +87,7 @@ def seen_instead_of_drawn(comma: bool = False) -> Iterator[Seen]:
         mock.patch.object(FigureCanvasAgg, "restore_region", restore_region),
         mock.patch.object(Figure, "draw_without_rendering", lambda _figure: None),
         mock.patch.object(typst, "Compiler", Typesetter),
+        mock.patch.object(MathTextParser, "_parse_cached", REMEMBERED),
     ):
         yield seen
 
@@ -90,12 +98,16 @@ class Typesetter:
     def __init__(self, *_arguments: Any, **_options: Any) -> None:
         pass
 
-    def compile_with_warnings(self, input: Mapping[str, bytes], format: str, **_options: Any) -> tuple[bytes, list[str]]:
+    def compile_with_warnings(
+        self, input: Mapping[str, bytes], format: str, **_options: Any
+    ) -> tuple[bytes, list[str]]:
         """What typst would make of the files in `input`."""
         source = input["main"].decode()
         if format == "html":
             formulas = FORMULA.findall(source)
             return "\n".join(f"<math><mtext>{escape(one)}</mtext></math>" for one in formulas).encode(), []
         beside = {name: content for name, content in sorted(input.items()) if name != "main"}
-        lists = "\n".join(f"{name} {len(content)} bytes" for name, content in beside.items() if content[:1] != b"<")
+        lists = "\n".join(
+            f"{name} {len(content)} bytes" for name, content in beside.items() if content[:1] != b"<"
+        )
         return f"{PAGE_SOURCE}\n{source}\n{lists}\n".encode(), []
