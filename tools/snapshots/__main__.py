@@ -18,8 +18,8 @@ from typing import TypeVar
 from tools.snapshots.artefacts import TOLERANCE
 from tools.snapshots.cases import QUICK
 from tools.snapshots.comparison import BITS, DIFFERS, compare
-from tools.snapshots.record import FOLDER, read_record, recorded_subjects, write_record
-from tools.snapshots.runs import subject_digests, subjects, write_texts
+from tools.snapshots.record import FOLDER, read_record, recorded_subjects
+from tools.snapshots.runs import of_commands, subject_digests, subjects, write_digests, write_texts
 
 INTERRUPTED = 130
 Answer = TypeVar("Answer")
@@ -48,6 +48,9 @@ def _parsed(words: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--only", nargs="+", default=[], metavar="SUBJECT", help="examples, face, help, refusals, studies"
     )
+    parser.add_argument(
+        "--commands", nargs="+", default=[], metavar="COMMAND", help="of `check` and `texts`: only these"
+    )
     parser.add_argument("--quick", action="store_true", help=f"only {', '.join(QUICK)}")
     parser.add_argument("--jobs", type=int, default=1, help="processes at once")
     parser.add_argument("--bits", action="store_true", help="of `check`: equal numbers are not enough")
@@ -59,6 +62,8 @@ def _parsed(words: Sequence[str] | None) -> argparse.Namespace:
     given = parser.parse_args(words)
     if (given.task == "texts") != (given.folder is not None):
         parser.error("a folder belongs to `texts`, and to it alone")
+    if given.task == "write" and given.commands:
+        parser.error("a record holds every command")
     return given
 
 
@@ -68,9 +73,9 @@ def _write(given: argparse.Namespace, chosen: list[str]) -> int:
     elif not given.only and not given.quick:
         for name in set(recorded_subjects(given.record)) - set(chosen):
             (given.record / f"{name}.txt").unlink()
-    for subject, (digests, _labels) in _progress(subject_digests, chosen, given.jobs):
-        write_record(given.record, subject, digests)
-        print(f"{subject}: {len(digests)} artefacts", flush=True)
+    write = functools.partial(write_digests, folder=given.record)
+    for subject, count in _progress(write, chosen, given.jobs):
+        print(f"{subject}: {count} artefacts", flush=True)
     return 0
 
 
@@ -80,8 +85,14 @@ def _check(given: argparse.Namespace, chosen: list[str]) -> int:
         for name in sorted(set(recorded_subjects(given.record)) - set(chosen)):
             print(f"{DIFFERS:15s} {name}: it was recorded and is missing")
             counts[DIFFERS] += 1
-    for subject, (digests, labels) in _progress(subject_digests, chosen, given.jobs):
-        for verdict in compare(read_record(given.record, subject), digests, labels, given.tolerance):
+    digests_of = functools.partial(subject_digests, commands=given.commands)
+    for subject, (digests, labels) in _progress(digests_of, chosen, given.jobs):
+        recorded = {
+            name: digest
+            for name, digest in read_record(given.record, subject).items()
+            if of_commands(name, given.commands)
+        }
+        for verdict in compare(recorded, digests, labels, given.tolerance):
             counts[verdict.kind] += 1
             if verdict.kind != BITS:
                 print(f"{subject}/{verdict}", flush=True)
@@ -91,7 +102,7 @@ def _check(given: argparse.Namespace, chosen: list[str]) -> int:
 
 
 def _texts(given: argparse.Namespace, chosen: list[str]) -> int:
-    write = functools.partial(write_texts, given.folder.resolve())
+    write = functools.partial(write_texts, folder=given.folder.resolve(), commands=given.commands)
     for subject, count in _progress(write, chosen, given.jobs):
         print(f"{subject}: {count} texts", flush=True)
     return 0

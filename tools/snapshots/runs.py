@@ -8,7 +8,7 @@ import os
 import re
 import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -20,6 +20,7 @@ from centrode.cli.main import COMMANDS, main
 from tools.snapshots.artefacts import Artefact, Digest
 from tools.snapshots.cases import (
     LANGUAGES,
+    WHOLE,
     Case,
     cam_cases,
     help_cases,
@@ -29,6 +30,7 @@ from tools.snapshots.cases import (
 )
 from tools.snapshots.comparison import digests_of
 from tools.snapshots.files import file_artefact, text_artefact
+from tools.snapshots.record import write_record
 from tools.snapshots.stand_ins import seen_instead_of_drawn
 
 BESIDE = ("face", "help", "refusals", "studies")
@@ -38,35 +40,51 @@ VERSION = re.compile(rf"(?<![\w.]){re.escape(ct.__version__)}(?![\w.])")
 
 
 def subjects() -> list[str]:
-    """Every example, and what is recorded beside them."""
+    """Every example, and what is recorded beside them; those that take longest and tell most come first."""
     names = [
         line.split()[0] for line in _printed(["examples"]).splitlines() if re.match(r"[a-z][\w-]+  ", line)
     ]
-    return [*sorted(names), *BESIDE]
+    return [*WHOLE, *BESIDE, *sorted(set(names) - set(WHOLE))]
 
 
-def artefacts_of(subject: str) -> Iterator[tuple[str, Artefact]]:
-    """Name and artefact of everything that is recorded of a subject, in a fixed order."""
+def artefacts_of(subject: str, commands: Collection[str] = ()) -> Iterator[tuple[str, Artefact]]:
+    """Name and artefact of everything that is recorded of a subject, in a fixed order; of some commands alone."""
     if subject == "face":
         yield "dir(centrode)", text_artefact("\n".join(dir(ct)))
         return
     text = "" if subject in BESIDE else _printed(["examples", subject])
     for language in LANGUAGES:
         for case in _cases(subject, text, language):
+            if not of_commands(case.name, commands):
+                continue
             for name, artefact in run(case, language):
                 artefact.brief = language != LANGUAGES[0]
                 yield f"{case.name}/{language}/{name}", artefact
 
 
-def subject_digests(subject: str) -> tuple[dict[str, Digest], dict[str, list[str]]]:
+def of_commands(name: str, commands: Collection[str]) -> bool:
+    """Whether what is recorded under a name belongs to one of the commands; to none named, everything belongs."""
+    return not commands or re.split("[ /]", name)[0] in commands
+
+
+def subject_digests(
+    subject: str, commands: Collection[str] = ()
+) -> tuple[dict[str, Digest], dict[str, list[str]]]:
     """Digests of the artefacts of a subject, and the labels of their series."""
-    return digests_of(dict(artefacts_of(subject)))
+    return digests_of(dict(artefacts_of(subject, commands)))
 
 
-def write_texts(folder: Path, subject: str) -> int:
+def write_digests(subject: str, folder: Path) -> int:
+    """Write the record of a subject; returns how many artefacts there are."""
+    digests, _labels = subject_digests(subject)
+    write_record(folder, subject, digests)
+    return len(digests)
+
+
+def write_texts(subject: str, folder: Path, commands: Collection[str] = ()) -> int:
     """Write the artefacts of a subject as plain text, a file each; returns how many there are."""
     count = 0
-    for name, artefact in artefacts_of(subject):
+    for name, artefact in artefacts_of(subject, commands):
         count += 1
         parts = [re.sub(r"[^\w.()=,+-]+", "-", part)[:100] for part in name.split("/")]
         target = folder.joinpath(subject, *parts[:-1], f"{parts[-1]}.text")
