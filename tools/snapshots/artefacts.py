@@ -102,8 +102,8 @@ class Artefact:
         self.parts.append(text)
 
     def add(self, label: str, values: Any) -> None:
-        """Add a series of numbers."""
-        self.parts.append((label, np.asarray(values, dtype=float).ravel()))
+        """Add a series of numbers, as they are now."""
+        self.parts.append((label, np.array(values, dtype=float).ravel()))
 
     @property
     def text(self) -> str:
@@ -216,7 +216,8 @@ def _together(sketches: Sequence[Sketch]) -> Sketch:
 def _weights(count: int) -> NDArray[np.float64]:
     """Fixed weights, so that neither a change, an exchange nor a shift of numbers leaves the sum as it was."""
     drawn = np.frombuffer(hashlib.shake_128(b"centrode").digest(max(count, 1)), dtype=np.uint8)[:count]
-    return np.where(drawn & 128, -1.0, 1.0) * ((drawn & 127) + 128) / 256.0
+    signs: NDArray[np.float64] = np.where(drawn & 128, -1.0, 1.0)
+    return signs * ((drawn & 127) + 128.0) / 256.0
 
 
 def _hash(text: str) -> str:

@@ -70,9 +70,8 @@ def _describe(artist: Artist, made: Artefact) -> None:
                 made.add(name, np.ma.filled(np.ma.asarray(values, dtype=float), np.nan))
         case Text():
             made.say(artist.get_text())
-            made.say(
-                f"{_colours(artist.get_color())} {artist.get_fontsize()} {artist.get_ha()} {artist.get_va()}"
-            )
+            aligned = f"{artist.get_horizontalalignment()} {artist.get_verticalalignment()}"
+            made.say(f"{_colours(artist.get_color())} {artist.get_fontsize()} {aligned}")
             places = [*map(float, artist.get_position()), float(artist.get_rotation())]
             if isinstance(artist, Annotation):
                 places += map(float, artist.xy)

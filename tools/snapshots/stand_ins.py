@@ -28,7 +28,8 @@ from tools.snapshots.pictures import figure_artefact
 MARK = "figure number"
 """How a file begins that stands for a figure; its number in `Seen.figures` follows."""
 FORMULA = re.compile(r"\$ (.*?) \$(?=\n\n|\Z)", re.DOTALL)
-REMEMBERED = functools.lru_cache(20_000)(MathTextParser._parse_cached.__wrapped__)
+PARSER: Any = MathTextParser
+REMEMBERED = functools.lru_cache(20_000)(PARSER._parse_cached.__wrapped__)
 """Sizes of formulas in labels, as often as they are asked for; matplotlib itself remembers 50."""
 PAGE_SOURCE = "document set by typst"
 
@@ -54,7 +55,7 @@ class Seen:
 def seen_instead_of_drawn(comma: bool = False) -> Iterator[Seen]:
     """While the block runs, figures and documents are handed over instead of being drawn and set."""
     seen = Seen(comma)
-    restore = FigureCanvasAgg.restore_region
+    restore: Any = FigureCanvasAgg.restore_region
 
     def put(target: Any, text: str) -> None:
         if hasattr(target, "write"):
@@ -87,7 +88,7 @@ def seen_instead_of_drawn(comma: bool = False) -> Iterator[Seen]:
         mock.patch.object(FigureCanvasAgg, "restore_region", restore_region),
         mock.patch.object(Figure, "draw_without_rendering", lambda _figure: None),
         mock.patch.object(typst, "Compiler", Typesetter),
-        mock.patch.object(MathTextParser, "_parse_cached", REMEMBERED),
+        mock.patch.object(PARSER, "_parse_cached", REMEMBERED),
     ):
         yield seen
 
