@@ -15,7 +15,7 @@ FOR_TESTS := $(VENV)/.stamp-dev
 
 .DELETE_ON_ERROR:
 .PHONY: help demo test format lint types contracts catalogue-check reference-check docs tests tests-without-extras catalogues reference \
-	campaigns benchmarks clean
+	campaigns benchmarks snapshots house clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-22s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -68,6 +68,12 @@ campaigns: $(FOR_TESTS) ## random cases against independent oracles, as far as C
 benchmarks: $(FOR_TESTS) ## ratios against peers and against the machine
 	$(PIP) install --editable '.[dev,benchmarks]'
 	$(BIN)/python -m benchmarks
+
+snapshots: $(FOR_TESTS) ## compare what the program gives for every example with its record, to 1e-12
+	$(BIN)/python -m tools.snapshots check --jobs 2
+
+house: $(BASE) ## counts of modules, names, lines and imports
+	$(BIN)/python -m tools.house
 
 clean: ## remove everything that make made
 	rm -rf $(VENV) demo-output campaigns-output docs/_build build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
