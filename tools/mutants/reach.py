@@ -71,7 +71,7 @@ class Watcher:
         sys.settrace(self.trace)
         yield
         sys.settrace(before)
-        threading.settrace(before)  # type: ignore[arg-type]
+        threading.settrace(before)
         name = path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
         known = self.reach.functions.setdefault(name, set())
         for code in self.codes:

@@ -122,7 +122,8 @@ def try_mutant(tree: Tree, mutant: Mutant, reach: Reach, most: float) -> Verdict
     """
     began = time.monotonic()
     function = mutant.function.removesuffix(".<locals>")
-    files, cost = [], 0.0
+    files: list[str] = []
+    cost = 0.0
     for name in reach.files(mutant.file, function):
         cost += reach.seconds[name]
         if files and cost > most:
