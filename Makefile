@@ -5,8 +5,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 DEMO := slider-between-cranks
-WITHOUT_EXTRAS := tests/algebra tests/sweeps tests/kinematics/test_many.py tests/cli/test_sweep.py \
-	tests/dynamics/test_simulation_schemes.py
+SCHEMES := tests/dynamics/test_simulation_schemes.py
+# Tests that leave the choice of the executor to the program, or ask for what is missing. Where a test names the executor
+# "arrays", or nothing of it is compiled or stored, it runs the same with the extras.
+WITHOUT_EXTRAS := tests/sweeps/test_without_extras.py tests/sweeps/test_sweeps.py tests/sweeps/test_refusals.py \
+	tests/sweeps/test_reduced.py tests/sweeps/test_gradients.py tests/algebra/test_scans.py tests/cli/test_sweep.py \
+	$(SCHEMES)::test_a_step_that_is_shown_is_a_step $(SCHEMES)::test_what_cannot_be_compiled_runs_on_arrays \
+	$(SCHEMES)::test_nothing_that_moves_it
 
 # A stamp is newer than pyproject.toml when what it stands for is installed.
 BASE := $(VENV)/.stamp-base
@@ -15,7 +20,7 @@ FOR_TESTS := $(VENV)/.stamp-dev
 
 .DELETE_ON_ERROR:
 .PHONY: help demo test format lint types contracts catalogue-check reference-check docs tests tests-without-extras catalogues reference \
-	campaigns benchmarks snapshots house clean
+	campaigns samples benchmarks snapshots house clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-22s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -65,6 +70,9 @@ reference: $(FOR_TESTS) ## make the pages of the documentation that are made fro
 campaigns: $(FOR_TESTS) ## random cases against independent oracles, as far as CAMPAIGNS says; goes on where it was
 	$(BIN)/python -m tools.campaigns $(CAMPAIGNS)
 
+samples: $(FOR_TESTS) ## the random samples of the tests in full: the suite looks at some of their cases
+	CENTRODE_SAMPLES=all $(BIN)/pytest -q -n auto --dist loadfile tests
+
 benchmarks: $(FOR_TESTS) ## ratios against peers and against the machine
 	$(PIP) install --editable '.[dev,benchmarks]'
 	$(BIN)/python -m benchmarks
@@ -76,7 +84,7 @@ house: $(BASE) ## counts of modules, names, lines and imports
 	$(BIN)/python -m tools.house
 
 clean: ## remove everything that make made
-	rm -rf $(VENV) demo-output campaigns-output docs/_build build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) demo-output campaigns-output mutants-output docs/_build build dist .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
 	find src tests tools benchmarks docs -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(BASE):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,12 +12,15 @@ import numpy.typing as npt
 import xarray as xr
 
 import centrode as ct
-from centrode.kinematics.ready import ready
+from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.kinematics.spans import span_at
+from centrode.structure.dimensions import Dimensions
 from mechanisms import STEP, Parts, nudged, parts_of
 
 Array = npt.NDArray[np.float64]
+PARTS = 64
+"""Into how many pieces a stretch is cut at once: places cost little beside the search for events of each call."""
 
 
 @dataclass(frozen=True)
@@ -33,19 +37,25 @@ class Redriven:
     base: float
     stretch: tuple[float, float]
 
+    @cached_property
+    def _prepared(self) -> Ready:
+        return ready(self.by_dyads)
+
     def angle(self, base: npt.ArrayLike) -> tuple[Array, Array, Array]:
         """The new drive's value with two derivatives at values of the first drive."""
-        data = ct.motion(self.by_dyads, at=np.atleast_1d(np.asarray(base, dtype=float)))
-        return _angle(data, self.link)
+        return _angles(self._prepared, self.link, np.atleast_1d(np.asarray(base, dtype=float)))
 
     def bases(self, values: Array) -> Array:
-        """Values of the first drive at values of the new one, inside the stretch (bisection, then Newton)."""
+        """Values of the first drive at values of the new one, by ever shorter pieces of the stretch, then Newton."""
         low, high = (np.full(len(values), end) for end in self.stretch)
-        rising = self.angle(high[:1])[0] > self.angle(low[:1])[0]
-        for _halving in range(30):
-            middle = 0.5 * (low + high)
-            short = (self.angle(middle)[0] < values) == rising
-            low, high = np.where(short, middle, low), np.where(short, high, middle)
+        first, last = self.angle(self.stretch)[0]
+        rising = last > first
+        rows, shares = np.arange(len(values)), np.linspace(0.0, 1.0, PARTS + 1)
+        for _cut in range(5):
+            nodes = low[:, None] + (high - low)[:, None] * shares
+            found = self.angle(nodes[:, 1:-1].ravel())[0].reshape(len(values), -1)
+            passed = ((found < values[:, None]) == rising).sum(axis=1)
+            low, high = nodes[rows, passed], nodes[rows, passed + 1]
         base = 0.5 * (low + high)
         for _step in range(4):
             value, slope, _bend = self.angle(base)
@@ -53,9 +63,10 @@ class Redriven:
         return base
 
 
-def _angle(data: xr.Dataset, link: str) -> tuple[Array, Array, Array]:
-    names = ("angle", "angular_velocity_coefficient", "angular_acceleration_coefficient")
-    return tuple(data[name].sel(link=link).to_numpy() for name in names)  # type: ignore[return-value]
+def _angles(prepared: Ready, link: str, base: Array) -> tuple[Array, Array, Array]:
+    solved = solve(prepared, span_at(prepared.kinematics.path, base))
+    angles = solved.angles[:, 0, :, solved.layout.links.index(link)]
+    return angles[0], angles[1], angles[2]
 
 
 def redriven(mechanism: ct.Mechanism, link: str, base: float, digits: int = 3) -> Redriven:
@@ -82,23 +93,25 @@ def driven_by(parts: Parts, drive: dict[str, Any]) -> Parts:
 
 
 def _stretch(mechanism: ct.Mechanism, link: str, base: float) -> tuple[float, float]:
-    """Nearest extremes of a link's angle on both sides of a value of the drive, within a turn (bisection)."""
+    """Nearest extremes of a link's angle on both sides of a value of the drive, by ever shorter pieces of a turn."""
+    prepared = ready(mechanism)
     values = base + np.linspace(-np.pi, np.pi, 721)
-    data = ct.motion(mechanism, at=values)
-    slope = _angle(data, link)[1]
+    solved = solve(prepared, span_at(prepared.kinematics.path, values))
+    slope = solved.angles[1, 0, :, solved.layout.links.index(link)]
     sense = np.sign(slope[360])
-    found = []
+    ends = []
     for way in (-1, 1):
         k = 360
-        while 0 < k < 720 and np.sign(slope[k + way]) == sense and data.status[k + way] == ct.Status.OK:
+        while 0 < k < 720 and np.sign(slope[k + way]) == sense and solved.status[0, k + way] == ct.Status.OK:
             k += way
-        inside, outside = values[k], values[min(max(k + way, 0), 720)]
-        for _halving in range(60):
-            middle = 0.5 * (inside + outside)
-            there = np.sign(_angle(ct.motion(mechanism, at=[middle]), link)[1][0])
-            inside, outside = (middle, outside) if there == sense else (inside, middle)
-        found.append(float(inside))
-    return found[0], found[1]
+        ends.append((values[k], values[min(max(k + way, 0), 720)]))
+    shares = np.linspace(0.0, 1.0, PARTS + 1)
+    for _cut in range(10):
+        nodes = np.array([inside + (outside - inside) * shares for inside, outside in ends])
+        there = np.sign(_angles(prepared, link, nodes[:, 1:-1].ravel())[1]).reshape(2, -1)
+        kept = [int(np.argmin([*(row == sense), False])) for row in there]
+        ends = [(float(row[k]), float(row[k + 1])) for row, k in zip(nodes, kept, strict=True)]
+    return ends[0][0], ends[1][0]
 
 
 def reach_of(case: Redriven) -> tuple[float, float]:
@@ -129,18 +142,34 @@ def answer(mechanism: ct.Mechanism, values: Array, tries: int = 4) -> Array:
     prepared = ready(mechanism)
     numbers, path = prepared.kinematics.numbers, prepared.kinematics.path
     random = np.random.default_rng(11)
-    exact = _columns(solve(prepared, span_at(path, values)))
+    exact = _columns(solve(prepared, span_at(path, values)), 0)
     found = np.zeros((3, len(values)))
+    changed: dict[float, list[Dimensions]] = {}
     for _ in range(tries):
-        changed = nudged(numbers, random).mapped(lambda x: np.array([x]))
-        step = STEP * random.choice([-1.0, 1.0]) * np.maximum(np.abs(values), path.unit)
-        near = _columns(solve(prepared, span_at(path, values + step), changed, 1))
-        found = np.fmax(found, np.max(np.abs(near - exact), axis=2) / STEP)
+        one = nudged(numbers, random)
+        changed.setdefault(float(random.choice([-1.0, 1.0])), []).append(one)
+    for sense, some in changed.items():
+        step = STEP * sense * np.maximum(np.abs(values), path.unit)
+        # mechanisms of a batch do not know of each other, so all with one step are solved together
+        near = solve(prepared, span_at(path, values + step), _together(some), len(some))
+        for lane in range(len(some)):
+            found = np.fmax(found, np.max(np.abs(_columns(near, lane) - exact), axis=2) / STEP)
     return np.maximum(found, 1.0)
 
 
-def _columns(solved: Solved) -> Array:
+def _together(some: list[Dimensions]) -> Dimensions:
+    """Numbers of several mechanisms of one structure as those of a batch."""
+    rows: list[list[float]] = []
+    for one in some:
+        row: list[float] = []
+        one.mapped(row.append)
+        rows.append(row)
+    columns = iter(np.array(rows).T)
+    return some[0].mapped(lambda _number: next(columns))
+
+
+def _columns(solved: Solved, lane: int) -> Array:
     """Places in the greatest length, and angles: (3, samples, columns)."""
     scale = float(np.max(solved.ready.kinematics.numbers.scale))
-    places = solved.points[:, 0].reshape(3, len(solved.span.parameter), -1) / scale
-    return np.concatenate([places, solved.angles[:, 0]], axis=2)
+    places = solved.points[:, lane].reshape(3, len(solved.span.parameter), -1) / scale
+    return np.concatenate([places, solved.angles[:, lane]], axis=2)

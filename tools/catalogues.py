@@ -1,8 +1,8 @@
 """The catalogues of centrode's sentences: `update` them from the code, `compile` them, `check` them.
 
 The code's sentences are the literals in `_()`, `ngettext()`, `mark()`, `Sentence()` and `Counted()`, and the titles of
-the built-in mechanisms. A .po file carries no dates and no version of any tool, and a .mo file follows from its .po byte
-by byte.
+the built-in mechanisms. A .po file carries no dates and no version of any tool; a .mo file follows from its .po byte by
+byte.
 """
 
 from __future__ import annotations

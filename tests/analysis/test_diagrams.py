@@ -22,6 +22,7 @@ from centrode.kinematics.spans import span_at
 from drawn import EPS, OPERATIONS, answers, errors, errors_of
 from growing import descriptions, mechanism_of
 from growing_higher import higher_descriptions
+from samples import few
 
 PLANE = [name for name in ct.example_names() if ct.example(name).space == "plane"]
 
@@ -48,7 +49,7 @@ def test_the_examples_have_dyads_of_all_kinds() -> None:
     assert kinds >= {"RRR", "RRP", "RPR", "PRP", "RPP", "gear", "gear train", "rolling wheel", "higher class"}
 
 
-@settings(max_examples=50)
+@settings(max_examples=few(25, 50))
 @given(descriptions())
 def test_random_mechanisms(parts: dict[str, Any]) -> None:
     prepared = ready(mechanism_of(parts))
@@ -58,7 +59,7 @@ def test_random_mechanisms(parts: dict[str, Any]) -> None:
     assert (found[0] <= found[1]).all()
 
 
-@settings(max_examples=25)
+@settings(max_examples=few(8, 25))
 @given(higher_descriptions())
 def test_random_groups_of_higher_class(parts: dict[str, Any]) -> None:
     try:

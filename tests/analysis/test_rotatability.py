@@ -14,6 +14,7 @@ from centrode.analysis.turning.dwells import DWELL_BAND
 from centrode.analysis.turning.swings import Swing
 from growing import DYADS, grown, mechanism_of
 from mechanisms import EPS, four_bar
+from turning import assert_swings
 
 
 def swing_of(found: ct.Rotatability, name: str) -> Swing:
@@ -204,13 +205,10 @@ def test_random_mechanisms_swing_between_their_extreme_positions(seed: int) -> N
 
 
 def test_every_example_is_answered() -> None:
+    """Slow ones in `test_rotatability_conditions`."""
     for name in ct.example_names():
-        found = ct.rotatability(ct.example(name))
-        for turning in found.drives:
-            for swing in turning.swings:
-                values = [extreme.value for extreme in swing.extremes]
-                assert swing.stroke is None or swing.stroke >= 0.0
-                assert np.isfinite(values).all()
+        if name != "scissor-lift-cylinder":
+            assert_swings(ct.rotatability(ct.example(name)))
 
 
 def test_a_drive_that_runs_backwards_has_its_places_on_its_run() -> None:

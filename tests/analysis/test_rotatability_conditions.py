@@ -10,7 +10,10 @@ import pytest
 
 import centrode as ct
 from mechanisms import EPS
+from turning import assert_swings
 
+SLOW = "scissor-lift-cylinder"
+"""Its group of higher class takes seconds; what every example gives is asserted of it here."""
 LIMITED = [
     "slider-between-cranks-locked",
     "double-rocker",
@@ -19,7 +22,7 @@ LIMITED = [
     "tangent-mechanism",
     "stephenson-driven-at-coupler",
     "stephenson-driven-at-rocker",
-    "scissor-lift-cylinder",
+    SLOW,
 ]
 
 
@@ -31,9 +34,10 @@ def test_limits_are_those_of_ct_limits_to_the_last_bit(name: str) -> None:
     assert {limit.value for limit in found.limits if limit.end == "low"} == {low} - {-math.inf}
     assert {limit.value for limit in found.limits if limit.end == "high"} == {high} - {math.inf}
     assert found.turns_fully is (False if mechanism.drives[0].kind == "angle" else None)
-    events = set(ct.motion(mechanism, samples=2).event_value.values.tolist())
-    inside = {limit.value for limit in found.limits} & events
-    assert inside or mechanism.study.start is not None or name == "scissor-lift-cylinder"
+    assert_swings(found)
+    if mechanism.study.start is None and name != SLOW:
+        events = set(ct.motion(mechanism, samples=2).event_value.values.tolist())
+        assert {limit.value for limit in found.limits} & events
 
 
 def test_the_locked_mechanism_of_the_source() -> None:

@@ -14,6 +14,7 @@ import centrode as ct
 from balanced import four_bar, rest_of
 from centrode.kinematics.ready import ready
 from mechanisms import EPS, rounding, solve_evenly
+from samples import few
 
 
 def static_moment(mechanism: ct.Mechanism, link: str, base: str) -> complex:
@@ -24,7 +25,7 @@ def static_moment(mechanism: ct.Mechanism, link: str, base: str) -> complex:
     return one.mass * complex(one.centre[0] - x, one.centre[1] - y)
 
 
-@settings(max_examples=20)
+@settings(max_examples=few(6, 20))
 @given(st.integers(0, 10_000))
 def test_a_four_bar_is_balanced_as_berkof_and_lowen_say(seed: int) -> None:
     mechanism = four_bar(seed)
@@ -68,7 +69,7 @@ def with_masses(name: str, seed: int) -> ct.Mechanism:
     ("name", "count"),
     [("watt-six-bar", 3), ("stephenson-six-bar", 3), ("slider-crank-offset", 2), ("four-bar-and-slider", 3)],
 )
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(few(1, 3)))
 def test_half_as_many_counterweights_as_links_are_enough(name: str, count: int, seed: int) -> None:
     """Of a linkage with hinges and n links with the frame, n/2 counterweights (Tepper and Lowen 1972)."""
     found = ct.balance(with_masses(name, seed))

@@ -13,9 +13,10 @@ import centrode as ct
 from balanced import SPEED, four_bar, rest_of
 from centrode.kinematics.ready import ready
 from mechanisms import rounding, solve_evenly
+from samples import few
 
 
-@settings(max_examples=8)
+@settings(max_examples=few(3, 8))
 @given(st.integers(0, 10_000), st.floats(0.3, 1.0))
 def test_discs_balance_the_moment_of_an_in_line_four_bar(seed: int, pendulum: float) -> None:
     """Berkof 1973: the coupler a physical pendulum, discs of the side links with its shares."""

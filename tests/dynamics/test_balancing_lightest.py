@@ -50,9 +50,18 @@ def test_no_fraction_is_better_than_the_least_maximum() -> None:
     def force(product: float) -> float:
         return effect(engine, [moved(engine, one, complex(-product))], "shaking_force")
 
-    for _round in range(40):
-        a, b = low + (high - low) / 3, high - (high - low) / 3
-        low, high = (low, b) if force(a) < force(b) else (a, high)
+    golden = (math.sqrt(5) - 1) / 2
+    a, b = high - golden * (high - low), low + golden * (high - low)
+    at_a, at_b = force(a), force(b)
+    for _round in range(38):
+        if at_a < at_b:
+            high, b, at_b = b, a, at_a
+            a = high - golden * (high - low)
+            at_a = force(a)
+        else:
+            low, a, at_a = a, b, at_b
+            b = low + golden * (high - low)
+            at_b = force(b)
     alone = force((low + high) / 2)
     assert abs(alone - best) <= 4e-8 * best
 

@@ -25,6 +25,7 @@ from polygonal import (
     loaded,
     size_of,
 )
+from samples import few
 
 
 @pytest.mark.parametrize("name", [name for name in PLANE if name != "three-crank-parallelogram"])
@@ -56,7 +57,7 @@ def test_random_mechanisms(kinds: list[str], seed: int) -> None:
     assert_routes_agree(found)
 
 
-@settings(max_examples=15)
+@settings(max_examples=few(5, 15))
 @given(higher_descriptions(), st.integers(0, 2**32 - 1))
 def test_random_groups_of_higher_class(parts: dict[str, Any], seed: int) -> None:
     parts.setdefault("guides", [])

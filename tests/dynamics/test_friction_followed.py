@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from centrode.dynamics.friction.following import LEAST_STEP, Followed, Law, Outcome, Rule, followed
 from mechanisms import EPS
+from samples import few
 
 
 def one(factor: float, base: complex, gain: complex, rule: Rule = Rule.LENGTH) -> Followed:
@@ -71,7 +72,7 @@ def test_no_size_and_no_force() -> None:
     assert empty.sizes.shape == (0, 2)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=few(20, 60), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 6))
 def test_where_little_feeds_back_plain_iteration_comes_to_the_same(seed: int, width: int) -> None:
     random = np.random.default_rng(seed)
@@ -97,7 +98,7 @@ def test_where_little_feeds_back_plain_iteration_comes_to_the_same(seed: int, wi
     ).all()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=few(10, 30), deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 4))
 def test_what_is_followed_solves_and_joins_on_to_no_friction(seed: int, width: int) -> None:
     """With strong feedback too; sizes of a hair less friction are a hair less far along the same branch."""

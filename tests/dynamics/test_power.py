@@ -15,6 +15,7 @@ from centrode.kinematics.ready import ready
 from growing import KINDS, descriptions, grown, mechanism_of
 from growing_higher import HIGHER, grown_higher
 from mechanisms import EPS
+from samples import few
 
 WIDTH = 0.3
 OPERATIONS = 256
@@ -67,7 +68,7 @@ def strongest(data: Any) -> float:
     return 50.0 * (scale_of(data) + float(abs(data.angle).max())) + 10.0 * fast**2
 
 
-@settings(max_examples=30)
+@settings(max_examples=few(10, 30))
 @given(descriptions(), SEEDS)
 def test_random_mechanisms(parts: dict[str, Any], seed: int) -> None:
     assume(agree(parts, seed))

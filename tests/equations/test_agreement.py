@@ -14,6 +14,7 @@ from centrode.structure.rank import jacobian
 from growing import descriptions, mechanism_of
 from growing_higher import higher_descriptions
 from mechanisms import EPS
+from samples import few
 from worked_out import Values, condition, initial_values, planar_examples, value_of
 
 WORTH = 1e6
@@ -86,7 +87,7 @@ def test_rates_of_examples(name: str) -> None:
     check_rates(ct.example(name))
 
 
-@settings(max_examples=25)
+@settings(max_examples=few(12, 25))
 @given(descriptions())
 def test_rates_of_random_mechanisms(parts: dict[str, Any]) -> None:
     mechanism = mechanism_of(parts)
@@ -94,7 +95,7 @@ def test_rates_of_random_mechanisms(parts: dict[str, Any]) -> None:
     check_rates(mechanism)
 
 
-@settings(max_examples=10)
+@settings(max_examples=few(5, 10))
 @given(higher_descriptions())
 def test_rates_of_random_groups_of_higher_class(parts: dict[str, Any]) -> None:
     mechanism = mechanism_of(parts)
@@ -138,7 +139,7 @@ def test_determinants_of_examples(name: str) -> None:
         check_determinants(ct.example(name))
 
 
-@settings(max_examples=25)
+@settings(max_examples=few(12, 25))
 @given(descriptions())
 def test_determinants_of_random_mechanisms(parts: dict[str, Any]) -> None:
     mechanism = mechanism_of(parts)

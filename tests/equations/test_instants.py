@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import centrode as ct
+from centrode.equations.derivation import Equations
 from centrode.equations.instants import instant_of, rates_compared
 from centrode.errors import Status
 
@@ -24,10 +27,16 @@ def planar() -> list[str]:
     return found
 
 
+@cache
+def examined(name: str) -> tuple[Equations, xr.Dataset]:
+    """Equations of an example, and its motion at seven samples; not to be changed."""
+    mechanism = ct.example(name)
+    return ct.equations(mechanism), ct.motion(mechanism, 7)
+
+
 @pytest.mark.parametrize("name", planar())
 def test_systems_give_the_rates_of_the_closed_forms(name: str) -> None:
-    mechanism = ct.example(name)
-    equations, motion = ct.equations(mechanism), ct.motion(mechanism, 7)
+    equations, motion = examined(name)
     reached = np.flatnonzero(motion.status.to_numpy() == Status.OK)
     assert reached.size
     for sample in reached.tolist():
@@ -40,9 +49,8 @@ def test_systems_give_the_rates_of_the_closed_forms(name: str) -> None:
 
 def test_constraints_hold_at_every_sample() -> None:
     for name in ("rolling-wheel-rod", "planetary-hypocycloid", "scissor-lift-cylinder", "galloway"):
-        mechanism = ct.example(name)
-        equations, motion = ct.equations(mechanism), ct.motion(mechanism, 5)
-        for sample in range(5):
+        equations, motion = examined(name)
+        for sample in range(7):
             if motion.status[sample] != Status.OK:
                 continue
             instant = instant_of(equations, motion, sample)
@@ -89,13 +97,13 @@ def test_the_sphere_is_refused() -> None:
 
 
 def test_another_unit_of_length_changes_lengths_alone() -> None:
-    mechanism = ct.example("scissor-lift-cylinder")
-    equations, motion = ct.equations(mechanism), ct.motion(mechanism, 3)
-    metres, millimetres = (instant_of(equations, motion, 1, length) for length in (1.0, 1e3))
+    equations, motion = examined("scissor-lift-cylinder")
+    middle = 3
+    metres, millimetres = (instant_of(equations, motion, middle, length) for length in (1.0, 1e3))
     for group, one, other in zip(equations.groups, metres.velocities, millimetres.velocities, strict=True):
         for unknown, x, y in zip(group.unknowns, one.solution, other.solution, strict=True):
             factor = 1e3 if unknown.name.startswith("slide") else 1.0
             assert y == pytest.approx(factor * x, rel=256 * EPS * one.condition)
-    assert [r.closed for r in rates_compared(equations, metres, motion, 1)] == [
-        r.closed for r in rates_compared(equations, millimetres, motion, 1)
+    assert [r.closed for r in rates_compared(equations, metres, motion, middle)] == [
+        r.closed for r in rates_compared(equations, millimetres, motion, middle)
     ]

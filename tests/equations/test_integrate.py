@@ -21,6 +21,7 @@ from centrode.equations.integration import NUDGE, adaptive_steps
 from centrode.kinematics.ready import ready
 from growing import descriptions, mechanism_of
 from mechanisms import EPS, four_bar
+from samples import few
 from worked_form import Worked
 
 Array = npt.NDArray[np.float64]
@@ -215,7 +216,7 @@ def test_adaptive_steps_agree_with_the_closed_forms(name: str) -> None:
     check_against_closed_forms(mechanism, data)
 
 
-@settings(max_examples=10)
+@settings(max_examples=few(4, 10))
 @given(descriptions())
 def test_random_mechanisms_agree_with_the_closed_forms(parts: dict[str, Any]) -> None:
     mechanism = mechanism_of(parts)

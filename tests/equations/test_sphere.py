@@ -14,6 +14,7 @@ from centrode.equations.derivation import Equations
 from centrode.equations.sphere_board import SphereBoard
 from growing_sphere import Growing, Vector, angle_at, mechanisms
 from mechanisms import EPS
+from samples import few
 from worked_out import Values, initial_values, value_of
 
 WORTH = 1e5
@@ -97,7 +98,7 @@ def test_examples_agree_with_motion(name: str) -> None:
         assert "driven links and dyads" in refused.what
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=few(12, 25), deadline=None)
 @given(mechanisms(("RRR", "RRP", "rigid point", "turned link")))
 def test_random_mechanisms_agree_with_motion(growing: Growing) -> None:
     mechanism = mechanism_of(growing)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
+import xarray as xr
 
 import centrode as ct
 from mechanisms import EPS, moved, parts_of, statuses
@@ -24,6 +27,14 @@ def asked(mechanism: ct.Mechanism, count: int, beyond: float = 0.0) -> np.ndarra
     start = study.start if study.start is not None else 0.0
     stop = study.stop if study.stop is not None else 2.0 * np.pi
     return np.linspace(start - beyond, stop + beyond, count)
+
+
+@cache
+def at_home(name: str) -> tuple[np.ndarray, xr.Dataset, np.ndarray]:
+    """Seven values over an example's range, the motion there, and how much it answers to the dimensions."""
+    mechanism = ct.example(name)
+    values = asked(mechanism, 7)
+    return values, ct.motion(mechanism, at=values), answer(mechanism, values)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -84,7 +95,7 @@ def test_mechanisms_that_do_not_close_are_absent_and_the_others_as_they_are() ->
 )  # fmt: skip
 def test_copies_move_alike(name: str, change: dict) -> None:
     mechanism = ct.example(name)
-    values = asked(mechanism, 7)
+    values, here, answered = at_home(name)
     parts = parts_of(mechanism)
     parts.pop("study", None)
     copy = ct.Mechanism(**moved(parts, **change))
@@ -92,9 +103,8 @@ def test_copies_move_alike(name: str, change: dict) -> None:
     turn = change.get("turn", 0.0)
     shift = turn if mechanism.drives[0].relative_to == "frame" else 0.0
     there = ct.motion(copy, at=sense * values + shift)
-    here = ct.motion(mechanism, at=values)
     size = 1.0 + max(map(abs, change.get("shift", (0.0,))))
-    allowed = 32 * EPS * size * np.max(answer(mechanism, values)[0]) * 2.0 * np.pi
+    allowed = 32 * EPS * size * np.max(answered[0]) * 2.0 * np.pi
     assert set(statuses(there)) == {"ok"}
     assert np.max(np.abs(there.angle - sense * here.angle - turn)) <= allowed
 

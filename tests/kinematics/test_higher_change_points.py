@@ -66,10 +66,10 @@ def test_change_points_stand_where_the_crank_is_in_line(case: Redriven) -> None:
 @pytest.mark.parametrize("longer", [1e-2, 1e-4, 1e-6, 1e-9, -1e-2, -1e-4, -1e-6, -1e-9, -1e-11])
 def test_a_near_miss_is_not_passed_as_a_crossing(longer: float) -> None:
     """With a coupler too long the crank locks; too short, it goes over to the antiparallelogram: FR turns back."""
-    found = ct.motion(redriven(parallelogram(longer), "FR", 0.7).other, samples=41, start=-2.6, stop=-1.6)
+    case = redriven(parallelogram(longer), "FR", 0.7)
+    found = ct.motion(case.other, samples=41, start=-2.6, stop=-1.6)
     assert events(found, "change point") == []
     assert set(statuses(found)) == {"ok", "open"}
-    case = redriven(parallelogram(longer), "FR", 0.7)
     if longer < 0.0:
         end = float(np.max(case.angle(case.stretch)[0]))
         # an extreme that is as sharp as the miss is near
@@ -104,9 +104,10 @@ def test_a_gap_of_limits_is_found_on_both_sides() -> None:
 
 
 def test_keep_ends_at_the_change_point() -> None:
-    parts: dict[str, Any] = parts_of(redriven(parallelogram(), "FR", 0.7).other)
+    case = redriven(parallelogram(), "FR", 0.7)
+    parts: dict[str, Any] = parts_of(case.other)
     parts["assembly"] = {"continuation": "keep"}
     data = ct.motion(ct.Mechanism(**parts), at=[SPECIAL - 0.1, SPECIAL - 0.01, SPECIAL + 0.01, SPECIAL + 0.1])
     assert statuses(data) == ["ok", "ok", "unconverged", "unconverged"]
-    smooth = ct.motion(redriven(parallelogram(), "FR", 0.7).other, at=[SPECIAL - 0.1])
+    smooth = ct.motion(case.other, at=[SPECIAL - 0.1])
     assert np.array_equal(point(data, "R")[:1], point(smooth, "R"))

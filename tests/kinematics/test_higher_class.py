@@ -25,6 +25,13 @@ def case(request: pytest.FixtureRequest) -> Redriven:
     return redriven(ct.example(name), link, base)
 
 
+@pytest.fixture(scope="module")
+def limits(case: Redriven) -> np.ndarray:
+    """Limits of the new drive about the stretch."""
+    low, high = reach_of(case)
+    return np.array(events(ct.motion(case.other, at=[low - 1e-3, high + 1e-3]), "limit"))
+
+
 def test_the_plan_has_a_group_of_higher_class(case: Redriven) -> None:
     assert "higher class" in [group.kind for group in structure_of(case.other).groups]
     assert "higher class" not in [group.kind for group in structure_of(case.by_dyads).groups]
@@ -43,18 +50,14 @@ def test_newton_agrees_with_dyads(case: Redriven) -> None:
     assert float(data.residual.max()) <= 1e-12
 
 
-def test_limits_are_the_extremes_of_the_motion_by_dyads(case: Redriven) -> None:
+def test_limits_are_the_extremes_of_the_motion_by_dyads(case: Redriven, limits: np.ndarray) -> None:
     """The drive's value at an extreme is exact to rounding: there it answers to the position in second order only."""
-    low, high = reach_of(case)
-    found = np.array(events(ct.motion(case.other, at=[low - 1e-3, high + 1e-3]), "limit"))
-    for end in (low, high):
-        assert np.min(np.abs(found - end)) <= 16 * EPS * max(1.0, abs(end)), end
+    for end in reach_of(case):
+        assert np.min(np.abs(limits - end)) <= 16 * EPS * max(1.0, abs(end)), end
 
 
-def test_beyond_a_limit_is_open_and_beside_it_ok(case: Redriven) -> None:
-    low, high = reach_of(case)
-    found = np.array(events(ct.motion(case.other, at=[low - 1e-3, high + 1e-3]), "limit"))
-    ends = [found[np.argmin(np.abs(found - end))] for end in (low, high)]
+def test_beyond_a_limit_is_open_and_beside_it_ok(case: Redriven, limits: np.ndarray) -> None:
+    ends = [limits[np.argmin(np.abs(limits - end))] for end in reach_of(case)]
     beside = [1e-13, 1e-10, 1e-6]
     inside = [ends[0] + x for x in beside] + [ends[1] - x for x in beside]
     outside = [ends[0] - x for x in beside] + [ends[1] + x for x in beside]
@@ -66,11 +69,10 @@ def test_beyond_a_limit_is_open_and_beside_it_ok(case: Redriven) -> None:
     assert np.isnan(at_ends.angular_velocity).all()
 
 
-def test_next_to_a_limit_positions_follow_its_square_root(case: Redriven) -> None:
+def test_next_to_a_limit_positions_follow_its_square_root(case: Redriven, limits: np.ndarray) -> None:
     """A place at a distance x from a limit is some sqrt(x) away from that at the limit: four times x, twice as far."""
     low, _high = reach_of(case)
-    found = np.array(events(ct.motion(case.other, at=[low - 1e-3]), "limit"))
-    end = found[np.argmin(np.abs(found - low))]
+    end = limits[np.argmin(np.abs(limits - low))]
     data = ct.motion(case.other, at=[end, end + 1e-10, end + 4e-10])
     away = np.abs(data.position - data.position[0]).max(dim=("point", "axis")).to_numpy()
     # the next term is smaller by sqrt(x); rounding of the end itself is seen through the square root

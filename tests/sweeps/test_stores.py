@@ -17,6 +17,7 @@ import xarray as xr
 import centrode as ct
 from centrode.files.locks import locked
 from centrode.sweeps import limits
+from samples import few
 
 pytest.importorskip("zarr", reason="stores need the extra sweeps")
 
@@ -88,11 +89,8 @@ def test_a_killed_run_goes_on(tmp_path: Path, study: Path, process: Process) -> 
     random = np.random.default_rng(11)
     store = tmp_path / "killed.zarr"
     before: dict[str, int] = {}
-    for last in (
-        random.integers(2, 30),
-        *random.integers(touches // 8, touches // 4, 3),
-        random.integers(2, 30),
-    ):
+    early, late = random.integers(2, 30, 2), random.integers(touches // 8, touches // 4, 3)
+    for last in few((early[0], *late[:2]), (early[0], *late, early[1])):
         killed = process(study, store, int(last))
         assert killed.returncode == -signal.SIGKILL, "it was never at work so long"
         now = markers(store)

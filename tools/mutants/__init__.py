@@ -1,0 +1,1 @@
+"""Mutants: small faults put into the program at random, to see whether the tests notice."""
