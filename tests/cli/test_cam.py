@@ -72,6 +72,7 @@ def test_terms_and_samples_are_those_asked_for(centrode: Centrode, cam: Path) ->
     assert [line.split()[0] for line in table] == ["0", "15", "30", "45", "60", "75", "90"]
 
 
+@pytest.mark.drawn
 def test_everything_is_written(centrode: Centrode, cam: Path) -> None:
     done = centrode("cam", "cam.toml", "--out", "result", "--samples", "19")
     assert done.code == 0
@@ -93,6 +94,7 @@ def test_everything_is_written(centrode: Centrode, cam: Path) -> None:
         assert ct.parse_cam(data.attrs["cam"]) == ct.read_cam(cam / "cam.toml")
 
 
+@pytest.mark.drawn
 def test_the_same_cam_gives_the_same_bytes(centrode: Centrode, cam: Path) -> None:
     for name in ("one", "other"):
         assert centrode("cam", "cam.toml", "--out", name, "--samples", "19").code == 0
@@ -100,6 +102,7 @@ def test_the_same_cam_gives_the_same_bytes(centrode: Centrode, cam: Path) -> Non
         assert file.read_bytes() == (cam / "other" / file.name).read_bytes()
 
 
+@pytest.mark.drawn
 def test_without_figures_and_dark(centrode: Centrode, cam: Path) -> None:
     assert centrode("cam", "cam.toml", "--out", "plain", "--no-figures", "--samples", "5").code == 0
     assert sorted(path.name for path in (cam / "plain").iterdir()) == sorted(TABLES)
@@ -108,6 +111,7 @@ def test_without_figures_and_dark(centrode: Centrode, cam: Path) -> None:
     assert (cam / "dark" / "cam-path.png").read_bytes() != (cam / "light" / "cam-path.png").read_bytes()
 
 
+@pytest.mark.drawn
 def test_a_follower_that_stalls_ends_with_3_and_is_written(centrode: Centrode, cam: Path) -> None:
     (cam / "cam.toml").write_text(CAM.replace("90 deg", "180 deg"))
     done = centrode("cam", "cam.toml", "--out", "result", "--samples", "37")
