@@ -82,7 +82,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 @pytest.fixture(autouse=True)
 def pictures(request: pytest.FixtureRequest) -> Iterator[None]:
     """Pictures are made but not rendered, except in tests marked `drawn`: some of each command, and all that look."""
-    if request.node.get_closest_marker("drawn"):
+    if request.node.get_closest_marker("drawn") and not request.config.getoption("--blank"):
         yield
         return
     with blank_pictures():
