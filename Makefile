@@ -19,8 +19,8 @@ FOR_DEMO := $(VENV)/.stamp-demo
 FOR_TESTS := $(VENV)/.stamp-dev
 
 .DELETE_ON_ERROR:
-.PHONY: help demo test format lint types contracts catalogue-check reference-check docs tests tests-without-extras catalogues reference \
-	campaigns samples benchmarks snapshots house clean
+.PHONY: help demo test quick format lint types contracts catalogue-check reference-check docs tests tests-without-extras catalogues \
+	reference campaigns samples benchmarks snapshots house clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-22s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -29,6 +29,11 @@ demo: $(FOR_DEMO) ## compute a built-in mechanism into demo-output/
 	$(BIN)/centrode run $(DEMO) --out demo-output
 
 test: lint types contracts catalogue-check reference-check docs tests tests-without-extras ## everything that CI checks
+
+# tests/quick.txt names one case of each topic, command, renderer and kind of refusal, the cheapest that reaches most.
+# They are named, not marked: to find marked tests, each worker would import every file of tests first.
+quick: $(FOR_TESTS) ## the shortest look at everything, below a minute; pictures are left blank
+	$(BIN)/pytest -q -n auto --dist loadfile --blank @tests/quick.txt
 
 lint: $(FOR_TESTS) ## format and lint, without changing anything
 	$(BIN)/ruff format --check .

@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 import doctest
+import io
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
 import tomllib
+from contextlib import nullcontext, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
+import pytest
 from hypothesis import HealthCheck, settings
 from sybil import Example, Sybil
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 import centrode as ct
+from blank_canvas import blank_pictures
+from centrode.cli.main import main
+from centrode.locale import choose_language_of_process
 from centrode.model.description import Description
+from centrode.present.animations import given
 
 settings.register_profile(
     "house", derandomize=True, deadline=None, database=None, suppress_health_check=[HealthCheck.too_slow]
@@ -28,7 +37,16 @@ settings.register_profile(
 )
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "house"))
 
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--blank", action="store_true", help="leave pictures blank in tests marked `drawn` too")
+
+
 LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+OWN_PROCESS = ("README.md",)
+"""Pages whose commands are started as a reader starts them, pictures and all; those of the others run here."""
+FEW_FRAMES = {"FRAMES": 6, "FRAMES_OF_A_STEP": 6, "FRAMES_OF_A_TURN": 6}
+"""What `--animate` writes here where it would write 36 to 60; `centrode animate` is typed with its own numbers."""
 FILE_NAME = re.compile(r"# ([\w-]+\.toml)\n")
 
 
@@ -38,19 +56,52 @@ def run_console(example: Example) -> None:
     A command may end in `# exit N`; `...` stands for anything, runs of blanks are alike. A command with
     nothing below it may print what it likes.
     """
+    own_process = Path(example.path).name in OWN_PROCESS
     for part in re.split(r"^\$ ", example.parsed, flags=re.MULTILINE)[1:]:
         line, _end, printed = part.partition("\n")
         command, _sign, expected = line.partition("# exit ")
         assert command.startswith("centrode "), f"only centrode is run here, not {command}"
-        done = subprocess.run(
-            command.replace("centrode", f'"{sys.executable}" -m centrode', 1),
-            shell=True, capture_output=True, text=True, encoding="utf-8", check=False,
-            env={**os.environ, "LANGUAGE": "en"},
-        )  # fmt: skip
-        told = done.stdout + done.stderr
-        assert done.returncode == int(expected or 0), f"{command}\n{told}"
+        code, told = run_as_process(command) if own_process else run_here(command)
+        assert code == int(expected or 0), f"{command}\n{told}"
         agrees = doctest.OutputChecker().check_output(printed.strip() + "\n", told.strip() + "\n", LOOSELY)
         assert agrees or not printed.strip(), f"{command}\n{told}"
+
+
+def run_as_process(command: str) -> tuple[int, str]:
+    """Exit code and output of a command line in a shell, in English."""
+    done = subprocess.run(
+        command.replace("centrode", f'"{sys.executable}" -m centrode', 1),
+        shell=True, capture_output=True, text=True, encoding="utf-8", check=False,
+        env={**os.environ, "LANGUAGE": "en"},
+    )  # fmt: skip
+    return done.returncode, done.stdout + done.stderr
+
+
+def run_here(command: str) -> tuple[int, str]:
+    """What `run_as_process` returns, without the start of a process: about a second for each of a hundred commands.
+
+    Pictures are written blank, animations short: tests/cli and tests/present render them. The language and the
+    environment are afterwards what they were. Words are split as a shell splits them; what a shell would do more
+    than that is refused.
+    """
+    words = shlex.split(command, comments=True)
+    unquoted = re.sub(r"'[^']*'|\"[^\"]*\"", "", command)
+    assert not re.search(r"[|&;<>$`*?~\\]", unquoted), f"{command}: this page needs a shell, see OWN_PROCESS"
+    streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8", newline="\n") for _stream in range(2)]
+    with (
+        mock.patch.multiple(given, **FEW_FRAMES) if "--animate" in words else nullcontext(),
+        blank_pictures(),
+        mock.patch.dict(os.environ, {"LANGUAGE": "en"}),
+        redirect_stdout(streams[0]),
+        redirect_stderr(streams[1]),
+    ):
+        try:
+            code = main(words[1:])
+        finally:
+            choose_language_of_process("en")
+    for stream in streams:
+        stream.flush()
+    return code, "".join(stream.buffer.getvalue().decode("utf-8") for stream in streams)
 
 
 def read_toml(example: Example) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from blank_canvas import blank_pictures
 from centrode.cli.main import main
 from centrode.locale import choose_language
 
@@ -76,6 +77,16 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.chdir(tmp_path)
     yield tmp_path
     choose_language("en")
+
+
+@pytest.fixture(autouse=True)
+def pictures(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Pictures are made but not rendered, except in tests marked `drawn`: some of each command, and all that look."""
+    if request.node.get_closest_marker("drawn") and not request.config.getoption("--blank"):
+        yield
+        return
+    with blank_pictures():
+        yield
 
 
 @pytest.fixture

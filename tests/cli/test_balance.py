@@ -84,6 +84,7 @@ def test_no_bound_is_told_where_the_least_force_is_none(centrode: Centrode) -> N
     assert centrode("balance", "in-line-four-bar", "--full").rows["balance"] == "shaking force zero"
 
 
+@pytest.mark.drawn
 def test_dark_pictures(centrode: Centrode, folder: Path) -> None:
     for number, dark in enumerate(([], ["--dark"])):
         assert centrode("balance", "in-line-four-bar", "--out", f"r{number}", *dark).code == 0

@@ -22,7 +22,13 @@ def written(folder: Path, text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "more", ["", '[return]\nkind = "designed"\n', '[return]\nkind = "mirrored"\n', CONTACT]
+    "more",
+    [
+        pytest.param("", marks=pytest.mark.drawn),
+        '[return]\nkind = "designed"\n',
+        '[return]\nkind = "mirrored"\n',
+        pytest.param(CONTACT, marks=pytest.mark.drawn),
+    ],
 )
 @pytest.mark.parametrize("symmetric", ["symmetric = true\n", ""])
 def test_no_profile_leads_to_a_stall(centrode: Centrode, folder: Path, symmetric: str, more: str) -> None:

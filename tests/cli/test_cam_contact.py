@@ -115,6 +115,7 @@ def test_the_chosen_description_computes(centrode: Centrode, pressed: Path) -> N
     assert now == pytest.approx(before, rel=1e-8)
 
 
+@pytest.mark.drawn
 def test_the_figures_of_contact_and_choice(centrode: Centrode, pressed: Path) -> None:
     text = GIVEN.replace('minimise = "stress"', 'minimise = "stress"\ntrade_off = "size"')
     (pressed / "pressed.toml").write_text(text)

@@ -121,6 +121,7 @@ def test_other_followers(
     assert all(one in done.out for one in said), done.out
 
 
+@pytest.mark.drawn
 def test_everything_is_written(centrode: Centrode, write: Callable[..., str], folder: Path) -> None:
     ezdxf = pytest.importorskip("ezdxf")
     done = centrode("cam", write(more=BOUNDS + TOOL), "--out", "out", "--samples", "37")
@@ -175,6 +176,7 @@ def test_bounds_that_are_broken(centrode: Centrode, write: Callable[..., str]) -
     assert "at 100 deg the speed of the lift jumps: every radius leaves a sharp corner" in done.err
 
 
+@pytest.mark.drawn
 def test_undercut_is_refused_or_shown(
     centrode: Centrode, refuses: Callable[..., str], write: Callable[..., str], folder: Path
 ) -> None:

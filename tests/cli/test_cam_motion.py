@@ -89,6 +89,7 @@ def test_laws_are_compared_where_asked(centrode: Centrode, cam: Path) -> None:
     assert "rise 25 mm over 90 deg: segment 1, cycloidal" in lines
 
 
+@pytest.mark.drawn
 def test_everything_is_written(centrode: Centrode, cam: Path) -> None:
     done = centrode("cam", "cam.toml", "--laws", "--out", "out", "--samples", "5")
     assert (done.code, done.err) == (0, "")

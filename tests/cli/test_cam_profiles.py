@@ -38,6 +38,7 @@ def test_profile_and_wheel_are_printed(centrode: Centrode, wheel: Path) -> None:
     assert list(wheel.iterdir()) == [wheel / "wheel.toml"]
 
 
+@pytest.mark.drawn
 def test_everything_is_written(centrode: Centrode, wheel: Path) -> None:
     pytest.importorskip("ezdxf")
     done = centrode("cam", "wheel.toml", "--out", "out", "--samples", "31", "--groove")

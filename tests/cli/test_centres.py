@@ -44,6 +44,7 @@ def test_centres_are_printed(centrode: Centrode) -> None:
     assert len([line for line in done.out.splitlines() if line.startswith("P")]) == 15
 
 
+@pytest.mark.drawn
 def test_centres_are_written(centrode: Centrode, folder: Path) -> None:
     done = centrode(
         "centres", "six-bar-press", "--at", "120 deg", "--at", "30 deg", "--pair", "AB,frame",
@@ -68,6 +69,7 @@ def test_centres_are_written(centrode: Centrode, folder: Path) -> None:
         np.testing.assert_array_equal(written["centre"], centres["centre"])
 
 
+@pytest.mark.drawn
 def test_the_usual_places(centrode: Centrode, folder: Path, four_bar: str) -> None:
     (folder / "press.toml").write_text(four_bar)
     assert "OA 1 rad (57.2958 deg)" in centrode("centres", "press.toml").out  # the initial position
@@ -99,6 +101,7 @@ def test_places_that_are_not_reached_end_with_3(centrode: Centrode, folder: Path
     assert {row["case"] for row in rows(folder / "r" / "centres.csv")} >= {"no position", "common hinge"}
 
 
+@pytest.mark.drawn
 def test_centrodes_are_written(centrode: Centrode, folder: Path) -> None:
     done = centrode(
         "centrodes", "elliptic-trammel", "--link", "AB", "--samples", "7", "--at", "0.3 m", "--animate"
@@ -127,6 +130,7 @@ def test_centrodes_are_written(centrode: Centrode, folder: Path) -> None:
     assert {row["status"] for row in table} == {"ok"}
 
 
+@pytest.mark.drawn
 def test_curvature_at_a_place_that_is_not_reached_ends_with_3(centrode: Centrode, folder: Path) -> None:
     arguments = ("--link", "CB", "--samples", "5", "--at", "1 rad", "--at", "2 rad", "--out", "r")
     done = centrode("centrodes", "slider-between-cranks-locked", *arguments)
@@ -225,6 +229,7 @@ def test_a_big_mechanism_asks_for_pairs(centrode: Centrode, folder: Path) -> Non
     assert sorted(path.name for path in (folder / "r").iterdir()) == ["centres.csv", "centres.nc"]
 
 
+@pytest.mark.drawn
 def test_axes_on_the_sphere(centrode: Centrode, folder: Path) -> None:
     """Rows with the relative speed, a table with unit vectors, the picture."""
     done = centrode("centres", "spherical-crank-guide", "--at", "1 rad", "--out", "r")
@@ -241,6 +246,7 @@ def test_axes_on_the_sphere(centrode: Centrode, folder: Path) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.drawn
 def test_polodes_on_the_sphere(centrode: Centrode, folder: Path) -> None:
     done = centrode(
         "centrodes",

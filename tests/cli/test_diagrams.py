@@ -24,6 +24,7 @@ def rows(file: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
+@pytest.mark.drawn
 def test_the_worked_check(centrode: Centrode, folder: Path) -> None:
     done = centrode(
         "diagrams", "slider-between-cranks", "--at", "pi/2 rad", "--angle-step", "1 deg", "--out", "d"
@@ -149,6 +150,7 @@ def test_wrong_input_of_a_plan(centrode: Centrode, folder: Path, arguments: list
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.drawn
 def test_transmission_angles(centrode: Centrode, folder: Path) -> None:
     done = centrode("angles", "crank-rocker", "--samples", "37", "--out", "t")
     assert done.code == 0, done

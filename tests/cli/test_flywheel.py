@@ -81,6 +81,7 @@ def test_the_mean_in_time(centrode: Centrode, compressor: Path) -> None:
     assert said["inertia needed"] == f"{found.inertia:.6g} kg m² exactly"
 
 
+@pytest.mark.drawn
 def test_files_of_a_flywheel(centrode: Centrode, compressor: Path) -> None:
     done = centrode("flywheel", "compressor.toml", "--out", "f", "--samples", "9", "--method", "first-order")
     assert (done.code, done.err) == (0, "")

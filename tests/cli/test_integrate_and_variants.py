@@ -22,6 +22,7 @@ FIGURES = ("integrated-angles", "integrated-angular-velocities", "integrated-sli
            "integration-errors")  # fmt: skip
 
 
+@pytest.mark.drawn
 def test_integrate(centrode: Centrode, folder: Path) -> None:
     done = centrode("integrate", "slider-between-cranks", "--out", "r")
     assert (done.code, done.err) == (0, "")

@@ -132,6 +132,7 @@ def test_wrong_questions(centrode: Centrode, arm: Path, arguments: tuple[str, ..
     assert [path.name for path in arm.iterdir()] == ["arm.toml"]
 
 
+@pytest.mark.drawn
 def test_a_region_is_written_and_summed_up(centrode: Centrode, arm: Path) -> None:
     done = centrode("region", "arm.toml", "--out", "result", "--samples", "31")
     assert done.code == 0

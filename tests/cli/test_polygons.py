@@ -49,6 +49,7 @@ def test_several_instants(centrode: Centrode, folder: Path) -> None:
     assert names == ["polygons-1.csv", "polygons-2.csv"]
 
 
+@pytest.mark.drawn
 def test_dark_pages(centrode: Centrode, folder: Path) -> None:
     done = centrode("polygons", "six-bar-press", "--at", "1 rad", "--dark", "--out", "p")
     assert done.code == 0, done

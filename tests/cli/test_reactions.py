@@ -108,6 +108,7 @@ def test_hinges_of_several_links_and_wheels_have_columns_of_their_own() -> None:
     assert header[1:] == ["O", "A", "C", "B", "D", "guide C"]
 
 
+@pytest.mark.drawn
 def test_instants(centrode: Centrode, folder: Path) -> None:
     done = centrode("reactions", "six-bar-press", "--at", "120 deg", "--at", "2 rad", "--out", "at")
     assert (done.code, done.err) == (0, "")
@@ -142,6 +143,7 @@ def test_a_dead_point_is_told_in_words(centrode: Centrode, folder: Path) -> None
     assert "nan" not in done.out
 
 
+@pytest.mark.drawn
 def test_what_is_not_determined_is_named(centrode: Centrode, folder: Path) -> None:
     text = ct.example_text("rolling-wheel-rod") + '\n[[loads]]\nkind = "torque"\nlink = "wheel"\nvalue = 3\n'
     (folder / "w.toml").write_text(text)

@@ -57,6 +57,7 @@ def test_what_locks_ends_with_3(centrode: Centrode, folder: Path) -> None:
     assert "nan" not in done.out
 
 
+@pytest.mark.drawn
 def test_the_sphere(centrode: Centrode, folder: Path) -> None:
     """Three components, the forces of the centre, and no column of directions."""
     done = centrode("reactions", "spherical-crank-rocker-rigid", "--samples", 13, "--out", "r")

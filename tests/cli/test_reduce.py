@@ -75,6 +75,7 @@ def test_nothing_is_written_unless_asked(centrode: Centrode, folder: Path) -> No
     assert len(table) == 1 + 2 + 4 + 5
 
 
+@pytest.mark.drawn
 def test_several_drives(centrode: Centrode, folder: Path) -> None:
     (folder / "arm.toml").write_text(ARM)
     done = centrode("reduce", "arm.toml", "--samples", 5, "--out", "result")
@@ -161,6 +162,7 @@ def test_a_run_without_a_machine_says_where_loads_are(centrode: Centrode, tmp_pa
     assert "centrode reduce" in done.out
 
 
+@pytest.mark.drawn
 def test_the_sphere(centrode: Centrode, folder: Path) -> None:
     """The thesis's crank-rocker: parts by link and load, tables and figures."""
     done = centrode("reduce", "spherical-crank-rocker-rigid", "--out", "result", "--samples", "37")

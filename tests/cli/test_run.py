@@ -56,6 +56,7 @@ def numbers(text: str) -> list[float]:
     return [float(n) for n in re.findall(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?", re.sub(r"\([^()]*deg\)", "", text))]
 
 
+@pytest.mark.drawn
 def test_everything_is_written_and_said(centrode: Centrode, folder: Path) -> None:
     done = centrode("run", "slider-between-cranks", "--out", "result", "--samples", "5")
     assert done.code == 0
@@ -179,6 +180,7 @@ def test_a_range_runs_backwards_and_below_zero(centrode: Centrode, folder: Path)
     assert drive == pytest.approx([math.pi / 18, -math.pi / 18], abs=1e-15)
 
 
+@pytest.mark.drawn
 def test_one_sample(centrode: Centrode, folder: Path) -> None:
     assert centrode("run", "kite", "--out", "r", "--samples", "1").code == 0
     assert len(rows_of(folder / "r")) == 1

@@ -132,8 +132,8 @@ def test_usage_errors_end_with_2_and_print_nothing(centrode: Run, arguments: lis
     assert "Usage:" in done.stderr or done.stderr.startswith("Error: ")
 
 
-def test_version(centrode: Run) -> None:
-    assert centrode("--version").stdout == "centrode, version 0.1.0\n"
+def test_version(process: Run) -> None:
+    assert process("--version").stdout == "centrode, version 0.1.0\n"
 
 
 PIPED = """

@@ -145,8 +145,8 @@ def test_clicks_own_sentences_are_translated(
             assert sentence in done.stdout + done.stderr
 
 
-def test_choice_of_the_option_wins_over_the_environment(centrode: Run) -> None:
-    assert "Usage:" in centrode("--lang", "en", "--help", LANG="ru_RU.UTF-8").stdout
+def test_choice_of_the_option_wins_over_the_environment(process: Run, centrode: Run) -> None:
+    assert "Usage:" in process("--lang", "en", "--help", LANG="ru_RU.UTF-8").stdout
     assert "Використання:" in centrode("examples", "--help", "--lang", "uk", LANG="ru_RU.UTF-8").stdout
 
 
@@ -157,8 +157,8 @@ def test_unknown_language_ends_with_2_in_the_language_of_the_environment(centrod
     assert "Неверное значение '--lang'" in done.stderr
 
 
-def test_a_terminal_without_cyrillic_gets_question_marks(centrode: Run) -> None:
-    done = centrode("--lang", "ru", "--help", PYTHONIOENCODING="latin-1")
+def test_a_terminal_without_cyrillic_gets_question_marks(process: Run) -> None:
+    done = process("--lang", "ru", "--help", PYTHONIOENCODING="latin-1")
     assert done.returncode == 0
     assert "?????????" in done.stdout
 

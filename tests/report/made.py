@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import Any
-
 import numpy as np
-import pytest
 
-from centrode.render.document import figures
 from centrode.render.document.blocks import (
     Block,
     Chapter,
@@ -92,21 +86,3 @@ def report(text: str = HOSTILE, language: str = "en") -> Report:
             Chapter("two", "Two", missing=text),
         ),
     )
-
-
-class Blank:
-    """A canvas that lays nothing out, for tests of what stands beside the pictures."""
-
-    def __init__(self, figure: object) -> None:
-        self.figure = figure
-
-    def print_svg(self, stream: Any, **_metadata: object) -> None:
-        stream.write(svg(100, 100))
-
-
-@contextmanager
-def undrawn() -> Iterator[None]:
-    """Context in which curves are made but not rendered, which is what most of a report's time goes to."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(figures, "FigureCanvasSVG", Blank)
-        yield

@@ -47,6 +47,7 @@ def test_the_table_of_routes_is_the_printed_one() -> None:
         assert row[1] == printed[angle]["rho_mm"]
 
 
+@pytest.mark.drawn
 def test_every_chapter_is_there_and_its_checks_hold(wheel: ReportStudy) -> None:
     made = {key: CHAPTERS[key].make(wheel) for key in CAM}
     assert all(chapter is not None and not chapter.missing for chapter in made.values())

@@ -179,6 +179,7 @@ def test_every_follower_has_all_chapters(follower: str) -> None:
         assert failed == [], name
 
 
+@pytest.mark.drawn
 @pytest.mark.parametrize("name", ["valve-cam", "indexing-cam"])
 def test_chapters_of_the_examples(name: str) -> None:
     report = ct.report(ct.load_cam(name))

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from blank_canvas import blank_pictures
 from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph, Picture, Table
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters.forces import by_links, reduced_sums
 from centrode.report.making import report
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
-from report.made import undrawn
 from report.typst_reading import TypstReader
 
 FORCES = (
@@ -46,13 +46,13 @@ def value_of(part: str) -> float | None:
 
 @pytest.fixture(scope="module")
 def press() -> dict[str, Chapter]:
-    with undrawn():
+    with blank_pictures():
         return {chapter.name: chapter for chapter in made("six-bar-press-printed", FORCES, digits=DIGITS)}
 
 
 @pytest.fixture(scope="module")
 def corrected() -> dict[str, Chapter]:
-    with undrawn():
+    with blank_pictures():
         return {chapter.name: chapter for chapter in made("six-bar-press", FORCES)}
 
 
@@ -100,8 +100,7 @@ def test_numbers_put_in_give_the_numbers_told(press: dict[str, Chapter]) -> None
 
 
 def test_all_checks_hold(corrected: dict[str, Chapter]) -> None:
-    with undrawn():
-        engine = made("single-cylinder-engine", ("reduction", "reactions", "force-polygons"))
+    engine = made("single-cylinder-engine", ("reduction", "reactions", "force-polygons"))
     found = [one for chapter in (*corrected.values(), *engine) for one in blocks_of(chapter, Check)]
     assert len(found) >= 15
     assert [one.text for one in found if not one.holds] == []
@@ -129,6 +128,7 @@ def test_centres_of_mass_beside_the_line_of_their_link() -> None:
     assert len(checks) == 4 and all(one.holds for one in checks)
 
 
+@pytest.mark.drawn
 def test_several_drives_and_laws_have_their_chapters() -> None:
     text = """
 [frame.points]
@@ -188,6 +188,7 @@ def test_reactions_that_cannot_be_had_fail_only_where_they_are_asked_for() -> No
     assert "plain sum" in asked.missing
 
 
+@pytest.mark.drawn
 def test_decimals_and_minus_signs_of_the_language() -> None:
     english = re.compile(r"\d\.\d")
     ascii_minus = re.compile(r"(?<![\w–])-\d")

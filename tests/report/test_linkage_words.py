@@ -128,6 +128,7 @@ def test_drawings_keep_their_scale() -> None:
     assert not [text for axes in figure.axes[:1] for text in axes.texts if text.get_position()[0] >= 160.0]
 
 
+@pytest.mark.drawn
 def test_pictures_repeat() -> None:
     options = ReportOptions(chapters=("positions", "graphic"))
     one, other = (report(ct.example("crank-rocker"), options, language="en") for _time in range(2))
@@ -171,6 +172,7 @@ points = ["B-1", "P’"]
 """
 
 
+@pytest.mark.drawn
 def test_names_of_all_kinds_are_shown_as_they_are() -> None:
     mechanism = ct.parse_mechanism(NAMES)
     drawn = set(LINKAGES) - {"plots"}
