@@ -17,12 +17,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tools.moves", description=__doc__)
     parser.add_argument("table", type=Path)
     parser.add_argument("--check", action="store_true", help="write nothing; print what the table leaves open")
+    parser.add_argument("--no-catalogues", action="store_true", help="leave the catalogues' places as they are")
     parser.add_argument("--sizes", action="store_true", help="print the lines of the new modules")
     arguments = parser.parse_args()
     root = Path.cwd()
     try:
         moves = Moves(read_table(arguments.table), repository(root))
         texts, gone = moves.results()
+        moves.questions += [f"a circle: {' <- '.join(circle)}" for circle in moves.circles()]
     except Unresolved as question:
         print(question, file=sys.stderr)
         return 1
@@ -37,11 +39,11 @@ def main() -> int:
     if moves.questions:
         return 1
     if not arguments.check:
-        write(root, texts, gone)
+        write(root, texts, gone, not arguments.no_catalogues)
     return 0
 
 
-def write(root: Path, texts: dict[Path, str], gone: set[Path]) -> None:
+def write(root: Path, texts: dict[Path, str], gone: set[Path], catalogues: bool) -> None:
     """Write and remove files, drop folders that are left without code, sort imports, format, renew the catalogues."""
     for path in gone:
         (root / path).unlink()
@@ -54,7 +56,7 @@ def write(root: Path, texts: dict[Path, str], gone: set[Path]) -> None:
     ruff = [sys.executable, "-m", "ruff"]
     subprocess.run([*ruff, "check", "--quiet", "--fix", "--select", "I,F401", *code], cwd=root, check=False)
     subprocess.run([*ruff, "format", "--quiet", *code], cwd=root, check=True)
-    if (root / "tools" / "catalogues.py").exists():
+    if catalogues and (root / "tools" / "catalogues.py").exists():
         subprocess.run([sys.executable, "tools/catalogues.py", "update"], cwd=root, check=False)
 
 

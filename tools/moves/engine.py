@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 import re
 import textwrap
 from collections import Counter
@@ -197,11 +198,12 @@ class Moves:
             module = absolute(source, statement) if isinstance(statement, ast.ImportFrom) else ""
             name = imported.alias.name
             bound = imported.alias.asname or name
+            meaning = name if module or imported.alias.asname else name.split(".")[0]
             if chosen:
                 plan.changes[at] = bound = chosen
                 plan.changed.add(statement)
             lines.append((Line(module, name, bound), imported.typing_only))
-            key: Key = ("outside", module, name)
+            key: Key = ("outside", module, meaning)
         elif target.name is None:
             new = self.new_module(target.module)
             key = ("module", new)
@@ -293,7 +295,12 @@ class Moves:
         """Whether two definitions are the same words with the same meanings."""
         if one == other:
             return True
-        if not one or not other or one[0] != "definition" or other[0] != "definition" or one[2] != other[2]:
+        if not one or not other or one[0] != "definition" or other[0] != "definition":
+            return False
+        values = self._value(*one[1:]), self._value(*other[1:])
+        if None not in values:
+            return values[0] == values[1]
+        if one[2] != other[2]:
             return False
         first, second = self.modules[one[1]].definitions.get(one[2]), self.modules[other[1]].definitions.get(other[2])
         if not first or not second or [ast.dump(s) for s in first] != [ast.dump(s) for s in second]:
@@ -302,6 +309,29 @@ class Moves:
         return all(
             self._are_alike(self._key(one[1], name), self._key(other[1], name)) for name in used - {one[2]}
         )
+
+    def _value(self, module: str, name: str) -> str | None:
+        """The value of an alias or a constant, with every name in it spelled out; None of anything else."""
+        key = self._key(module, name)
+        if key is None:
+            return name
+        if key[0] != "definition":
+            return ".".join(part for part in key[1:] if part)
+        if key[1:] != (module, name):
+            return self._value(*key[1:])
+        statements = self.modules[module].definitions[name]
+        statement = statements[0]
+        if len(statements) > 1 or not isinstance(statement, ast.Assign | ast.AnnAssign) or statement.value is None:
+            return None
+        kinds = (ast.Constant, ast.Name, ast.Attribute, ast.Subscript, ast.Tuple, ast.expr_context)
+        if not all(isinstance(node, kinds) for node in ast.walk(statement.value)):
+            return None
+        value = copy.deepcopy(statement.value)
+        for node in ast.walk(value):
+            if isinstance(node, ast.Name):
+                key = self._key(module, node.id)
+                node.id = self._value(module, node.id) or ".".join(key[1:] if key else (node.id,))
+        return ast.unparse(value)
 
     def _key(self, module: str, name: str) -> Key | None:
         """What a name of a module means there."""
@@ -336,6 +366,34 @@ class Moves:
         while len(done) < len(parts):
             done.append(next(part for part in parts if part not in done and needs[part] <= set(done)))
         return done
+
+    def circles(self) -> list[list[str]]:
+        """Modules that would import each other as they are loaded."""
+        needs: dict[str, set[str]] = {}
+        for source in self.modules.values():
+            plan = self.by_module.get(source.module)
+            here = self.new_module(source.module or "")
+            found = needs.setdefault(here, set())
+            if plan:
+                for statement, lines in plan.lines.items():
+                    if statement in source.tree.body:
+                        found |= {f"{line.module}.{line.name}" for line, _t in lines}
+                        found |= {line.module for line, _t in lines}
+            else:
+                for match in re.finditer(r"(?m)^from (centrode[\w.]*) import ([^(\n]+)", source.text):
+                    found.add(match[1])
+                    found |= {f"{match[1]}.{name.split()[0].rstrip(',')}" for name in match[2].split(",")}
+                found |= set(re.findall(r"(?m)^from (centrode[\w.]*) import \(", source.text))
+        graph = {here: (found & set(needs)) - {here, PACKAGE} for here, found in needs.items()}
+        circles = []
+        while True:
+            try:
+                list(TopologicalSorter(graph).static_order())
+            except CycleError as error:
+                circles.append(error.args[1])
+                graph[error.args[1][1]] -= {error.args[1][0]}
+            else:
+                return circles
 
     # -- edits
 
