@@ -16,8 +16,12 @@ def main() -> int:
     """Make the moves, or with --check say what they would leave open."""
     parser = argparse.ArgumentParser(prog="python -m tools.moves", description=__doc__)
     parser.add_argument("table", type=Path)
-    parser.add_argument("--check", action="store_true", help="write nothing; print what the table leaves open")
-    parser.add_argument("--no-catalogues", action="store_true", help="leave the catalogues' places as they are")
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; print what the table leaves open"
+    )
+    parser.add_argument(
+        "--no-catalogues", action="store_true", help="leave the catalogues' places as they are"
+    )
     parser.add_argument("--sizes", action="store_true", help="print the lines of the new modules")
     arguments = parser.parse_args()
     root = Path.cwd()

@@ -108,7 +108,9 @@ class Moves:
             if module in self.modules and name not in self.modules[module].names.module.bound:
                 self.notes.append(f"{module} has no {name}")
         self._relevant = self._mention()
-        self.plans = {path: self._plan(source) for path, source in sources.items() if self._is_touched(source)}
+        self.plans = {
+            path: self._plan(source) for path, source in sources.items() if self._is_touched(source)
+        }
         self.by_module = {plan.source.module: plan for plan in self.plans.values() if plan.source.module}
         for new in self.parts:
             self._collisions(new)
@@ -302,7 +304,10 @@ class Moves:
             return values[0] == values[1]
         if one[2] != other[2]:
             return False
-        first, second = self.modules[one[1]].definitions.get(one[2]), self.modules[other[1]].definitions.get(other[2])
+        first, second = (
+            self.modules[one[1]].definitions.get(one[2]),
+            self.modules[other[1]].definitions.get(other[2]),
+        )
         if not first or not second or [ast.dump(s) for s in first] != [ast.dump(s) for s in second]:
             return False
         used = {node.id for statement in first for node in ast.walk(statement) if isinstance(node, ast.Name)}
@@ -321,7 +326,11 @@ class Moves:
             return self._value(*key[1:])
         statements = self.modules[module].definitions[name]
         statement = statements[0]
-        if len(statements) > 1 or not isinstance(statement, ast.Assign | ast.AnnAssign) or statement.value is None:
+        if (
+            len(statements) > 1
+            or not isinstance(statement, ast.Assign | ast.AnnAssign)
+            or statement.value is None
+        ):
             return None
         kinds = (ast.Constant, ast.Name, ast.Attribute, ast.Subscript, ast.Tuple, ast.expr_context)
         if not all(isinstance(node, kinds) for node in ast.walk(statement.value)):
@@ -342,9 +351,15 @@ class Moves:
             if imported.local == name and imported.scope is source.names.module:
                 target = self.target(source, imported)
                 if target is None:
-                    base = absolute(source, imported.statement) if isinstance(imported.statement, ast.ImportFrom) else ""
+                    base = (
+                        absolute(source, imported.statement)
+                        if isinstance(imported.statement, ast.ImportFrom)
+                        else ""
+                    )
                     return ("outside", base, imported.alias.name)
-                return ("definition", target.module, target.name) if target.name else ("module", target.module)
+                return (
+                    ("definition", target.module, target.name) if target.name else ("module", target.module)
+                )
         return None
 
     def ordered(self, new: str) -> list[str]:
@@ -511,7 +526,9 @@ class Moves:
 
     def _prose(self, plan: Plan) -> Iterator[Edit]:
         source = plan.source
-        words = {name: new for (scope, name), new in plan.changes.items() if scope.kind == "module" and name != new}
+        words = {
+            name: new for (scope, name), new in plan.changes.items() if scope.kind == "module" and name != new
+        }
         imports = [source.names.span(statement) for statement in plan.lines]
         for start, end, is_prose in source.prose():
             if any(a <= start < b for a, b in imports):
@@ -601,7 +618,8 @@ class Moves:
         relative = isinstance(statement, ast.ImportFrom) and statement.level
         if relative:
             lines = [
-                Line(f".{line.module.removeprefix(source.package + '.')}", line.name, line.local) for line in lines
+                Line(f".{line.module.removeprefix(source.package + '.')}", line.name, line.local)
+                for line in lines
             ]
         groups: dict[str, list[Line]] = {}
         for line in lines:
@@ -610,7 +628,8 @@ class Moves:
         for module, group in groups.items():
             stub = source.path.suffix == ".pyi"
             names = ", ".join(
-                line.name if line.name == line.local and not stub else f"{line.name} as {line.local}" for line in group
+                line.name if line.name == line.local and not stub else f"{line.name} as {line.local}"
+                for line in group
             )
             written.append(f"from {module} import {names}" if module else f"import {names}")
         if not written:
@@ -739,7 +758,9 @@ def _section(docstring: str) -> str:
     """A docstring as a comment above the part that it stood over."""
     written = ast.literal_eval(docstring.strip())
     lines = []
-    for line in textwrap.dedent(written if written.startswith("\n") else " " * 0 + written).strip().splitlines():
+    for line in (
+        textwrap.dedent(written if written.startswith("\n") else " " * 0 + written).strip().splitlines()
+    ):
         wrapped = textwrap.wrap(line, WIDTH - 2, break_long_words=False) or [""]
         lines += [f"# {part}".rstrip() for part in wrapped]
     return "\n".join(lines)
@@ -752,7 +773,7 @@ def _words(text: str, words: Mapping[str, str]) -> str:
     names = "|".join(sorted(map(re.escape, words), key=len, reverse=True))
     text = re.sub(rf"(?<!`)`({names})(?=[`.(])", lambda m: f"`{words[m[1]]}", text)
     return re.sub(
-        rf"(?m)^(\s+[\w, ]+ : )(.*)$",
+        r"(?m)^(\s+[\w, ]+ : )(.*)$",
         lambda m: m[1] + re.sub(rf"\b(?=[A-Z])({names})\b", lambda n: words[n[1]], m[2]),
         text,
     )

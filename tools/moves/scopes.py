@@ -277,7 +277,10 @@ class Names(ast.NodeVisitor):
         self._function(node, "<lambda>", [node.body])
 
     def _function(
-        self, node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda, name: str, body: list[ast.stmt] | list[ast.expr]
+        self,
+        node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda,
+        name: str,
+        body: list[ast.stmt] | list[ast.expr],
     ) -> None:
         given = node.args
         parameters = [*given.posonlyargs, *given.args, *given.kwonlyargs]
