@@ -370,9 +370,8 @@ class Moves:
             plan = self.by_module[part]
             for imported in plan.source.names.imports:
                 target = self.target(plan.source, imported)
-                if target is not None and target.module in needs and not imported.typing_only:
-                    if target.module != part:
-                        needs[part].add(target.module)
+                if target is not None and target.module in set(needs) - {part} and not imported.typing_only:
+                    needs[part].add(target.module)
         try:
             list(TopologicalSorter(needs).static_order())
         except CycleError as error:
@@ -537,6 +536,8 @@ class Moves:
             new = self.dotted_names(old, not is_prose)
             if is_prose:
                 new = _words(new, {**self._classes, **words} if source.is_python else self._classes)
+            elif source.text[:start].endswith("cast("):  # a type in quotes
+                new = re.sub(r"\w+", lambda m: words.get(m[0], m[0]), new)
             if new != old:
                 yield Edit(start, end, new)
 
@@ -552,9 +553,9 @@ class Moves:
         found: dict[str, str] = {}
         for (module, name), new in self.table.names.items():
             source = self.modules.get(module)
-            if source and any(isinstance(s, ast.ClassDef) for s in source.definitions.get(name, [])):
-                if self._class_counts[name] == 1:
-                    found[name] = new
+            statements = source.definitions.get(name, []) if source else []
+            if self._class_counts[name] == 1 and any(isinstance(s, ast.ClassDef) for s in statements):
+                found[name] = new
         return found
 
     # -- files
