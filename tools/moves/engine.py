@@ -536,7 +536,7 @@ class Moves:
             new = self.dotted_names(old, not is_prose)
             if is_prose:
                 new = _words(new, {**self._classes, **words} if source.is_python else self._classes)
-            elif source.text[:start].endswith("cast("):  # a type in quotes
+            elif source.text[max(0, start - 9) : start].rstrip().endswith(("cast(", "Alias =")):  # a type in quotes
                 new = re.sub(r"\w+", lambda m: words.get(m[0], m[0]), new)
             if new != old:
                 yield Edit(start, end, new)
