@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import centrode as ct
 from centrode.algebra.arrays import ARRAYS
-from centrode.geometry import slopes
+from centrode.geometry import sphere
 from centrode.geometry.on_sphere import SPHERE, Circle
 from centrode.present.style import INK, MUTED, PALETTE, house_style
 
@@ -130,7 +130,7 @@ def _circles(axes: Axes) -> None:
     right /= np.linalg.norm(right)
     view = np.stack([right, np.cross(eye, right), eye])
     first, second = (one / np.linalg.norm(one) for one in CENTRES)
-    halves = [slopes.half(ARRAYS, arc) for arc in ARCS]
+    halves = [sphere.half(ARRAYS, arc) for arc in ARCS]
     met = [
         np.array(SPHERE.meet(Circle(tuple(first), halves[0]), Circle(tuple(second), halves[1]), root, root))
         for root in (np.sqrt, lambda radicand: -np.sqrt(radicand))

@@ -11,8 +11,7 @@ from centrode.dynamics.bodies import Centre, Radial
 from centrode.dynamics.pulls import Pull, Vector, couple, on_link, on_point
 from centrode.dynamics.states import Place, State
 from centrode.geometry.plane import turned
-from centrode.geometry.slopes import unit
-from centrode.geometry.sphere import cross, unit_vector
+from centrode.geometry.sphere import cross, unit, unit_vector
 from centrode.model.mechanism import FRAME
 from centrode.model.values import Placed
 

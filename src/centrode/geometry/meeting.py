@@ -1,25 +1,16 @@
-"""Where two loci meet: places by closed forms, their derivatives by the linear equations of each order."""
+"""Where circles and lines meet, in the plane or on the sphere, and how meeting points move.
+
+The formulas hold over any algebra.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Protocol, TypeAlias
 
-from centrode.algebra.bends import Bent, Cells
+from centrode.algebra.bends import Bent, Cells, least_bound, plus
 from centrode.algebra.jets import Jet
 from centrode.geometry import sphere
-from centrode.geometry.moving import (
-    AtDistance,
-    Number,
-    OnLine,
-    Place,
-    bent,
-    followed,
-    less,
-    times,
-    total,
-    value,
-    values,
-)
 from centrode.geometry.plane import (
     Circle,
     Line,
@@ -27,9 +18,209 @@ from centrode.geometry.plane import (
     Vector,
     circle_meets_line,
     circles_meet,
+    is_literal_zero,
     radicand_of_circle_and_line,
     radicand_of_circles,
 )
+
+# Points that move: what a locus says of a point's next coefficient, the ones before being known.
+#
+# What the k-th derivative of a locus says of the k-th coefficient of a point is linear in it, and the
+# gradients are
+# the same for all orders: those of the velocities. So no closed form needs to be differentiated, and
+# derivatives of
+# any order cost a third of what that would take. Textbook: Uicker, Pennock, Shigley, Theory of Machines and
+# Mechanisms, the method of kinematic coefficients (loop equations differentiated); any order: Griewank and
+# Walther,
+# Evaluating Derivatives (2nd ed., 2008), chapters 13 and 15.
+
+Number: TypeAlias = Any
+Place: TypeAlias = Sequence[Number]
+
+
+class Moving(Protocol):
+    """A locus that a moving point stays on."""
+
+    @property
+    def gradient(self) -> Place:
+        """What the locus multiplies every coefficient of the point by."""
+
+    def next(self, k: int) -> Number:
+        """The gradient multiplied by the point's k-th coefficient, those before being known."""
+
+    def add(self, coefficient: Place, k: int) -> None:
+        """Take the point's k-th coefficient."""
+
+    def pull(self, cells: Cells) -> Pull:
+        """Bound over cells of the gradient multiplied by the point's acceleration, its velocity being known."""
+
+    def reach(self, cells: Cells) -> Number:
+        """Bound of the gradient's length over cells."""
+
+
+Pull: TypeAlias = tuple[Number, Number, Number]
+"""Coefficients of a bound that grows with that of the point's acceleration, B: of 1, B and B^2."""
+
+
+class AtDistance:
+    """A point at a distance from a centre: arm . arm = distance^2, the arm from the centre to the point."""
+
+    def __init__(self, centre: Place, squared: Number, place: Place) -> None:
+        self.centre, self.squared = centre, squared
+        self.arm = [apart(place, values(centre))]
+        self.gradient = self.arm[0]
+
+    def next(self, k: int) -> Number:
+        known = dot(self.gradient, coefficients(self.centre, k))
+        inner = total(dot(self.arm[i], self.arm[k - i]) for i in range(1, k))
+        return total((known, times(0.5, less(coefficient(self.squared, k), inner))))
+
+    def add(self, coefficient: Place, k: int) -> None:
+        self.arm.append(apart(coefficient, coefficients(self.centre, k)))
+
+    def pull(self, cells: Cells) -> Pull:
+        """Of arm . (x'' - c'') = (r^2)''/2 - |x' - c'|^2."""
+        carried = times(self.reach(cells), bend(self.centre, cells))
+        velocity = plus(length(self.arm[1], cells), times(cells.half, bend(self.centre, cells)))
+        known = plus(plus(carried, times(0.5, bend((self.squared,), cells))), times(velocity, velocity))
+        return known, times(2.0 * cells.half, velocity), cells.half * cells.half
+
+    def reach(self, cells: Cells) -> Number:
+        return cells.m.sqrt(self.squared.most if isinstance(self.squared, Bent) else self.squared)
+
+
+class OnLine:
+    """A point on a line in the plane: normal . arm = 0, the arm from a point of the line to the point."""
+
+    def __init__(self, through: Place, direction: Place, place: Place) -> None:
+        self.through, self.direction = through, direction
+        self.arm = [apart(place, values(through))]
+        self.gradient = self._normal(0)
+
+    def next(self, k: int) -> Number:
+        known = dot(self.gradient, coefficients(self.through, k))
+        return less(known, total(dot(self._normal(i), self.arm[k - i]) for i in range(1, k + 1)))
+
+    def add(self, coefficient: Place, k: int) -> None:
+        self.arm.append(apart(coefficient, coefficients(self.through, k)))
+
+    def pull(self, cells: Cells) -> Pull:
+        """Of n . (x'' - t'') = -2 n' . (x' - t') - n'' . (x - t)."""
+        line, turn = bend(self.through, cells), bend(self.direction, cells)
+        if all(not isinstance(x, Jet) for x in self.direction):
+            return line, 0.0, 0.0
+        rate = plus(length(self._normal(1), cells), times(cells.half, turn))
+        velocity = plus(length(self.arm[1], cells), times(cells.half, line))
+        away = plus(
+            length(self.arm[0], cells),
+            plus(times(cells.half, length(self.arm[1], cells)), times(cells.sagitta, line)),
+        )
+        known = plus(line, plus(times(2.0 * rate, velocity), times(turn, away)))
+        return known, plus(times(2.0 * rate, cells.half), times(turn, cells.sagitta)), 0.0
+
+    def reach(self, cells: Cells) -> Number:
+        return 1.0
+
+    def _normal(self, k: int) -> Place:
+        x, y = coefficients(self.direction, k)
+        return less(0.0, y), x
+
+
+def followed(
+    place: Place, loci: Sequence[Moving], solved: Callable[[Sequence[Number]], Place], order: int
+) -> tuple[Jet, ...]:
+    """A place as series, one for each axis; `solved` gives the vector whose products with the gradients are known."""
+    found = [tuple(place)]
+    for k in range(1, order + 1):
+        found.append(tuple(solved([locus.next(k) for locus in loci])))
+        for locus in loci:
+            locus.add(found[k], k)
+    return tuple(Jet(axis) for axis in zip(*found, strict=True))
+
+
+def bent(
+    place: Sequence[Jet], loci: Sequence[Moving], ways: Sequence[Number], determinant: Number, cells: Cells
+) -> tuple[Bent, ...]:
+    """A place that was followed, with a bound of its acceleration over cells.
+
+    The acceleration is the sum of what the loci pull at it, each along its way: `ways` bound the lengths of these,
+    `determinant` is what the determinant of the gradients does not fall below. A bound B of the acceleration is one of
+    the velocity's change as well, on which the pulls depend: it is the least with B determinant = sum of all.
+    """
+    sums: list[Number] = [0.0, 0.0, 0.0]
+    for locus, way in zip(loci, ways, strict=True):
+        sums = [plus(one, times(way, other)) for one, other in zip(sums, locus.pull(cells), strict=True)]
+    known, linear, squared = sums
+    least = least_bound(known, determinant - linear, squared, cells.m)
+    return tuple(Bent(axis.coefficients[0], axis.coefficients[1], least, cells) for axis in place)
+
+
+def bend(place: Place, cells: Cells) -> Number:
+    """Bound of a place's acceleration over cells."""
+    return length([x.bend for x in place if isinstance(x, Bent)], cells)
+
+
+def length(place: Place, cells: Cells) -> Number:
+    """Length of a vector of plain numbers; infinite numbers have infinite ones."""
+    some = [x for x in place if not is_literal_zero(x)]
+    if not some:
+        return 0.0
+    return cells.m.abs(some[0]) if len(some) == 1 else cells.m.sqrt(total(x * x for x in some))
+
+
+def value(x: Number) -> Number:
+    """A number without its derivatives."""
+    return x.value if isinstance(x, Jet) else x
+
+
+def values(place: Place) -> tuple[Number, ...]:
+    """A place without its derivatives."""
+    return tuple(value(x) for x in place)
+
+
+def coefficient(x: Number, k: int) -> Number:
+    """The k-th coefficient; plainly zero of what stands still."""
+    if isinstance(x, Jet):
+        return x.coefficients[k]
+    return 0.0 if k else x
+
+
+def coefficients(place: Place, k: int) -> tuple[Number, ...]:
+    """The k-th coefficient of a place."""
+    return tuple(coefficient(x, k) for x in place)
+
+
+# arithmetic in which what is plainly zero costs nothing
+
+
+def times(a: Number, b: Number) -> Number:
+    """Product."""
+    return 0.0 if is_literal_zero(a) or is_literal_zero(b) else a * b
+
+
+def less(a: Number, b: Number) -> Number:
+    """Difference."""
+    if is_literal_zero(b):
+        return a
+    return -b if is_literal_zero(a) else a - b
+
+
+def total(terms: Iterable[Number]) -> Number:
+    """Sum."""
+    found: Number = 0.0
+    for term in terms:
+        found = term if is_literal_zero(found) else found if is_literal_zero(term) else found + term
+    return found
+
+
+def dot(a: Place, b: Place) -> Number:
+    """Scalar product."""
+    return total(times(x, y) for x, y in zip(a, b, strict=True))
+
+
+def apart(a: Place, b: Place) -> tuple[Number, ...]:
+    """Vector from b to a."""
+    return tuple(less(x, y) for x, y in zip(a, b, strict=True))
 
 
 def meet_circles(one: Circle, other: Circle, root: Root) -> Vector:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import atan2, tau
 from typing import NamedTuple
 
-from centrode.geometry import slopes, sphere
+from centrode.geometry import sphere
 from centrode.geometry.meeting import meet_circles_on_sphere
 from centrode.geometry.space import Namespace, Number, Reference, Root, Row, Rows, Space
 from centrode.geometry.sphere import (
@@ -72,9 +72,9 @@ class Sphere:
         first, second = points[:2]
         pivot, along = self.place(m, pose, first), tangent_inside(m, first, second)
         zero = tangent(pivot, towards[0])
-        cosine, sine = slopes.components(carried(pose, along), zero, pivot)
+        cosine, sine = sphere.components(carried(pose, along), zero, pivot)
         # the arm's length is a dimension: a link that does not fit has no unit rotor, as in the plane
-        factor = 1.0 / (slopes.length(m, along) * slopes.length(m, zero))
+        factor = 1.0 / (sphere.length(m, along) * sphere.length(m, zero))
         return cosine * factor, sine * factor
 
     def pose_by_two_points(
@@ -94,9 +94,9 @@ class Sphere:
             return None
         first, second = points[:2]
         along = tangent_inside(m, first, second)
-        zero = slopes.unit(m, tangent(at[0], towards[0]))
+        zero = sphere.unit(m, tangent(at[0], towards[0]))
         arm = sphere.turned(m, at[0], zero, (m.cos(angle), m.sin(angle)))
-        return attitude_on(unit_vector(m, first), along, at[0], arm, slopes.length(m, along))
+        return attitude_on(unit_vector(m, first), along, at[0], arm, sphere.length(m, along))
 
     def turned_pose(
         self,
@@ -107,19 +107,19 @@ class Sphere:
         at: Vector,
         reference: Reference,
     ) -> Attitude:
-        first, second, base_first, base_second = slopes.given(reference)
+        first, second, base_first, base_second = sphere.given(reference)
         # the arm of the reference is a dimension: so a link that does not fit is stretched, and tells
-        length = slopes.length(m, tangent_inside(m, base_first, base_second))
+        length = sphere.length(m, tangent_inside(m, base_first, base_second))
         towards = sphere.turned(m, at, tangent(at, self.place(m, base, base_second)), rotor)
         along = tangent_inside(m, first, second)
-        return attitude_on(unit_vector(m, first), along, at, towards, length * slopes.length(m, along))
+        return attitude_on(unit_vector(m, first), along, at, towards, length * sphere.length(m, along))
 
     def aim(
         self, m: Namespace, pivot: Coordinates, at: Vector, curve: Curve, target: Vector, root: Root
     ) -> Attitude:
         pole, (radius,) = curve
         around_pivot = sphere.half_arc(m, pivot, pole)
-        at_pole = meet_circles_on_sphere(at, around_pivot, target, slopes.half(m, radius), root)
+        at_pole = meet_circles_on_sphere(at, around_pivot, target, sphere.half(m, radius), root)
         return sphere.attitude_by_two_points(m, pivot, pole, at, at_pole)
 
     def circle(self, m: Namespace, centre: Vector, first: Coordinates, second: Coordinates) -> Circle:
@@ -127,7 +127,7 @@ class Sphere:
 
     def rail(self, m: Namespace, pose: Attitude, curve: Curve) -> Circle:
         pole, (radius,) = curve
-        return Circle(self.place(m, pose, pole), slopes.half(m, radius))
+        return Circle(self.place(m, pose, pole), sphere.half(m, radius))
 
     def stop(self, m: Namespace, pose: Attitude, curve: Curve, displacement: Number) -> Circle:
         pole, (radius,) = curve
@@ -150,7 +150,7 @@ class Sphere:
         return sphere.arc(m, a, b)
 
     def leverage(self, m: Namespace, first: Coordinates, second: Coordinates) -> Number:
-        return slopes.length(m, tangent_inside(m, first, second))
+        return sphere.length(m, tangent_inside(m, first, second))
 
     def reach(self, m: Namespace, curve: Curve, at: Vector) -> Number:
         pole, (radius,) = curve
@@ -163,11 +163,11 @@ class Sphere:
         return self.slid(m, point, pose, curve, 0.0)
 
     def in_link(self, m: Namespace, point: Vector, pose: Attitude, local: Coordinates) -> list[Number]:
-        return slopes.stereographic(m, point, pose, local)
+        return sphere.stereographic(m, point, pose, local)
 
     def in_link_rows(self, m: Namespace, point: Vector, pose: Attitude, local: Coordinates) -> list[Rows]:
-        gradients = slopes.stereographic_slopes(m, point, pose, local)
-        return [slopes.of_both(m, point, gradient) for gradient in gradients]
+        gradients = sphere.stereographic_slopes(m, point, pose, local)
+        return [sphere.of_both(m, point, gradient) for gradient in gradients]
 
     def apart(self, m: Namespace, point: Vector, pose: Attitude, local: Coordinates) -> list[Number]:
         return list(subtract(point, self.place(m, pose, local)))
@@ -177,21 +177,21 @@ class Sphere:
         return sphere.arc(m, self.place(m, pose, pole), point) - radius
 
     def on_guide_row(self, m: Namespace, point: Vector, pose: Attitude, curve: Curve) -> Rows:
-        return slopes.of_both(m, point, slopes.away(m, point, self.place(m, pose, curve[0])))
+        return sphere.of_both(m, point, sphere.away(m, point, self.place(m, pose, curve[0])))
 
     def turn(
         self, m: Namespace, pose: Attitude, base: Attitude, rotor: tuple[Number, Number], reference: Reference
     ) -> Number:
-        cosine, sine = slopes.components(*slopes.arms(m, pose, base, reference))
+        cosine, sine = sphere.components(*sphere.arms(m, pose, base, reference))
         return m.atan2(sine * rotor[0] - cosine * rotor[1], cosine * rotor[0] + sine * rotor[1])
 
     def turn_row(self, m: Namespace, pose: Attitude, base: Attitude, reference: Reference) -> Rows:
-        slope = slopes.turning(*slopes.arms(m, pose, base, reference))
+        slope = sphere.turning(*sphere.arms(m, pose, base, reference))
         return slope, times(-1.0, slope)
 
     def slid(self, m: Namespace, point: Vector, pose: Attitude, curve: Curve, displacement: Number) -> Number:
         pole, (radius,) = curve
-        ahead, left, _north, _west = slopes.azimuth(m, point, pose, pole)
+        ahead, left, _north, _west = sphere.azimuth(m, point, pose, pole)
         sine = m.sin(radius)
         if sphere.is_literal(displacement, 0.0):
             return sine * m.atan2(left, ahead)
@@ -200,9 +200,9 @@ class Sphere:
 
     def slid_row(self, m: Namespace, point: Vector, pose: Attitude, curve: Curve) -> Rows:
         pole, (radius,) = curve
-        ahead, left, north, west = slopes.azimuth(m, point, pose, pole)
+        ahead, left, north, west = sphere.azimuth(m, point, pose, pole)
         factor = m.sin(radius) / (ahead * ahead + left * left)
-        return slopes.of_both(m, point, times(factor, subtract(times(ahead, west), times(left, north))))
+        return sphere.of_both(m, point, times(factor, subtract(times(ahead, west), times(left, north))))
 
     def moved_point(self, m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
         first, second = basis(m, point)

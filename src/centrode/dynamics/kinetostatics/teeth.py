@@ -9,7 +9,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.dynamics.pulls import Pull, Vector, couple, on_link
 from centrode.geometry import sphere as space
 from centrode.geometry.plane import dot, subtract
-from centrode.geometry.slopes import unit
+from centrode.geometry.sphere import unit
 from centrode.model.mechanism import FRAME, Gear, Mechanism
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gear_ratios import GearRatio
