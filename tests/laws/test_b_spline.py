@@ -14,9 +14,8 @@ from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.laws import Segment, SegmentedLaw
-from centrode.laws.b_spline import b_spline
-from centrode.laws.conditions import Condition, polynomial
-from centrode.laws.pieces import Piece, Pieces
+from centrode.laws.rises import Piece, Pieces
+from centrode.laws.segments import Condition, b_spline, polynomial
 
 EPS = sys.float_info.epsilon
 JETS = JetFunctions(ARRAYS)

@@ -9,8 +9,8 @@ import pytest
 
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
-from centrode.laws.conditions import Condition, polynomial
-from centrode.laws.pieces import Piece, Pieces
+from centrode.laws.rises import Piece, Pieces
+from centrode.laws.segments import Condition, polynomial
 
 EPS = sys.float_info.epsilon
 

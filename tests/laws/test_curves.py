@@ -13,7 +13,7 @@ from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.laws import CURVES, Curve
-from centrode.laws.pieces import Piece
+from centrode.laws.rises import Piece
 
 EPS = sys.float_info.epsilon
 JETS = JetFunctions(ARRAYS)

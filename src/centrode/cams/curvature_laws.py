@@ -14,8 +14,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
-from centrode.laws.spline import Cubic, spline
-from centrode.laws.table import TableLaw
+from centrode.laws.laws import Cubic, TableLaw, spline
 from centrode.locale import _
 
 Array = NDArray[np.float64]

@@ -1,8 +1,7 @@
 """Motion laws of one variable: what a drive does in time, and how a cam lifts, over any algebra."""
 
-from centrode.laws.curves import CURVES, Curve
-from centrode.laws.law import Law
-from centrode.laws.pieces import Piece
+from centrode.laws.laws import ShaftLaw, TableLaw, TextLaw, Uniform
+from centrode.laws.rises import CURVES, Curve, Law, Piece
 from centrode.laws.segments import (
     B_SPLINE,
     DEGREE,
@@ -14,10 +13,6 @@ from centrode.laws.segments import (
     Segment,
     SegmentedLaw,
 )
-from centrode.laws.shaft import ShaftLaw
-from centrode.laws.table import TableLaw
-from centrode.laws.text import TextLaw
-from centrode.laws.uniform import Uniform
 
 __all__ = [
     "B_SPLINE",

@@ -16,7 +16,7 @@ from centrode.report.chapters.followers.curves import PEAKS
 from centrode.report.chapters.followers.parts import letter_of, motion_of, rate
 
 if TYPE_CHECKING:
-    from centrode.laws.pieces import Piece
+    from centrode.laws.rises import Piece
     from centrode.model.cams.lifting import LiftSegment
     from centrode.report.study import ReportStudy
 
