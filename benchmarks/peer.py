@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.ready import Ready
+from centrode.structure.constraints import FRAME
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Meet, Rail, RigidPoint, Rod, TurnedLink, TwoPointLink
-from centrode.structure.positions import FRAME
 
 Array = npt.NDArray[np.float64]
 PRESENT = find_spec("pylinkage") is not None and find_spec("numba") is not None

@@ -19,7 +19,7 @@ from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.kinematics.spans import span_at
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose, subtract, turned
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.solve import Solved
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 
 def jet_positions(solved: Solved, sample: int) -> Positions:

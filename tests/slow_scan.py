@@ -13,7 +13,7 @@ import numpy as np
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.evaluate import FixedSigns, Kinematics
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 BASE = 4000
 """Places a turn to begin with."""

@@ -8,8 +8,7 @@ import pytest
 
 import centrode as ct
 from centrode.kinematics.ready import ready
-from centrode.structure.groups import Aim, Meet
-from centrode.structure.wheel_groups import Touch
+from centrode.structure.groups import Aim, Meet, Touch
 from drawn import errors
 
 CRANK = """

@@ -17,8 +17,8 @@ from centrode.kinematics.higher_class.newton import newton
 from centrode.kinematics.higher_class.system import Motion, System
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready, ready
+from centrode.structure.constraints import Entity, Positions
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Entity, Positions
 from mechanisms import EPS
 
 EXAMPLES = (

@@ -13,8 +13,7 @@ from centrode.geometry.plane import Pose
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Solved
-from centrode.structure.constraints import is_drive
-from centrode.structure.positions import Entity, Positions
+from centrode.structure.constraints import Entity, Positions, is_drive
 from centrode.structure.rank import jacobian
 from growing import descriptions, mechanism_of
 from jetted import jet_positions

@@ -15,12 +15,17 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose
-from centrode.structure.constraints import constraints_of, unknowns_of
+from centrode.structure.constraints import Positions, constraints_of, unknowns_of
 from centrode.structure.dimensions import dimensions_of
-from centrode.structure.matching import in_order, match, strong_components
 from centrode.structure.plan import structure_of
-from centrode.structure.positions import Positions
-from centrode.structure.rank import independent_rows, jacobian, random_realisation
+from centrode.structure.rank import (
+    in_order,
+    independent_rows,
+    jacobian,
+    match,
+    random_realisation,
+    strong_components,
+)
 from growing import descriptions, mechanism_of
 from mechanisms import EPS, Parts
 

@@ -8,8 +8,8 @@ import pytest
 
 import centrode as ct
 from centrode.structure.assur import assur_groups, structural_formula
-from centrode.structure.mobility import count
 from centrode.structure.plan import structure_of
+from centrode.structure.rank import count
 
 FORMULAS = {
     "andrews-squeezer": "I(OF) -> II(EF, BE) -> II(GE, AG) -> II(HE, AH)",

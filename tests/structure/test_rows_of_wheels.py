@@ -12,9 +12,8 @@ import centrode as ct
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import moved_point, moved_pose
 from centrode.kinematics.paths import JETS
-from centrode.structure.constraints import constraints_of, unknowns_of
+from centrode.structure.constraints import Entity, Positions, constraints_of, unknowns_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
-from centrode.structure.positions import Entity, Positions
 from centrode.structure.rank import random_realisation
 
 TRACKS: dict[str, dict[str, Any]] = {

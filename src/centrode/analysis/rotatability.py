@@ -24,8 +24,8 @@ from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.several_drives.holding import initial_values
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.structure.assur import name_of
 from centrode.structure.groups import links_of
-from centrode.structure.steps import name_of
 
 
 @dataclass(frozen=True)

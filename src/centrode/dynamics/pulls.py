@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from centrode.geometry import plane, sphere
-from centrode.structure.positions import FRAME, Entity
+from centrode.structure.constraints import FRAME, Entity
 
 Number: TypeAlias = Any
 Vector: TypeAlias = tuple[Number, ...]

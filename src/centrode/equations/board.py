@@ -21,7 +21,7 @@ from centrode.equations.lines import Line, Rod, lines_of
 from centrode.equations.places import ORIGIN, Place, polar
 from centrode.equations.sums import Sum
 from centrode.kinematics.ready import Ready
-from centrode.structure.positions import FRAME
+from centrode.structure.constraints import FRAME
 
 
 class Board(Lettering):

@@ -15,8 +15,8 @@ from centrode.equations.lines import Line, Rod
 from centrode.equations.places import polar
 from centrode.equations.sums import Sum
 from centrode.equations.ties import give_angles, ties_of
+from centrode.structure.constraints import FRAME
 from centrode.structure.groups import Group, links_of, points_of
-from centrode.structure.positions import FRAME
 
 Rank: TypeAlias = tuple[int, int]
 

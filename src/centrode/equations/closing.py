@@ -9,7 +9,7 @@ from centrode.equations.letters import Angle
 from centrode.equations.lines import Line, Rod, lines_of, rods_of
 from centrode.equations.places import Place, polar
 from centrode.equations.sums import Sum
-from centrode.structure.positions import FRAME
+from centrode.structure.constraints import FRAME
 
 
 class Closing:

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from centrode.equations.alphabet import Vector
 from centrode.geometry.plane import along
 from centrode.kinematics.ready import Ready
-from centrode.structure.constraints import DisplacementDrive, PointOnGuide
-from centrode.structure.cylinders import DistanceDrive
+from centrode.structure.constraints import Contact, DisplacementDrive, DistanceDrive, PointOnGuide
 from centrode.structure.gearing import Straight
-from centrode.structure.wheels import Contact
 
 
 @dataclass(frozen=True)

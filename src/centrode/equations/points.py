@@ -15,7 +15,7 @@ from centrode.equations.places import Place
 from centrode.equations.sphere_board import SphereBoard
 from centrode.equations.sums import ZERO, Sum
 from centrode.equations.turned import SpherePlace
-from centrode.structure.positions import FRAME
+from centrode.structure.constraints import FRAME
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from centrode.errors import InputError
 from centrode.kinematics.ready import Ready
 from centrode.locale import _
 from centrode.model.sphere import makes_arc, unit_vector
-from centrode.structure.positions import FRAME
+from centrode.structure.constraints import FRAME
 
 Vector = npt.NDArray[np.float64]
 

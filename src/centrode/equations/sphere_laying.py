@@ -18,6 +18,7 @@ from centrode.equations.sums import Sum
 from centrode.equations.turned import Axes
 from centrode.kinematics.ready import Ready
 from centrode.locale import _
+from centrode.structure.constraints import FRAME
 from centrode.structure.groups import (
     Group,
     Meet,
@@ -28,7 +29,6 @@ from centrode.structure.groups import (
     Turning,
     TwoPointLink,
 )
-from centrode.structure.positions import FRAME
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from typing import TypeAlias
 from centrode.equations.board import Board
 from centrode.equations.draft import Draft
 from centrode.equations.letters import Angle
-from centrode.structure.constraints import AngleDrive, NoTurning
-from centrode.structure.positions import FRAME
+from centrode.structure.constraints import FRAME, AngleDrive, NoTurning
 
 Tie: TypeAlias = AngleDrive | NoTurning
 """A constraint that gives the angle of one link from that of another."""

@@ -10,10 +10,8 @@ from centrode.equations.board import Board
 from centrode.equations.draft import Condition, Draft, Unknown
 from centrode.equations.letters import Angle, Letter
 from centrode.equations.sums import ZERO, Sum, Term
-from centrode.structure.gear_ratios import GearRatio
+from centrode.structure.constraints import FRAME, GearRatio, NoSlip
 from centrode.structure.gearing import Round, Straight
-from centrode.structure.positions import FRAME
-from centrode.structure.wheels import NoSlip
 
 Meshing: TypeAlias = GearRatio | NoSlip
 

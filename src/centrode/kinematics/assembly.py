@@ -31,10 +31,10 @@ from centrode.kinematics.sides import (
 )
 from centrode.kinematics.starting import Bounding, OneSide, Starting, undetermined
 from centrode.locale import _
+from centrode.structure.assur import name_of
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet, Newton, TwoPointLink, links_of, points_of
-from centrode.structure.positions import Positions
-from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any
 

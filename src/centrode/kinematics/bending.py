@@ -14,8 +14,8 @@ from centrode.kinematics.continuation import Continuation, Rough
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.mending import Windows, inside, numbers_of, set_numbers
 from centrode.kinematics.paths import JETS, Path
+from centrode.structure.constraints import Positions
 from centrode.structure.groups import Newton, links_of, points_of
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -6,10 +6,9 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.evaluate import Choices, Hooks
 from centrode.kinematics.groups import aim_curve, loci_of
 from centrode.locale import _
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Stroke
-from centrode.structure.positions import Positions
-from centrode.structure.wheel_groups import Touch
+from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Stroke, Touch
 
 
 def shortfall(group: Group, numbers: Dimensions, at: Positions) -> str:

@@ -10,8 +10,7 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.sampling import Samples
-from centrode.structure.positions import Positions
-from centrode.structure.wheels import Contact, contact_point
+from centrode.structure.constraints import Contact, Positions, contact_point
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

@@ -35,8 +35,8 @@ from centrode.kinematics.mending import (
     numbers_of,
     set_numbers,
 )
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -19,7 +19,7 @@ from centrode.kinematics.spans import Span
 from centrode.locale import speaking
 from centrode.model.files import mechanism_text
 from centrode.quantities import QUANTITIES
-from centrode.structure.steps import name_of
+from centrode.structure.assur import name_of
 from centrode.version import __version__
 
 Array: TypeAlias = npt.NDArray[np.float64]

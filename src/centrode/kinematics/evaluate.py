@@ -9,9 +9,9 @@ from typing import Any, TypeAlias
 from centrode.kinematics.groups import solve_group
 from centrode.kinematics.paths import Path
 from centrode.kinematics.wheels import Continued
+from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.plan import Structure
-from centrode.structure.positions import FRAME, Positions
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any

@@ -40,8 +40,8 @@ from centrode.kinematics.mesh import (
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.kinematics.zeros import Zeros
 from centrode.numerics.search import sign_changes
+from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Meet
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -6,12 +6,11 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.evaluate import Kinematics
 from centrode.locale import _
+from centrode.structure.constraints import Contact, Positions
 from centrode.structure.gearing import Straight
 from centrode.structure.groups import TwoPointLink
 from centrode.structure.plan import drives_against_mobility
-from centrode.structure.positions import Positions
 from centrode.structure.rank import residuals_at
-from centrode.structure.wheels import Contact
 
 RESIDUAL_TOLERANCE = 1e-9
 """Greatest residual of a closed mechanism, in units of its greatest length."""

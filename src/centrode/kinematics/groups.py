@@ -31,6 +31,7 @@ from centrode.kinematics.wheels import (
     touched_circle,
     touched_line,
 )
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import (
     Aim,
@@ -41,15 +42,16 @@ from centrode.structure.groups import (
     Rail,
     RigidPoint,
     Rod,
+    Rolloff,
     Slot,
     Stop,
     Stroke,
+    Touch,
+    Train,
     TurnedLink,
     Turning,
     TwoPointLink,
 )
-from centrode.structure.positions import Positions
-from centrode.structure.wheel_groups import Rolloff, Touch, Train
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any

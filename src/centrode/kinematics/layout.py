@@ -15,8 +15,8 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.geometry.space import Space
 from centrode.kinematics.evaluate import Kinematics
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

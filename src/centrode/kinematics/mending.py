@@ -18,8 +18,8 @@ import numpy.typing as npt
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import UNIT_ROUNDOFF, Rounded
 from centrode.kinematics.evaluate import Kinematics
+from centrode.structure.constraints import Positions, mapped_pose
 from centrode.structure.groups import links_of, points_of
-from centrode.structure.positions import Positions, mapped_pose
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

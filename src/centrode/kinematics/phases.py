@@ -20,15 +20,33 @@ from centrode.kinematics.higher_class.guesses import guesses
 from centrode.kinematics.turned_links import turn_link
 from centrode.kinematics.wheels import equation_at
 from centrode.locale import _
-from centrode.structure.constraints import Constraint
-from centrode.structure.gear_ratios import GearRatio
-from centrode.structure.groups import Group, Meet, Newton, TurnedLink, Turning
-from centrode.structure.matching import match
-from centrode.structure.positions import Entity, Positions
-from centrode.structure.rank import columns_of, independent_rows
-from centrode.structure.steps import name_of
-from centrode.structure.wheel_groups import AngleEquation, AngleGiven, Arm, Meshed, Rolloff, Train
-from centrode.structure.wheels import Meshing, NoSlip, Standing, angle_links, identity_of, phase_of
+from centrode.structure.assur import name_of
+from centrode.structure.constraints import (
+    Constraint,
+    Entity,
+    GearRatio,
+    Meshing,
+    NoSlip,
+    Positions,
+    Standing,
+    angle_links,
+    identity_of,
+    phase_of,
+)
+from centrode.structure.groups import (
+    AngleEquation,
+    AngleGiven,
+    Arm,
+    Group,
+    Meet,
+    Meshed,
+    Newton,
+    Rolloff,
+    Train,
+    TurnedLink,
+    Turning,
+)
+from centrode.structure.rank import columns_of, independent_rows, match
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

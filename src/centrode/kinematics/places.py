@@ -19,7 +19,7 @@ from centrode.kinematics.ready import Ready
 from centrode.kinematics.residuals import Kept, open_what_does_not_close, residuals
 from centrode.kinematics.sampling import ORDERS, Samples, sample, settle
 from centrode.kinematics.unwound import Course, fill_angles, fill_slides
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

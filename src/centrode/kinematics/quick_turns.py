@@ -20,8 +20,8 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.continuation import Continuation, Smooth
 from centrode.kinematics.evaluate import Reached
 from centrode.kinematics.stretches import Stretch, TurnedStretch
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -21,10 +21,9 @@ from centrode.kinematics.paths import path_of
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import MotionParameter
-from centrode.structure.constraints import is_drive
+from centrode.structure.constraints import Positions, is_drive
 from centrode.structure.groups import Newton
 from centrode.structure.plan import Structure, drives_against_mobility, structure_of
-from centrode.structure.positions import Positions
 from centrode.structure.rank import rank_of, residuals_at, scaled_jacobian
 
 Number: TypeAlias = Any

@@ -15,8 +15,7 @@ from centrode.errors import Status
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.sampling import Samples, settle
 from centrode.locale import _
-from centrode.structure.constraints import Constraint, PointInLink
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Constraint, PointInLink, Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

@@ -14,8 +14,8 @@ from centrode.errors import Status
 from centrode.kinematics.layout import Layout
 from centrode.kinematics.sampling import ORDERS, Samples
 from centrode.kinematics.spins import attitudes_of, spins_of
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from centrode.kinematics.guards import guard_with_bound
 from centrode.kinematics.higher_class.places import Judged
 from centrode.kinematics.layout import Layout
 from centrode.kinematics.paths import JETS
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

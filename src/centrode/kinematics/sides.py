@@ -14,10 +14,10 @@ from centrode.geometry.space import Space
 from centrode.kinematics.evaluate import FixedSigns, Kinematics
 from centrode.kinematics.layout import rotor_of_angle
 from centrode.locale import _
+from centrode.structure.assur import name_of
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet, Newton, links_of, points_of
-from centrode.structure.positions import Positions
-from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any
 

@@ -12,9 +12,9 @@ from centrode.errors import InputError
 from centrode.kinematics.closure import shortfall
 from centrode.kinematics.evaluate import Hooks, Kinematics
 from centrode.locale import _
+from centrode.structure.assur import name_of
+from centrode.structure.constraints import Positions
 from centrode.structure.groups import Group
-from centrode.structure.positions import Positions
-from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any
 

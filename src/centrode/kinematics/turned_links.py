@@ -6,10 +6,9 @@ from typing import Any, TypeAlias
 
 from centrode.geometry.plane import Vector, reversed_rotor, rotor_of, turned
 from centrode.kinematics.wheels import Continued, followed
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Turning
-from centrode.structure.positions import Positions
-from centrode.structure.wheel_groups import Following
+from centrode.structure.groups import Following, Turning
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any

@@ -17,8 +17,8 @@ from centrode.kinematics.pace import nearest_node
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.sampling import Samples
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

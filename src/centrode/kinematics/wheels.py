@@ -19,21 +19,10 @@ from centrode.geometry.plane import (
     turned,
 )
 from centrode.geometry.space import Pose
+from centrode.structure.constraints import FRAME, GearRatio, NoSlip, Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.gear_ratios import GearRatio
 from centrode.structure.gearing import Straight
-from centrode.structure.positions import FRAME, Positions
-from centrode.structure.wheel_groups import (
-    AngleEquation,
-    AngleGiven,
-    Arm,
-    Meshed,
-    Rolled,
-    Rolloff,
-    Touch,
-    Train,
-)
-from centrode.structure.wheels import NoSlip
+from centrode.structure.groups import AngleEquation, AngleGiven, Arm, Meshed, Rolled, Rolloff, Touch, Train
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any

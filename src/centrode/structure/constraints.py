@@ -7,22 +7,359 @@ together.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Protocol, TypeAlias
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
 from centrode.algebra.plain import PLAIN
-from centrode.geometry.plane import rotor_of
-from centrode.geometry.space import Coordinates, Rows
+from centrode.geometry.plane import (
+    Vector,
+    along,
+    cross,
+    dot,
+    place,
+    reversed_rotor,
+    rotor_of,
+    subtract,
+    turned,
+)
+from centrode.geometry.space import Coordinates, Place, Pose, Rows
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.structure.cylinders import DistanceDrive
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.gear_ratios import GearRatio
-from centrode.structure.positions import Entity, Positions, Row
-from centrode.structure.wheels import Contact, NoSlip
+from centrode.structure.gearing import Straight
+
+# What is unknown, and where it is: points, links, positions in any algebra.
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
+FRAME = "frame"
+
+
+class Entity(NamedTuple):
+    """An unknown: a moving point, or a link."""
+
+    kind: Literal["point", "link"]
+    name: str
+
+    @property
+    def unknowns(self) -> int:
+        """Number of coordinates: 2 of a point, 3 of a link."""
+        return 2 if self.kind == "point" else 3
+
+
+Row: TypeAlias = dict[Entity, tuple[Number, ...]]
+"""Derivatives of one equation by the coordinates of what it ties together."""
+
+
+@dataclass
+class Positions:
+    """Places of all points and links, in any algebra, with the values of the drives.
+
+    `angles` holds the angles [rad] that are known with their turns: of the frame, of links that a drive or a
+    gear turns, and of links whose turns something else depends on.
+    """
+
+    points: dict[str, Place]
+    poses: dict[str, Pose]
+    drives: Mapping[str, Number]
+    angles: dict[str, Number] = field(default_factory=lambda: {FRAME: 0.0})
+
+    @classmethod
+    def of_frame(cls, dimensions: Dimensions, drives: Mapping[str, Number], m: Namespace) -> Positions:
+        """What is known before any group is solved: the frame and the drives."""
+        space = dimensions.space
+        fixed = {name: space.place(m, space.at_rest, at) for name, at in dimensions.frame.items()}
+        return cls(fixed, {FRAME: space.at_rest}, drives)
+
+    def mapped(self, function: Callable[[Number], Number]) -> Positions:
+        """The same positions with every number replaced by function(number)."""
+        return Positions(
+            {name: tuple(map(function, at)) for name, at in self.points.items()},
+            {name: mapped_pose(pose, function) for name, pose in self.poses.items()},
+            {name: function(value) for name, value in self.drives.items()},
+            {name: function(value) for name, value in self.angles.items()},
+        )
+
+    def copied(self) -> Positions:
+        """The same positions, to which others may be added apart."""
+        return Positions(dict(self.points), dict(self.poses), self.drives, dict(self.angles))
+
+
+def mapped_pose(pose: Pose, function: Callable[[Number], Number]) -> Pose:
+    """The same pose with every number replaced by function(number), in their order."""
+    return type(pose)(*(tuple(map(function, vector)) for vector in pose))
+
+
+def angle_between(m: Namespace, rotor: Vector, reference: Vector) -> Number:
+    """Angle from one rotor to another, in (-pi, pi]."""
+    difference = turned(rotor, reversed_rotor(reference))
+    return m.atan2(difference[1], difference[0])
+
+
+# Cylinders: a drive that gives the distance of two points, as a constraint.
+
+
+@dataclass(frozen=True)
+class DistanceDrive:
+    """A drive gives the distance of two points."""
+
+    drive: str
+    first: str
+    second: str
+    size = 1
+    angular = False
+
+    @property
+    def bodies(self) -> tuple[Entity, ...]:
+        return Entity("point", self.first), Entity("point", self.second)
+
+    @property
+    def label(self) -> str:
+        return _("cylinder {drive}").format(drive=self.drive)
+
+    def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
+        apart = subtract(at.points[self.second], at.points[self.first])
+        return [m.sqrt(dot(apart, apart)) - at.drives[self.drive]]
+
+    def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
+        x, y = subtract(at.points[self.second], at.points[self.first])
+        length = (x * x + y * y) ** 0.5
+        first, second = self.bodies
+        return [{first: (-x / length, -y / length), second: (x / length, y / length)}]
+
+
+# Gears as constraints: the angles of two wheels and their carrier.
+
+
+@dataclass(frozen=True)
+class GearRatio:
+    """Two links turn against a carrier in a constant ratio: (b - c) - i (a - c) stays what it is."""
+
+    gear: str
+    first: str
+    second: str
+    carrier: str
+    size = 1
+    angular = True
+
+    @property
+    def bodies(self) -> tuple[Entity, ...]:
+        return tuple(Entity("link", name) for name in self.links)
+
+    @property
+    def links(self) -> tuple[str, str, str]:
+        """First wheel, second wheel, carrier."""
+        return self.first, self.second, self.carrier
+
+    @property
+    def label(self) -> str:
+        return _("gear {gear}").format(gear=self.gear)
+
+    def weights(self, numbers: Dimensions) -> dict[str, Number]:
+        """Link -> factor of its angle in the equation."""
+        ratio = numbers.gearing.ratio[self.gear]
+        first, second = numbers.gearing.shares.get(self.gear, (1.0, 1.0))
+        return {self.first: -ratio, self.second: 1.0, self.carrier: ratio * first - second}
+
+    def constant(self, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
+        """What the equation's left side is at positions whose angles are known [rad]."""
+        carrier = at.angles[self.carrier]
+        ratio = numbers.gearing.ratio[self.gear]
+        first, second = numbers.gearing.shares.get(self.gear, (1.0, 1.0))
+        return (at.angles[self.second] - second * carrier) - ratio * (at.angles[self.first] - first * carrier)
+
+    def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
+        return [self.constant(m, numbers, at) - numbers.gearing.phase[self.gear]]
+
+    def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
+        row: Row = {}
+        for link, factor in self.weights(numbers).items():
+            base = numbers.gearing.measured.get(link, FRAME)
+            for body, slope in zip((link, base), _slopes(numbers, at, link, base), strict=True):
+                entity, before = Entity("link", body), row.get(Entity("link", body), (0.0, 0.0, 0.0))
+                row[entity] = tuple(old + factor * x for old, x in zip(before, slope, strict=True))
+        return [{entity: slope for entity, slope in row.items() if entity.name in self.links}]
+
+
+def _slopes(numbers: Dimensions, at: Positions, link: str, base: str) -> tuple[Any, Any]:
+    """Derivatives of a link's angle by the link and by what it is measured on."""
+    reference = numbers.reference(link)
+    if reference is None:
+        return (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
+    return numbers.space.turn_row(PLAIN, at.poses[link], at.poses[base], reference)
+
+
+# Gears and rolling wheels as constraints, and the constants with which they mesh.
+#
+# A wheel that rolls keeps two constraints: it touches its track (a length), and it does not slip (an angle).
+
+
+@dataclass(frozen=True)
+class _OnTrack:
+    """A wheel (`link`) with its centre, and the body that carries what it rolls on."""
+
+    rolling: str
+    link: str
+    centre: str
+    on: str
+    size = 1
+
+    def offset(self, numbers: Dimensions, at: Positions) -> Vector:
+        """Vector from the line's own point, or from the circle's centre, to that of the wheel."""
+        track = numbers.gearing.track[self.rolling]
+        start = track.through if isinstance(track, Straight) else track.centre
+        return subtract(at.points[self.centre], place(at.poses[self.on], start))
+
+    def heading(self, numbers: Dimensions, at: Positions) -> Vector:
+        """Direction of a line as it lies now; from the circle's centre to that of the wheel."""
+        track = numbers.gearing.track[self.rolling]
+        if isinstance(track, Straight):
+            return turned(track.direction, at.poses[self.on].rotor)
+        x, y = self.offset(numbers, at)
+        length = (x * x + y * y) ** 0.5
+        return x / length, y / length
+
+    def _arm(self, at: Positions) -> Vector:
+        return subtract(at.points[self.centre], at.poses[self.on].origin)
+
+
+@dataclass(frozen=True)
+class Contact(_OnTrack):
+    """A wheel touches its track: its centre keeps its distance from the line or from the circle's centre."""
+
+    angular = False
+
+    @property
+    def bodies(self) -> tuple[Entity, ...]:
+        return Entity("point", self.centre), Entity("link", self.on)
+
+    @property
+    def label(self) -> str:
+        return _("contact of wheel {wheel}").format(wheel=self.rolling)
+
+    def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
+        reach, offset = numbers.gearing.reach(self.rolling), self.offset(numbers, at)
+        track = numbers.gearing.track[self.rolling]
+        if isinstance(track, Straight):
+            return [cross(turned(track.direction, at.poses[self.on].rotor), offset) - reach]
+        return [m.sqrt(dot(offset, offset)) - reach]
+
+    def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
+        point, on = self.bodies
+        x, y = self.heading(numbers, at)
+        if isinstance(numbers.gearing.track[self.rolling], Straight):
+            return [{point: (-y, x), on: (y, -x, -dot((x, y), self._arm(at)))}]
+        return [{point: (x, y), on: (-x, -y, cross((x, y), self._arm(at)))}]
+
+
+@dataclass(frozen=True)
+class NoSlip(_OnTrack):
+    """A wheel rolls without slip: its turn against the body that carries its track follows its centre's way."""
+
+    angular = True
+
+    @property
+    def bodies(self) -> tuple[Entity, ...]:
+        return Entity("link", self.link), Entity("point", self.centre), Entity("link", self.on)
+
+    @property
+    def label(self) -> str:
+        return _("rolling of wheel {wheel}").format(wheel=self.rolling)
+
+    def slide(self, numbers: Dimensions, at: Positions) -> Number:
+        """Way of the wheel's centre along a line [m], from the line's own point."""
+        return dot(self.heading(numbers, at), self.offset(numbers, at))
+
+    def bearing(self, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
+        """Direction [rad] of the wheel's centre from the circle's in the axes of its body, in (-pi, pi]."""
+        x, y = turned(self.offset(numbers, at), reversed_rotor(at.poses[self.on].rotor))
+        return m.atan2(y, x)
+
+    def constant(self, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
+        """What the equation's left side is at positions whose angles are known [rad]."""
+        relative = at.angles[self.link] - at.angles[self.on]
+        if isinstance(numbers.gearing.track[self.rolling], Straight):
+            return relative + self.slide(numbers, at) / numbers.gearing.radius[self.rolling]
+        return relative - numbers.gearing.spin(self.rolling) * self.bearing(m, numbers, at)
+
+    def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
+        phase = numbers.gearing.phase[self.rolling]
+        if isinstance(numbers.gearing.track[self.rolling], Straight):
+            return [self.constant(m, numbers, at) - phase]
+        # where the wheel's own turns, which are known, want its centre: so the centre's need not be counted
+        spin = numbers.gearing.spin(self.rolling)
+        bearing = (at.angles[self.link] - at.angles[self.on] - phase) / spin
+        wanted = turned(at.poses[self.on].rotor, rotor_of(m, bearing))
+        return [spin * angle_between(m, wanted, self.offset(numbers, at))]
+
+    def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
+        wheel, point, on = self.bodies
+        direction, arm = self.heading(numbers, at), self._arm(at)
+        if isinstance(numbers.gearing.track[self.rolling], Straight):
+            radius = numbers.gearing.radius[self.rolling]
+            x, y = direction[0] / radius, direction[1] / radius
+        else:
+            share = numbers.gearing.spin(self.rolling) / dot(direction, self.offset(numbers, at))
+            x, y = share * direction[1], -share * direction[0]
+        return [{wheel: (0.0, 0.0, 1.0), point: (x, y), on: (-x, -y, cross((x, y), arm) - 1.0)}]
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A link stands at a given angle: what says in the initial position how a gear or a wheel meshes."""
+
+    link: str
+    angle: float
+    size = 1
+    angular = True
+
+    @property
+    def bodies(self) -> tuple[Entity, ...]:
+        return (Entity("link", self.link),)
+
+    @property
+    def label(self) -> str:
+        return _("initial angle of link {link}").format(link=self.link)
+
+    def residual(self, m: Namespace, numbers: Dimensions, at: Positions) -> list[Number]:
+        return [at.angles[self.link] - self.angle]
+
+    def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
+        return [{Entity("link", self.link): (0.0, 0.0, 1.0)}]
+
+
+Meshing: TypeAlias = GearRatio | NoSlip
+"""What keeps an equation between angles with a constant of its own."""
+
+
+def identity_of(constraint: Meshing) -> str:
+    """Id of the gear or of the rolling wheel."""
+    return constraint.gear if isinstance(constraint, GearRatio) else constraint.rolling
+
+
+def phase_of(constraint: Meshing, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
+    """The constant [rad] with which wheels mesh that stand as they do, from positions with the links' angles."""
+    return constraint.constant(m, numbers, at)
+
+
+def angle_links(constraint: Meshing) -> tuple[str, ...]:
+    """Links whose initial angle may say how the wheels mesh; the first of them that is unknown does."""
+    if isinstance(constraint, GearRatio):
+        return constraint.second, constraint.first, constraint.carrier
+    return (constraint.link,)
+
+
+def contact_point(constraint: Contact | NoSlip, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
+    """Where a wheel touches its track: the instant centre of the wheel against the body it rolls on."""
+    track = numbers.gearing.track[constraint.rolling]
+    heading, offset = constraint.heading(numbers, at), constraint.offset(numbers, at)
+    start = subtract(at.points[constraint.centre], offset)
+    if isinstance(track, Straight):
+        return along(start, heading, dot(heading, offset))
+    # a ring around its pin touches on the far side of the pin
+    far = m.sign(track.radius - numbers.gearing.radius[constraint.rolling]) if track.inside else 1.0
+    return along(start, heading, far * track.radius)
 
 
 class Constraint(Protocol):

@@ -2,24 +2,446 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 from centrode.errors import InputError, NotComputedYet
 from centrode.geometry.space import Space
 from centrode.locale import _, ngettext
-from centrode.model.mechanism import Mechanism
-from centrode.structure.classify import classify
-from centrode.structure.constraints import Constraint, PointInLink, constraints_of, is_drive, unknowns_of
+from centrode.model.mechanism import Mechanism, Rolling
+from centrode.structure.constraints import (
+    FRAME,
+    AngleDrive,
+    Constraint,
+    Contact,
+    DisplacementDrive,
+    DistanceDrive,
+    Entity,
+    GearRatio,
+    NoSlip,
+    NoTurning,
+    PointInLink,
+    PointOnGuide,
+    constraints_of,
+    is_drive,
+    unknowns_of,
+)
 from centrode.structure.dimensions import Dimensions, dimensions_of
-from centrode.structure.gear_ratios import GearRatio
-from centrode.structure.groups import Group, Newton, links_of
-from centrode.structure.matching import in_order, match, strong_components
-from centrode.structure.positions import Entity
-from centrode.structure.rank import Matrix, generic_jacobian, independent_rows
-from centrode.structure.wheel_groups import Train, angles_in
-from centrode.structure.wheels import Contact, NoSlip
+from centrode.structure.gearing import shares_of
+from centrode.structure.groups import (
+    Aim,
+    AngleEquation,
+    AngleGiven,
+    Arm,
+    Following,
+    Group,
+    Locus,
+    Meet,
+    Meshed,
+    Newton,
+    Rail,
+    RigidPoint,
+    Rod,
+    Rolled,
+    Rolloff,
+    Slot,
+    Stop,
+    Stroke,
+    Touch,
+    Train,
+    TurnedLink,
+    Turning,
+    TwoPointLink,
+    angles_in,
+    links_of,
+)
+from centrode.structure.rank import (
+    Matrix,
+    generic_jacobian,
+    in_order,
+    independent_rows,
+    match,
+    strong_components,
+)
+
+# Finding what gears and rolling wheels form in a group: angles that follow one another, loci, trains.
+
+SINGULAR = 1e-9
+"""A pivot smaller than this, beside ratios of the order of one, means that the angles do not follow."""
+COINCIDE = 1e-12
+"""Coordinates closer than this part of their size are those of one place."""
+
+
+class GroupToSolve(Protocol):
+    """A group before it is classified."""
+
+    @property
+    def mechanism(self) -> Mechanism: ...
+    @property
+    def points(self) -> tuple[str, ...]: ...
+    @property
+    def links(self) -> tuple[str, ...]: ...
+    @property
+    def constraints(self) -> tuple[Constraint, ...]: ...
+    def ends(self, link: str) -> tuple[str, ...]: ...
+    def knows_point(self, point: str) -> bool: ...
+    def knows_link(self, link: str) -> bool: ...
+
+
+def following(group: GroupToSolve, constraint: Constraint, link: str) -> Following | None:
+    """How a gear or a rolling contact gives the angle of a link from what is known; None if it does not."""
+    if isinstance(constraint, GearRatio) and link in constraint.links:
+        if not all(group.knows_link(other) for other in constraint.links if other != link):
+            return None
+        first, second = shares_of(group.mechanism, constraint.gear)
+        if link == constraint.carrier and _ratio(group.mechanism, constraint) * first == second:
+            raise _singular((link,))
+        return Meshed(constraint)
+    if isinstance(constraint, NoSlip) and link == constraint.link:
+        known = group.knows_point(constraint.centre) and group.knows_link(constraint.on)
+        return Rolled(constraint) if known else None
+    return None
+
+
+def wheel_locus(group: GroupToSolve, constraint: Constraint, carriage: str | None) -> Touch | Rolloff | None:
+    """The locus that a contact or a rolling contact is for the unknown vector of a group; None if it is none."""
+    if not isinstance(constraint, (Contact, NoSlip)):
+        return None
+    straight = _description(group.mechanism, constraint.rolling).along.radius is None
+    centre_known = group.knows_point(constraint.centre)
+    carried = constraint.on == carriage
+    if carried != centre_known or not (carried or group.knows_link(constraint.on)):
+        return None
+    if isinstance(constraint, Contact):
+        return Touch(constraint.centre, constraint, carried, "P" if straight else "R")
+    turns_known = constraint.link == carriage or group.knows_link(constraint.link)
+    return Rolloff(constraint.centre, constraint, carried) if straight and turns_known else None
+
+
+def train(group: GroupToSolve) -> Train | None:
+    """A group whose angles follow from equations between them alone; its links then only have to be placed."""
+    hinges = [c for c in group.constraints if isinstance(c, PointInLink)]
+    others = [c for c in group.constraints if not isinstance(c, PointInLink)]
+    equations = [equation_of(group, c) for c in others]
+    if len(equations) != len(group.links) or len(equations) < 2 or None in equations:
+        return None
+    found = tuple(equation for equation in equations if equation is not None)
+    placed = _placed(group, hinges)
+    if placed is None:
+        return None
+    return Train(found, _pivots(group, found), *placed)
+
+
+def equation_of(group: GroupToSolve, constraint: Constraint) -> AngleEquation | None:
+    """The equation between angles that a constraint of a group is; None if it is none."""
+    if isinstance(constraint, AngleDrive):
+        return AngleGiven(constraint.link, constraint.relative_to, drive=constraint.drive)
+    if isinstance(constraint, NoTurning):
+        return AngleGiven(constraint.link, constraint.on, guide=constraint.guide)
+    if isinstance(constraint, GearRatio):
+        return constraint
+    if isinstance(constraint, NoSlip):
+        if group.knows_point(constraint.centre) and group.knows_link(constraint.on):
+            return constraint
+        return _arm(group.mechanism, constraint)
+    return None
+
+
+def _arm(mechanism: Mechanism, rolling: NoSlip) -> Arm | None:
+    """The link that carries a wheel around the circle it rolls on, if one turns about the circle's centre."""
+    pivot = _named_centre(mechanism, _description(mechanism, rolling.rolling))
+    for name, link in mechanism.links.items():
+        if pivot in link.coordinates and rolling.centre in link.coordinates and name != rolling.on:
+            return Arm(rolling, name, pivot or "")
+    return None
+
+
+def _named_centre(mechanism: Mechanism, wheel: Rolling) -> str | None:
+    """The point of the wheel's track that is its circle's centre, where one has a name."""
+    along = wheel.along
+    if along.radius is None or isinstance(along.centre, str):
+        return along.centre if isinstance(along.centre, str) else None
+    x, y = along.centre or (0.0, 0.0)
+    near = COINCIDE * (abs(x) + abs(y) + along.radius)
+    for name, (px, py) in mechanism.points_of(wheel.on).items():
+        if abs(px - x) <= near and abs(py - y) <= near:
+            return name
+    return None
+
+
+def _placed(
+    group: GroupToSolve, hinges: Sequence[PointInLink]
+) -> tuple[tuple[tuple[str, str], ...], tuple[tuple[str, str], ...]] | None:
+    """Each link with its known point in an order of placing, and each point with the link that brings it."""
+    places: list[tuple[str, str]] = []
+    brought: dict[str, str] = {}
+    waiting = list(group.links)
+    while waiting:
+        for link in waiting:
+            own = [c.point for c in hinges if c.link == link]
+            known = [point for point in own if group.knows_point(point) or point in brought]
+            if len(known) > 1:
+                return None
+            if known:
+                places.append((link, known[0]))
+                brought |= {point: link for point in own if point != known[0]}
+                waiting.remove(link)
+                break
+        else:
+            return None
+    # points that no link of the group brings would hang on something else
+    if set(brought) != set(group.points) or any(c.link not in group.links for c in hinges):
+        return None
+    return tuple(places), tuple(brought.items())
+
+
+def _pivots(group: GroupToSolve, equations: Sequence[AngleEquation]) -> tuple[tuple[int, str], ...]:
+    """Order of elimination by the description's own ratios: the greatest factor first."""
+    rows = [_weights(group.mechanism, equation) for equation in equations]
+    table = [{link: row.get(link, 0.0) for link in group.links} for row in rows]
+    found: list[tuple[int, str]] = []
+    for _step in group.links:
+        rest = [
+            (abs(table[i][link]), -i, link)
+            for i in range(len(table))
+            for link in group.links
+            if all(i != row and link != column for row, column in found)
+        ]
+        size, k, link = max(rest, key=lambda entry: entry[:2])
+        if size < SINGULAR:
+            raise _singular(group.links)
+        found.append((-k, link))
+        for i in range(len(table)):
+            if all(i != row for row, _column in found):
+                share = table[i][link] / table[-k][link]
+                table[i] = {name: x - share * table[-k][name] for name, x in table[i].items()}
+    return tuple(found)
+
+
+def _weights(mechanism: Mechanism, equation: AngleEquation) -> Mapping[str, float]:
+    """Link -> factor of its angle, with the numbers of the description."""
+    if isinstance(equation, GearRatio):
+        ratio = _ratio(mechanism, equation)
+        first, second = shares_of(mechanism, equation.gear)
+        return {equation.first: -ratio, equation.second: 1.0, equation.carrier: ratio * first - second}
+    if isinstance(equation, Arm):
+        spin = _spin(_description(mechanism, equation.rolling.rolling))
+        return {equation.rolling.link: 1.0, equation.rolling.on: spin - 1.0, equation.link: -spin}
+    if mechanism.space == "sphere":
+        return {equation.link: 1.0}
+    return dict(zip(angles_in(equation), (1.0, -1.0), strict=True))
+
+
+def _ratio(mechanism: Mechanism, gear: GearRatio) -> float:
+    return next(other.ratio for other in mechanism.gears if other.id == gear.gear)
+
+
+def _description(mechanism: Mechanism, rolling: str) -> Rolling:
+    return next(wheel for wheel in mechanism.rolling if wheel.id == rolling)
+
+
+def _spin(wheel: Rolling) -> float:
+    circle = wheel.along.radius or 0.0
+    return (wheel.radius - circle if wheel.along.inside else wheel.radius + circle) / wheel.radius
+
+
+def _singular(links: Sequence[str]) -> InputError:
+    return InputError(
+        _("gears of {links}").format(links=", ".join(link for link in links if link != FRAME)),
+        _("they lock each other or leave an angle open: their equations do not give every angle"),
+        _("change a ratio, or drive another link"),
+    )
+
+
+# Which closed form solves a group: rigid point, link by two points, crank, parallel link, a dyad, or none.
+
+
+@dataclass(frozen=True)
+class Unsolved:
+    """A group before it is classified: its unknowns and the constraints matched to them, in description order."""
+
+    mechanism: Mechanism
+    points: tuple[str, ...]
+    links: tuple[str, ...]
+    constraints: tuple[Constraint, ...]
+    crosses_once: bool = True
+
+    def ends(self, link: str) -> tuple[str, ...]:
+        """Points that the group's constraints fix in a link."""
+        return tuple(c.point for c in self.constraints if isinstance(c, PointInLink) and c.link == link)
+
+    def knows_point(self, point: str) -> bool:
+        return point not in self.points
+
+    def knows_link(self, link: str) -> bool:
+        return link not in self.links
+
+    def turning(self, link: str) -> tuple[Constraint, Turning | Following] | None:
+        """The constraint that gives the angle of a link from known ones, if there is one."""
+        for c in self.constraints:
+            follows = following(self, c, link)
+            if follows is not None:
+                return c, follows
+            found = _turning_of(c)
+            if found is None or link not in (found.link, found.relative_to):
+                continue
+            other = found.relative_to if found.link == link else found.link
+            if self.knows_link(other):
+                return c, found
+        return None
+
+
+def _turning_of(constraint: Constraint) -> Turning | None:
+    if isinstance(constraint, AngleDrive):
+        return Turning(constraint.link, constraint.relative_to, drive=constraint.drive)
+    if isinstance(constraint, NoTurning):
+        return Turning(constraint.link, constraint.on, guide=constraint.guide)
+    return None
+
+
+def classify(
+    mechanism: Mechanism,
+    unknowns: Sequence[Entity],
+    equations: Sequence[tuple[Constraint, int]],
+    crosses_once: bool = True,
+) -> Group:
+    """The group that unknowns form under the equations (constraint and row) matched to them.
+
+    `crosses_once` says whether the curves of two guides meet in one place, as lines do.
+    """
+    group = Unsolved(
+        mechanism,
+        tuple(e.name for e in unknowns if e.kind == "point"),
+        tuple(e.name for e in unknowns if e.kind == "link"),
+        tuple(dict.fromkeys(constraint for constraint, _row in equations)),
+        crosses_once,
+    )
+    for attempt in (_rigid_point, _single_link, _aim_with_block, _meet, train):
+        found = attempt(group)
+        if found is not None:
+            return found
+    return Newton(group.points, group.links, tuple(equations))
+
+
+def _rigid_point(group: Unsolved) -> Group | None:
+    if group.links or len(group.points) != 1 or len(group.constraints) != 1:
+        return None
+    (constraint,) = group.constraints
+    return RigidPoint(constraint.point, constraint.link) if isinstance(constraint, PointInLink) else None
+
+
+def _single_link(group: Unsolved) -> Group | None:
+    if group.points or len(group.links) != 1:
+        return None
+    (link,) = group.links
+    ends = group.ends(link)
+    if len(ends) == 2:
+        return TwoPointLink(link, *ends)
+    if len(ends) != 1:
+        return None
+    turning = group.turning(link)
+    if turning is not None:
+        return TurnedLink(link, ends[0], turning[1])
+    for c in group.constraints:
+        if isinstance(c, PointOnGuide) and c.on == link:
+            return Aim(link, ends[0], c.guide, c.point)
+        if isinstance(c, Contact) and c.on == link:
+            touch = wheel_locus(group, c, link)
+            return Aim(link, ends[0], "", c.centre, contact=c) if touch and touch.letter == "P" else None
+    return None
+
+
+def _aim_with_block(group: Unsolved) -> Group | None:
+    """RPR whose guide's point is not the hinge of the block: two links on known pivots, a prismatic pair between."""
+    if len(group.links) != 2 or len(group.points) != 1 or len(group.constraints) != 5:
+        return None
+    (sliding,) = group.points
+    guides = [c for c in group.constraints if isinstance(c, PointOnGuide) and c.point == sliding]
+    fixed = [c for c in group.constraints if isinstance(c, NoTurning)]
+    if len(guides) != 1 or len(fixed) != 1 or fixed[0].guide != guides[0].guide:
+        return None
+    link, block = fixed[0].on, fixed[0].link
+    pivots = group.ends(link)
+    targets = tuple(point for point in group.ends(block) if point != sliding)
+    known = all(group.knows_point(point) for point in pivots + targets)
+    if len(pivots) != 1 or len(targets) != 1 or not known or {link, block} != set(group.links):
+        return None
+    return Aim(link, pivots[0], guides[0].guide, targets[0], block, sliding)
+
+
+def _meet(group: Unsolved) -> Group | None:
+    """One unknown vector with two loci; everything else in the group must hang on it."""
+    carriages = [link for link in group.links if group.turning(link) is not None]
+    if len(carriages) > 1:
+        return None
+    carriage = carriages[0] if carriages else None
+    used: set[Constraint] = set()
+    turning = None
+    if carriage is None:
+        if len(group.points) != 1:
+            return None
+    else:
+        found = group.turning(carriage)
+        if found is None or not _carries_all(group, carriage):
+            return None
+        used.add(found[0])
+        turning = found[1]
+        used |= {c for c in group.constraints if isinstance(c, PointInLink) and c.link == carriage}
+    loci: list[Locus] = []
+    for link in group.links:
+        if link != carriage:
+            rod = _rod(group, link)
+            if rod is None:
+                return None
+            loci.append(rod)
+            used |= {c for c in group.constraints if isinstance(c, PointInLink) and c.link == link}
+    for c in group.constraints:
+        locus = _line(group, c, carriage) or wheel_locus(group, c, carriage)
+        if isinstance(c, DistanceDrive):
+            locus = _stroke(group, c)
+        if locus is not None:
+            loci.append(locus)
+            used.add(c)
+    loci.sort(key=lambda locus: locus.letter != "R")  # circles first
+    if len(loci) != 2 or used != set(group.constraints):
+        return None
+    return Meet(group.points, (loci[0], loci[1]), carriage, turning, group.crosses_once)
+
+
+def _carries_all(group: Unsolved, carriage: str) -> bool:
+    """Whether the unknown points of the group are exactly the points its carriage brings along."""
+    return set(group.ends(carriage)) == set(group.points)
+
+
+def _rod(group: Unsolved, link: str) -> Rod | None:
+    ends = group.ends(link)
+    unknown = [point for point in ends if not group.knows_point(point)]
+    known = [point for point in ends if group.knows_point(point)]
+    if len(ends) != 2 or len(unknown) != 1:
+        return None
+    return Rod(unknown[0], known[0], link)
+
+
+def _stroke(group: Unsolved, drive: DistanceDrive) -> Stroke | None:
+    unknown = [point for point in (drive.first, drive.second) if not group.knows_point(point)]
+    if len(unknown) != 1:
+        return None
+    known = drive.second if unknown[0] == drive.first else drive.first
+    return Stroke(unknown[0], known, drive.drive)
+
+
+def _line(group: Unsolved, constraint: Constraint, carriage: str | None) -> Locus | None:
+    if isinstance(constraint, PointOnGuide):
+        if constraint.on == carriage:
+            return Slot(constraint.point, constraint.guide) if group.knows_point(constraint.point) else None
+        known = group.knows_link(constraint.on) and not group.knows_point(constraint.point)
+        return Rail(constraint.point, constraint.guide, constraint.on) if known else None
+    if isinstance(constraint, DisplacementDrive):
+        known = group.knows_link(constraint.on) and not group.knows_point(constraint.point)
+        return Stop(constraint.point, constraint.guide, constraint.on, constraint.drive) if known else None
+    return None
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 from centrode.kinematics.ready import Ready, ready
 from centrode.model.mechanism import Mechanism
-from centrode.structure.assur import AssurGroup, assur_groups, structural_formula
-from centrode.structure.mobility import Count, count
-from centrode.structure.steps import step_of
+from centrode.structure.assur import AssurGroup, assur_groups, step_of, structural_formula
+from centrode.structure.rank import Count, count
 
 
 @dataclass(frozen=True)

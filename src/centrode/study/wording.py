@@ -11,7 +11,7 @@ from centrode.kinematics.solve import Solved
 from centrode.locale import _
 from centrode.model.mechanism import Display, Drive
 from centrode.quantities import display_unit
-from centrode.structure.steps import name_of
+from centrode.structure.assur import name_of
 
 
 def extremes(solved: Solved) -> list[tuple[Drive, float, float]]:

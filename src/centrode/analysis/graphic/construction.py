@@ -16,21 +16,23 @@ from centrode.analysis.graphic.stage import ORIGIN, Edge, Stage, Step, Triangle
 from centrode.analysis.graphic.wheel_rates import meshed_rate, rolled_rate, train_rates, wheel_equations
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.structure.assur import step_of
 from centrode.structure.groups import (
     Aim,
     Group,
     Meet,
+    Meshed,
     Newton,
     RigidPoint,
     Rod,
+    Rolled,
     Stop,
+    Train,
     TurnedLink,
     Turning,
     TwoPointLink,
 )
 from centrode.structure.plan import Structure
-from centrode.structure.steps import step_of
-from centrode.structure.wheel_groups import Meshed, Rolled, Train
 
 SMALL = 1e-12
 """Sides of a triangle shorter than this part of the longest are none."""

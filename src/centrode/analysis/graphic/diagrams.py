@@ -23,8 +23,8 @@ from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.quantities import status_word
+from centrode.structure.constraints import FRAME
 from centrode.structure.gearing import Round
-from centrode.structure.positions import FRAME
 
 MECHANISM, DIAGRAM = 90.0, 105.0
 """Room of the mechanism and of a diagram on a page A5 [mm]."""

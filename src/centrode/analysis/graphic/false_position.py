@@ -19,14 +19,19 @@ from centrode.analysis.graphic.board import cross, dot
 from centrode.analysis.graphic.stage import Edge, Stage, Step, Trial
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.structure.classify import classify
-from centrode.structure.constraints import AngleDrive, Constraint, PointInLink, PointOnGuide
-from centrode.structure.cylinders import DistanceDrive
+from centrode.structure.assur import step_of
+from centrode.structure.constraints import (
+    FRAME,
+    AngleDrive,
+    Constraint,
+    DistanceDrive,
+    Entity,
+    PointInLink,
+    PointOnGuide,
+)
 from centrode.structure.groups import Group, Newton
-from centrode.structure.matching import in_order, match, strong_components
-from centrode.structure.plan import Structure
-from centrode.structure.positions import FRAME, Entity
-from centrode.structure.steps import step_of
+from centrode.structure.plan import Structure, classify
+from centrode.structure.rank import in_order, match, strong_components
 
 MOST_TRIALS = 2
 """Links turned at will at once: with three, a person no longer draws."""

@@ -16,8 +16,8 @@ from centrode.geometry.plane import pose_with_point
 from centrode.kinematics.paths import JETS
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.spans import Span
+from centrode.structure.constraints import Positions
 from centrode.structure.plan import Structure
-from centrode.structure.positions import Positions
 
 Driven: TypeAlias = tuple[dict[str, float], dict[str, float]]
 

@@ -9,10 +9,9 @@ from dataclasses import dataclass, replace
 
 from centrode.analysis.graphic.board import dot
 from centrode.analysis.graphic.stage import Edge, Kind, Stage
+from centrode.structure.constraints import FRAME
 from centrode.structure.gearing import Round, Straight
-from centrode.structure.groups import Locus, Rail, Rod, Slot, Stop, Stroke
-from centrode.structure.positions import FRAME
-from centrode.structure.wheel_groups import Rolloff, Touch
+from centrode.structure.groups import Locus, Rail, Rod, Rolloff, Slot, Stop, Stroke, Touch
 
 
 @dataclass(frozen=True)

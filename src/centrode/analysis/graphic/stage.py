@@ -7,8 +7,8 @@ from typing import Literal, TypeAlias
 
 from centrode.analysis.graphic.board import Board
 from centrode.geometry.plane import place, turned
+from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import FRAME, Positions
 
 Kind: TypeAlias = Literal[
     "image", "normal", "tangential", "relative", "sliding", "coriolis", "driven", "carried"

@@ -7,11 +7,9 @@ from collections.abc import Mapping
 from centrode.analysis.graphic.board import dot
 from centrode.analysis.graphic.stage import Stage
 from centrode.kinematics.wheels import solved_angles
-from centrode.structure.gear_ratios import GearRatio
+from centrode.structure.constraints import FRAME, GearRatio, NoSlip, Positions
 from centrode.structure.gearing import Straight
-from centrode.structure.positions import FRAME, Positions
-from centrode.structure.wheel_groups import AngleEquation, AngleGiven, Arm, Meshed, Rolled, Train
-from centrode.structure.wheels import NoSlip
+from centrode.structure.groups import AngleEquation, AngleGiven, Arm, Meshed, Rolled, Train
 
 
 def meshed_rate(stage: Stage, gear: GearRatio, link: str) -> float:

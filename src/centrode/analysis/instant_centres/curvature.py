@@ -32,7 +32,7 @@ from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.problems import nearest, shown
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Local: TypeAlias = Mapping[str, tuple[float, float]]
 ORDER = 3

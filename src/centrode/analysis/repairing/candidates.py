@@ -21,9 +21,9 @@ from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.paths import with_value
 from centrode.model.placing import replace_placed
 from centrode.model.values import Placed
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions, dimensions_of
 from centrode.structure.groups import Group, links_of
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

@@ -18,8 +18,8 @@ from centrode.analysis.repairing.candidates import Batch
 from centrode.geometry.plane import Circle, dot, subtract
 from centrode.kinematics.evaluate import Choices, FixedSigns, Kinematics
 from centrode.kinematics.groups import loci_of, solve_group
+from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

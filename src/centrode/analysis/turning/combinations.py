@@ -14,7 +14,7 @@ from centrode.kinematics.branches import Branches, Event
 from centrode.kinematics.continuation import Continuation
 from centrode.kinematics.events import Scan
 from centrode.kinematics.pace import OFF_GRID
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]

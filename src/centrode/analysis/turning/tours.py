@@ -23,7 +23,7 @@ from centrode.kinematics.ready import Ready
 from centrode.kinematics.several_drives.holding import check_closed, held_path, starting_at
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

@@ -18,9 +18,9 @@ from centrode.geometry.sphere import cross, dot, tangent
 from centrode.kinematics.evaluate import Kinematics
 from centrode.kinematics.groups import aim_curve
 from centrode.kinematics.paths import JETS
+from centrode.structure.assur import name_of
+from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Slot, Stroke
-from centrode.structure.positions import Positions
-from centrode.structure.steps import name_of
 
 Number: TypeAlias = Any
 

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from centrode.algebra.jets import Jet
 from centrode.analysis.turning.tours import Tour
 from centrode.numerics.search import newton_roots, sign_changes
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

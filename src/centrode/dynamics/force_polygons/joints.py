@@ -12,9 +12,8 @@ from centrode.algebra.plain import PLAIN
 from centrode.analysis.graphic.stage import Drawing
 from centrode.dynamics.force_polygons.bodies import Bodies
 from centrode.model.mechanism import FRAME, Drive
-from centrode.structure.gear_ratios import GearRatio
+from centrode.structure.constraints import Contact, GearRatio, NoSlip, contact_point
 from centrode.structure.plan import Structure
-from centrode.structure.wheels import Contact, NoSlip, contact_point
 
 Kind: TypeAlias = Literal["hinge", "guide", "rolling", "mesh", "drive"]
 Basis: TypeAlias = tuple[complex, float]

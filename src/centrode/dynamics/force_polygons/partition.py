@@ -15,9 +15,9 @@ from centrode.dynamics.force_polygons.joints import Joint
 from centrode.errors import NotComputedYet
 from centrode.locale import _
 from centrode.model.mechanism import FRAME
-from centrode.structure.matching import in_order, match, strong_components
+from centrode.structure.constraints import Contact
 from centrode.structure.plan import Structure
-from centrode.structure.wheels import Contact
+from centrode.structure.rank import in_order, match, strong_components
 
 Equation: TypeAlias = tuple[str, int]
 

@@ -13,7 +13,7 @@ from centrode.dynamics.kinetostatics.solution import Forces
 from centrode.dynamics.kinetostatics.stacking import column
 from centrode.dynamics.pulls import components, total
 from centrode.errors import Status
-from centrode.structure.positions import Entity
+from centrode.structure.constraints import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

@@ -6,11 +6,16 @@ from centrode.dynamics.kinetostatics.equilibrium import Equilibrium
 from centrode.dynamics.kinetostatics.teeth import Teeth
 from centrode.dynamics.pulls import Pull
 from centrode.model.mechanism import Mechanism
-from centrode.structure.constraints import Constraint, DisplacementDrive, PointOnGuide
+from centrode.structure.constraints import (
+    Constraint,
+    Contact,
+    DisplacementDrive,
+    GearRatio,
+    NoSlip,
+    PointOnGuide,
+    Positions,
+)
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.gear_ratios import GearRatio
-from centrode.structure.positions import Positions
-from centrode.structure.wheels import Contact, NoSlip
 
 
 def pulls_of(

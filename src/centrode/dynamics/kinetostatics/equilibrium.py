@@ -12,9 +12,8 @@ from centrode.dynamics.pulls import NOWHERE, Pull, Vector, couple, on_link, on_p
 from centrode.dynamics.states import State
 from centrode.geometry.sphere import Attitude, add, basis, combined, cross, dot, subtract, times
 from centrode.model.mechanism import Mechanism
-from centrode.structure.constraints import Constraint, DisplacementDrive
+from centrode.structure.constraints import FRAME, Constraint, DisplacementDrive, Positions, Row
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import FRAME, Positions, Row
 
 Number: TypeAlias = Any
 Foot: TypeAlias = tuple[Any, ...]

@@ -12,11 +12,17 @@ from centrode.dynamics.kinetostatics.sides import Side, side_forces
 from centrode.dynamics.kinetostatics.solution import Forces
 from centrode.dynamics.kinetostatics.stacking import columns, tables
 from centrode.dynamics.pulls import Pull, Vector
-from centrode.structure.constraints import Constraint, NoTurning, PointOnGuide, is_drive
-from centrode.structure.gear_ratios import GearRatio
+from centrode.structure.constraints import (
+    FRAME,
+    Constraint,
+    Contact,
+    GearRatio,
+    NoSlip,
+    NoTurning,
+    PointOnGuide,
+    is_drive,
+)
 from centrode.structure.gearing import Straight
-from centrode.structure.positions import FRAME
-from centrode.structure.wheels import Contact, NoSlip
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

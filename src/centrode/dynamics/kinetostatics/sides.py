@@ -9,8 +9,7 @@ from typing import Any, TypeAlias
 from centrode.dynamics.kinetostatics.solution import Forces
 from centrode.dynamics.pulls import Pull, Vector
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.structure.constraints import PointInLink
-from centrode.structure.positions import Entity
+from centrode.structure.constraints import Entity, PointInLink
 
 Number: TypeAlias = Any
 

@@ -17,8 +17,8 @@ from centrode.dynamics.kinetostatics.scheme import Axis, Scheme, Unknown
 from centrode.dynamics.kinetostatics.teeth import Teeth
 from centrode.dynamics.pulls import Pull, Vector, on_frame
 from centrode.dynamics.states import State
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

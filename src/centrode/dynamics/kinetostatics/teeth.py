@@ -11,9 +11,8 @@ from centrode.geometry import sphere as space
 from centrode.geometry.plane import dot, subtract
 from centrode.geometry.sphere import unit
 from centrode.model.mechanism import FRAME, Gear, Mechanism
+from centrode.structure.constraints import GearRatio, Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.gear_ratios import GearRatio
-from centrode.structure.positions import Positions
 
 
 @dataclass(frozen=True)

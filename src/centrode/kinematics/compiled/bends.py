@@ -22,7 +22,7 @@ from centrode.kinematics.paths import Path
 from centrode.kinematics.phases import with_phases
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.spans import Span
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

@@ -20,9 +20,9 @@ from centrode.kinematics.ready import Ready
 from centrode.kinematics.sampling import ORDERS
 from centrode.kinematics.spans import Span
 from centrode.locale import mark
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Positions
 
 Number: TypeAlias = Any
 

@@ -43,8 +43,7 @@ from centrode.kinematics.sampling import ORDERS
 from centrode.kinematics.solve import Solved
 from centrode.kinematics.spans import Span
 from centrode.kinematics.spins import attitudes_of, spins_of
-from centrode.structure.positions import Positions
-from centrode.structure.wheels import Contact, contact_point
+from centrode.structure.constraints import Contact, Positions, contact_point
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]

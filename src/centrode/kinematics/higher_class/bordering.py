@@ -13,7 +13,7 @@ from centrode.kinematics.higher_class.reduction import Linear, Shift
 from centrode.kinematics.higher_class.surroundings import Surroundings
 from centrode.kinematics.higher_class.system import Motion, System
 from centrode.kinematics.paths import JETS
-from centrode.structure.positions import Entity
+from centrode.structure.constraints import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

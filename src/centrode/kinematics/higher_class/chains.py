@@ -15,10 +15,9 @@ from typing import Any, TypeAlias
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose, Vector, cross, dot, place, pose_with_point, subtract, turned
 from centrode.kinematics.higher_class.reduction import Follow, Pattern, pattern_of
-from centrode.structure.constraints import Constraint, PointInLink
+from centrode.structure.constraints import Constraint, PointInLink, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Positions
 
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any

@@ -20,10 +20,10 @@ from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.sides import is_measured
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.structure.assur import name_of
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Positions
-from centrode.structure.steps import name_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

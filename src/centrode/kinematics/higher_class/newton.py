@@ -13,7 +13,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.rounding import UNIT_ROUNDOFF
 from centrode.kinematics.higher_class.reduction import Linear, Shift, solved
 from centrode.kinematics.higher_class.system import Motion, System
-from centrode.structure.positions import Entity
+from centrode.structure.constraints import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]

@@ -20,7 +20,7 @@ from centrode.kinematics.higher_class.newton import SMALL, newton
 from centrode.kinematics.higher_class.surroundings import Surroundings, needed
 from centrode.kinematics.higher_class.system import total
 from centrode.kinematics.higher_class.tracks import Period, Tracks, share_at
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -18,8 +18,8 @@ from centrode.kinematics.higher_class.reduction import Linear
 from centrode.kinematics.higher_class.surroundings import Surroundings, flattened, needed, plain, shaped
 from centrode.kinematics.higher_class.system import System
 from centrode.kinematics.higher_class.tracks import Tracks
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -17,10 +17,9 @@ import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.geometry.plane import is_literal_zero
-from centrode.structure.constraints import PointInLink
+from centrode.structure.constraints import Entity, PointInLink, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Entity, Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

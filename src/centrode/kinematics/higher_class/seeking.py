@@ -17,8 +17,8 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.higher_class.newton import newton
 from centrode.kinematics.higher_class.system import System
 from centrode.model.mechanism import Mechanism
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

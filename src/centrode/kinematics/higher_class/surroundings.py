@@ -15,9 +15,9 @@ from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.kinematics.evaluate import Hooks, Kinematics
 from centrode.kinematics.higher_class.system import System
 from centrode.kinematics.paths import JETS
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

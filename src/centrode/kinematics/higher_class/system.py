@@ -22,10 +22,9 @@ from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.geometry.plane import rotor_of
 from centrode.kinematics.higher_class.reduction import Linear, Pattern, Shift, pattern_of, solved
 from centrode.kinematics.paths import JETS
-from centrode.structure.constraints import Constraint
+from centrode.structure.constraints import Constraint, Entity, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
-from centrode.structure.positions import Entity, Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]

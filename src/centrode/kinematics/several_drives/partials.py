@@ -27,7 +27,7 @@ from centrode.kinematics.places import start_of
 from centrode.kinematics.sampling import ORDERS, Judging, fill_columns, fill_number
 from centrode.kinematics.solve import Solved, fit_for
 from centrode.kinematics.spins import attitudes_of, spins_of
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Mask: TypeAlias = npt.NDArray[np.bool_]

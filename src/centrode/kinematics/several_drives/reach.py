@@ -27,7 +27,7 @@ from centrode.kinematics.several_drives.holding import (
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.structure.steps import name_of
+from centrode.structure.assur import name_of
 
 
 @dataclass(frozen=True)

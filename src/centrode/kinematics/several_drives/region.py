@@ -24,8 +24,8 @@ from centrode.kinematics.several_drives.ranges import Ranges, comes_round, grid_
 from centrode.locale import _, speaking
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
+from centrode.structure.assur import name_of
 from centrode.structure.groups import Newton
-from centrode.structure.steps import name_of
 from centrode.version import __version__
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from centrode.locale import _, mark, ngettext
 from centrode.model.mechanism import FRAME, Gear, Guide, Mechanism, Rolling
-from centrode.structure.mobility import is_bare, slider_of
+from centrode.structure.rank import is_bare, slider_of
 from centrode.study.words.lists import called, links_listed, listed
 
 LEVEL = 1e-9

@@ -17,13 +17,13 @@ from centrode.structure.groups import (
     RigidPoint,
     Rod,
     Stroke,
+    Train,
     TurnedLink,
     Turning,
     TwoPointLink,
     links_of,
 )
 from centrode.structure.plan import Structure
-from centrode.structure.wheel_groups import Train
 from centrode.study.words.drives import sentence_on_drive
 from centrode.study.words.joints import links_at
 from centrode.study.words.levers import extent, on_lever

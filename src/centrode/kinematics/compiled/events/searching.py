@@ -28,8 +28,8 @@ from centrode.kinematics.events import Scan
 from centrode.kinematics.layout import rotor_of_angle
 from centrode.kinematics.mending import inside
 from centrode.kinematics.quick_turns import QuickTurns
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -23,7 +23,7 @@ from centrode.kinematics.compiled.variables import NODE_JETS, STEP
 from centrode.kinematics.higher_class.chains import Chain, Posture
 from centrode.kinematics.higher_class.surroundings import needed, plain
 from centrode.kinematics.higher_class.system import cut
-from centrode.structure.positions import Positions
+from centrode.structure.constraints import Positions
 
 Number: TypeAlias = Any
 

@@ -17,8 +17,8 @@ from centrode.kinematics.higher_class.surroundings import Surroundings, flattene
 from centrode.kinematics.higher_class.system import System
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.solve import of_batch
+from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.positions import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -18,7 +18,7 @@ from centrode.render.document.blocks import (
 from centrode.render.document.rows import small
 from centrode.report.study import ReportStudy
 from centrode.structure.assur import AssurGroup
-from centrode.structure.mobility import is_bare, slider_of
+from centrode.structure.rank import is_bare, slider_of
 from centrode.study.checking import Check as Checked
 
 CLOSES = 1e-9
