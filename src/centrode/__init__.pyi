@@ -109,7 +109,7 @@ from .present import polygon_figures as polygon_figures
 from .dynamics.steady_motion.steady import steady_motion as steady_motion
 from .dynamics.steady_motion.flywheel import flywheel as flywheel
 from .dynamics.steady_motion.flywheel import Flywheel as Flywheel
-from .dynamics.steady_motion.steady import machine_results as machine_results
+from .dynamics.steady_motion.machine import machine_results as machine_results
 
 # Motion under loads and a drive
 from .model.simulations import Simulation as Simulation

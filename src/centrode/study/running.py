@@ -11,7 +11,7 @@ from centrode.dynamics.burden import Burden
 from centrode.dynamics.friction.contacts import contacts_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
-from centrode.dynamics.steady_motion.steady import MachineResults, machine_results
+from centrode.dynamics.steady_motion.machine import MachineResults, machine_results
 from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import Ready, ready

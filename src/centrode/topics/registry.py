@@ -8,10 +8,10 @@ from centrode.topics.topic import ChapterOfTopic, Choice, Lazily, Topic
 FLYWHEEL = Topic(
     name="flywheel",
     help=mark("Find the flywheel of a machine, and its real motion."),
-    compute=Lazily("centrode.dynamics.steady_motion.steady", "machine_results"),
-    result=Lazily("centrode.dynamics.steady_motion.steady", "MachineResults"),
+    compute=Lazily("centrode.dynamics.steady_motion.machine", "machine_results"),
+    result=Lazily("centrode.dynamics.steady_motion.machine", "MachineResults"),
     view=Lazily("centrode.views.flywheel", "sheet"),
-    concerns=Lazily("centrode.dynamics.steady_motion.steady", "is_machine"),
+    concerns=Lazily("centrode.dynamics.steady_motion.machine", "is_machine"),
     needs=Lazily("centrode.dynamics.steady_motion.flywheel", "need_fluctuation"),
     options=(
         Choice(

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from centrode.dynamics.steady_motion.flywheel import Flywheel
-    from centrode.dynamics.steady_motion.steady import MachineResults
+    from centrode.dynamics.steady_motion.machine import MachineResults
 
 UNITS = {
     "mean_speed": "rad/s",

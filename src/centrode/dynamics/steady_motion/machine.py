@@ -1,0 +1,67 @@
+"""A machine in steady motion as one result: its energies, its flywheel, its real motion over a cycle and at instants."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import xarray as xr
+
+from centrode.dynamics.steady_motion.balance import Mean
+from centrode.dynamics.steady_motion.flywheel import Flywheel, flywheel_of
+from centrode.dynamics.steady_motion.solution import solution_of
+from centrode.dynamics.steady_motion.steady import Method, steady_dataset, turned_at
+from centrode.model.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class MachineResults:
+    """A machine in steady motion.
+
+    Attributes
+    ----------
+    mechanism : the machine
+    flywheel : Flywheel
+    steady : the labelled steady motion over a cycle
+    instants : the same at the instants that were named; None without any
+    """
+
+    mechanism: Mechanism
+    flywheel: Flywheel
+    steady: xr.Dataset
+    instants: xr.Dataset | None
+
+
+def machine_results(
+    mechanism: Mechanism,
+    samples: int | None = None,
+    mean: Mean = "middle",
+    method: Method = "exact",
+    *,
+    instants: Sequence[float] | None = None,
+) -> MachineResults:
+    """Energies, flywheel and steady motion of a machine, from one solution.
+
+    Parameters
+    ----------
+    samples, mean, method : as of `steady_motion`
+    instants : values of the drive [rad]; those of the description if left out
+
+    Raises
+    ------
+    InputError, MotionError
+        As `steady_motion`.
+    """
+    solution = solution_of(mechanism, mean)
+    if instants is None:
+        # a law of time may pass a value more than once
+        instants = mechanism.study.instants if solution.prepared.parameter.is_uniform else ()
+    at_instants = steady_dataset(solution, turned_at(solution, at=instants), method) if instants else None
+    steady = steady_dataset(solution, turned_at(solution, samples), method)
+    return MachineResults(mechanism, flywheel_of(solution), steady, at_instants)
+
+
+def is_machine(mechanism: Mechanism) -> bool:
+    """Whether a description has a machine, and masses or loads that move it unevenly."""
+    heavy = bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
+    return mechanism.machine is not None and heavy
