@@ -13,11 +13,10 @@ from benchmarks import force_peers
 from benchmarks.force_peers import ForcePeer
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Task, best_times, paired_times, ratio
-from centrode.dynamics.burden import Burden
-from centrode.dynamics.kinetostatics.finding import find
-from centrode.dynamics.kinetostatics.moving import pace_of
-from centrode.dynamics.reducer import Reducer
-from centrode.dynamics.reduction import reduction_of
+from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.reactions import find
+from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.reduction import Reducer, reduction_of
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
 
@@ -65,7 +64,7 @@ def reactions() -> Iterator[Row]:
         mechanism = ct.example(name)
         prepared = ready(mechanism)
         solved = solve(prepared, asked_span(prepared, SAMPLES, None, None))
-        burden = Burden.in_plane(mechanism)
+        burden = MassesAndLoads.in_plane(mechanism)
         pace = pace_of(solved, burden)
         whole: Task = functools.partial(ct.reactions, mechanism, SAMPLES)
         own: Task = functools.partial(find, solved, burden, pace)
@@ -112,7 +111,7 @@ def _against(
     """One peer at so many samples; `inner`: it has no derivatives at the first and the last."""
     prepared = ready(mechanism)
     span = asked_span(prepared, samples, None, None)
-    burden = Burden.in_plane(mechanism)
+    burden = MassesAndLoads.in_plane(mechanism)
     ours = ct.reactions(mechanism, samples)
     peer = build(mechanism, ct.motion(mechanism, samples), float(ours["drive_rate"][0]))
     peer.solve()

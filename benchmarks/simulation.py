@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import centrode as ct
 from benchmarks.table import Promise, Row
 from benchmarks.timing import best_times
-from centrode.dynamics.simulation.compiled import compiled
-from centrode.dynamics.simulation.setting import setting_of
+from centrode.dynamics.simulation.simulate import setting_of
+from centrode.dynamics.simulation.stepping import compiled
 
 STEPS = 10_000
 NAMES = ("spherical-crank-rocker", "spherical-crank-rocker-rigid", "six-bar-press-run-up")

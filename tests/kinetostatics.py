@@ -5,11 +5,11 @@ from __future__ import annotations
 import xarray as xr
 
 import centrode as ct
-from centrode.dynamics.burden import Burden
-from centrode.dynamics.friction.contacts import contacts_of
-from centrode.dynamics.kinetostatics.moving import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.equations import Scheme
+from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
-from centrode.dynamics.kinetostatics.scheme import Scheme
+from centrode.dynamics.loads import MassesAndLoads
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
@@ -26,7 +26,7 @@ def motion_and_reactions(
     initial = prepared.kinematics.path.initial
     ends = (None, None) if around is None else (initial - around, initial + around)
     solved = solve(prepared, asked_span(prepared, samples, *ends))
-    burden = Burden.for_reactions(mechanism)
+    burden = MassesAndLoads.for_reactions(mechanism)
     found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
     return dataset_of(solved), found
 

@@ -96,8 +96,8 @@ from .study.forces.bearing_loads import bearing_load_rows as bearing_load_rows
 from .study.forces.bearing_loads import bearing_load_scalars as bearing_load_scalars
 
 # Forces by hand
-from .dynamics.force_polygons.solving import force_polygons as force_polygons
-from .dynamics.force_polygons.result import ForcePolygons as ForcePolygons
+from .dynamics.force_polygons.polygons import force_polygons as force_polygons
+from .dynamics.force_polygons.polygons import ForcePolygons as ForcePolygons
 from .study.forces.force_polygons import polygon_about as polygon_about
 from .study.forces.force_polygons import polygon_steps as polygon_steps
 from .study.forces.force_polygons import polygon_rows as polygon_rows
@@ -115,8 +115,8 @@ from .dynamics.steady_motion.machine import machine_results as machine_results
 from .model.simulations import Simulation as Simulation
 from .model.simulations import Motor as Motor
 from .dynamics.simulation.simulate import simulate as simulate
-from .dynamics.simulation.regime import steady_regime as steady_regime
-from .dynamics.simulation.regime import Regime as Regime
+from .dynamics.simulation.steady_state import steady_regime as steady_regime
+from .dynamics.simulation.steady_state import Regime as Regime
 from .study.forces.simulating import simulation_rows as simulation_rows
 from .study.forces.simulating import regime_rows as regime_rows
 from .present import simulation_figures as simulation_figures

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.dynamics.force_polygons import solving
-from centrode.dynamics.force_polygons.polygon import PAPERS, ROOM, round_scale
+from centrode.dynamics.force_polygons import polygons
+from centrode.dynamics.force_polygons.polygons import PAPERS, ROOM, round_scale
 from mechanisms import EPS, Parts, four_bar, parts_of
 from polygonal import (
     OPERATIONS,
@@ -106,7 +106,7 @@ def test_steps_of_the_press() -> None:
 def test_a_triad_by_an_assur_point_and_all_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = loaded("third-class-triad")
     by_point = ct.force_polygons(mechanism, 0.9)
-    monkeypatch.setattr(solving, "triad_of", lambda cell: None)
+    monkeypatch.setattr(polygons, "triad_of", lambda cell: None)
     together = ct.force_polygons(mechanism, 0.9)
     assert [group.kind for group in by_point.groups] == ["triad", "input"]
     assert [group.kind for group in together.groups] == ["together", "input"]

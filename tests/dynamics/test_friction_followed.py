@@ -9,15 +9,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from centrode.dynamics.friction.following import LEAST_STEP, Followed, Law, Outcome, Rule, followed
+from centrode.dynamics.kinetostatics.friction import (
+    LEAST_STEP,
+    Followed,
+    FrictionLaw,
+    FrictionRule,
+    Outcome,
+    followed,
+)
 from mechanisms import EPS
 from samples import few
 
 
-def one(factor: float, base: complex, gain: complex, rule: Rule = Rule.LENGTH) -> Followed:
+def one(factor: float, base: complex, gain: complex, rule: FrictionRule = FrictionRule.LENGTH) -> Followed:
     """A single size at one position."""
     parts = np.array([[[base.real, base.imag]]]), np.array([[[[gain.real], [gain.imag]]]])
-    return followed(Law(np.array([[factor]]), *parts, np.array([rule], dtype=np.int8)))
+    return followed(FrictionLaw(np.array([[factor]]), *parts, np.array([rule], dtype=np.int8)))
 
 
 @pytest.mark.parametrize("gain", [0.0, 0.5, -0.5, -3.0, -40.0, 0.999])
@@ -56,10 +63,10 @@ def test_a_force_that_turns_back() -> None:
 
 
 def test_the_greater_of_two_and_the_signed() -> None:
-    assert one(0.5, complex(1.0, -3.0), 0.0, Rule.GREATER).sizes[0, 0] == 1.5
-    assert one(0.5, complex(-1.0, 0.0), 0.0, Rule.FIRST).sizes[0, 0] == -0.5
+    assert one(0.5, complex(1.0, -3.0), 0.0, FrictionRule.GREATER).sizes[0, 0] == 1.5
+    assert one(0.5, complex(-1.0, 0.0), 0.0, FrictionRule.FIRST).sizes[0, 0] == -0.5
     # |N| until the moment's part, which friction makes greater, overtakes it: f = |1 + 2 f| / 4 there
-    found = one(0.25, complex(1.2, 1.0), complex(0.0, 2.0), Rule.GREATER)
+    found = one(0.25, complex(1.2, 1.0), complex(0.0, 2.0), FrictionRule.GREATER)
     assert math.isclose(found.sizes[0, 0], 0.5, rel_tol=64 * EPS)
 
 
@@ -67,7 +74,7 @@ def test_no_size_and_no_force() -> None:
     assert one(0.3, 0.0, 0.7).sizes[0, 0] == 0.0
     assert one(0.0, 1.0, 5.0).sizes[0, 0] == 0.0
     empty = followed(
-        Law(np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2, 2, 2)), np.zeros(2, dtype=np.int8))
+        FrictionLaw(np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2, 2, 2)), np.zeros(2, dtype=np.int8))
     )
     assert empty.sizes.shape == (0, 2)
 
@@ -78,13 +85,17 @@ def test_where_little_feeds_back_plain_iteration_comes_to_the_same(seed: int, wi
     random = np.random.default_rng(seed)
     count = 5
     gain = random.normal(size=(count, width, 2, width))
-    law = Law(
+    law = FrictionLaw(
         random.choice([-1.0, 1.0], (count, width)) * random.uniform(0.0, 1.0, (count, width)),
         random.normal(size=(count, width, 2)),
         gain,
-        random.choice(np.array([Rule.LENGTH, Rule.GREATER, Rule.FIRST], dtype=np.int8), width),
+        random.choice(
+            np.array([FrictionRule.LENGTH, FrictionRule.GREATER, FrictionRule.FIRST], dtype=np.int8), width
+        ),
     )
-    law = Law(law.factor * (0.7 / np.maximum(law.feedback, 0.7))[:, None], law.base, law.gain, law.rules)
+    law = FrictionLaw(
+        law.factor * (0.7 / np.maximum(law.feedback, 0.7))[:, None], law.base, law.gain, law.rules
+    )
     found = followed(law)
     assert (found.outcome == Outcome.FOUND).all()
     sizes = np.zeros((count, width))
@@ -103,11 +114,11 @@ def test_where_little_feeds_back_plain_iteration_comes_to_the_same(seed: int, wi
 def test_what_is_followed_solves_and_joins_on_to_no_friction(seed: int, width: int) -> None:
     """With strong feedback too; sizes of a hair less friction are a hair less far along the same branch."""
     random = np.random.default_rng(seed)
-    law = Law(
+    law = FrictionLaw(
         random.uniform(0.2, 2.0, (8, width)),
         random.normal(size=(8, width, 2)),
         random.normal(size=(8, width, 2, width)),
-        np.full(width, Rule.LENGTH, dtype=np.int8),
+        np.full(width, FrictionRule.LENGTH, dtype=np.int8),
     )
     found = followed(law)
     assert (found.outcome != Outcome.LOST).all()
@@ -119,5 +130,7 @@ def test_what_is_followed_solves_and_joins_on_to_no_friction(seed: int, width: i
     locked = found.outcome == Outcome.LOCKED
     if locked.any():
         part = law.at(locked)
-        less = Law(part.factor * (0.999 * found.share[locked])[:, None], part.base, part.gain, part.rules)
+        less = FrictionLaw(
+            part.factor * (0.999 * found.share[locked])[:, None], part.base, part.gain, part.rules
+        )
         assert (followed(less).outcome == Outcome.FOUND).all()

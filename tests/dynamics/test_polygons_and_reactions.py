@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from burdened import burdened
-from centrode.dynamics.force_polygons.bodies import Bodies
+from centrode.dynamics.force_polygons.statics import FreeBodies
 from centrode.kinematics.ready import ready
 from growing import KINDS, grown, mechanism_of
 from mechanisms import EPS
@@ -27,7 +27,7 @@ def by_pins(found: ct.ForcePolygons) -> dict[str, complex]:
     A guide's force and that of a wheel's contact act on the link here, on the pin in the list of constraints.
     """
     mechanism = found.mechanism
-    bodies = Bodies.of(ready(mechanism).structure)
+    bodies = FreeBodies.of(ready(mechanism).structure)
     held = {(guide.point, guide.link) for guide in mechanism.guides}
     held |= {(wheel.centre, wheel.link) for wheel in mechanism.rolling}
     forces = {}
@@ -43,7 +43,7 @@ def by_pins(found: ct.ForcePolygons) -> dict[str, complex]:
 def along_guides(found: ct.ForcePolygons) -> dict[str, tuple[complex, float]]:
     """Force and moment of each guide on what slides on it."""
     mechanism = found.mechanism
-    bodies = Bodies.of(ready(mechanism).structure)
+    bodies = FreeBodies.of(ready(mechanism).structure)
     forces = {}
     for guide in mechanism.guides:
         name = f"R{bodies.pair(guide.on, bodies.carrier(guide))}"

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from centrode.dynamics.steady_motion.quadrature import MOST_PANELS, NODES, Panels, resolved
+from centrode.dynamics.steady_motion.cycle import MOST_PANELS, NODES, Panels, resolved
 from centrode.numerics.search import extremes
 
 Array = npt.NDArray[np.float64]

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from burdened import burdened
-from centrode.dynamics.burden import Burden
-from centrode.dynamics.states import Moving, State
+from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.state import Moving, State
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
 from growing import KINDS, descriptions, grown, mechanism_of
@@ -200,7 +200,7 @@ def test_pulls_of_a_coordinate_do_its_slope(seed: int) -> None:
     solved = solve(prepared, asked_span(prepared, 5, initial - 0.05, initial + 0.05))
     span = solved.span
     state = State.of(solved, Moving(span.time, span.parameter, span.rate))
-    for load in Burden.of(mechanism).loads:
+    for load in MassesAndLoads.of(mechanism).loads:
         for effort in load.efforts:
             done: Any = 0.0
             size: Any = 0.0

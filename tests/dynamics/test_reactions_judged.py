@@ -9,15 +9,12 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.dynamics.burden import Burden
-from centrode.dynamics.kinetostatics.checking import checks_of
-from centrode.dynamics.kinetostatics.equilibrium import InPlane
-from centrode.dynamics.kinetostatics.finding import find
-from centrode.dynamics.kinetostatics.inverse import EPSILON, inverse_of
-from centrode.dynamics.kinetostatics.moving import pace_of
-from centrode.dynamics.kinetostatics.solution import Forces
-from centrode.dynamics.states import Moving, State
-from centrode.dynamics.steady_motion.solution import SETTLED
+from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.equations import EPSILON, ForceSystem, InPlane, inverse_of
+from centrode.dynamics.kinetostatics.reactions import checks_of, find
+from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.state import Moving, State
+from centrode.dynamics.steady_motion.steady import SETTLED
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import asked_span, solve
 from centrode.kinematics.spans import span_at
@@ -82,7 +79,7 @@ def test_checks_tell_of_wrong_reactions() -> None:
     """Each of the three residuals sees a force that is off by a thousandth."""
     prepared = ready(ct.example("six-bar-press"))
     solved = solve(prepared, asked_span(prepared, 5, None, None))
-    burden = Burden.of(prepared.mechanism)
+    burden = MassesAndLoads.of(prepared.mechanism)
     found = find(solved, burden, pace_of(solved, burden))
     rates = found.pace.moving.rate[:, None]
     assert max(checks_of(found, rates).values()) <= 1e3 * EPS
@@ -91,7 +88,7 @@ def test_checks_tell_of_wrong_reactions() -> None:
         ((PointInLink("A", "OA"), 1), {"equilibrium_residual"}),
     ):
         off = {**found.forces.multipliers, unknown: found.forces.multipliers[unknown] * 1.001}
-        wrong = replace(found, forces=Forces(found.forces.system, off, found.forces.outer))
+        wrong = replace(found, forces=ForceSystem(found.forces.system, off, found.forces.outer))
         assert {name for name, share in checks_of(wrong, rates).items() if share > 1e-5} == names
     wrong = replace(found, parts={**found.parts, "balancing": found.parts["balancing"] * 1.001})
     assert checks_of(wrong, rates)["power_residual"] > 1e-5

@@ -12,7 +12,7 @@ import scipy.special
 
 import centrode as ct
 from burdened import burdened
-from centrode.dynamics.reducer import Reducer
+from centrode.dynamics.reduction import Reducer
 from growing import KINDS, mechanism_of
 from growing import grown as grown_parts
 from simulated import crank_rocker, pendulum, rotor, spherical

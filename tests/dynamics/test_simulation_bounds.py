@@ -9,7 +9,7 @@ import pytest
 
 import centrode as ct
 from centrode.algebra.machine_code import PRESENT
-from centrode.dynamics.simulation import field
+from centrode.dynamics.simulation import equation_of_motion
 from centrode.dynamics.simulation.stepping import Stepper
 from centrode.kinematics.solve import BYTES, GREATEST_RESULT
 from centrode.model.simulations import MOST_TURNS
@@ -46,7 +46,7 @@ def test_fixed_steps_that_run_away_are_broken_off(executor: Any) -> None:
 
 def test_a_drive_that_runs_away_is_broken_off(monkeypatch: pytest.MonkeyPatch) -> None:
     """J q'' = 5 N m: 20 turns after sqrt(2 * 40 pi / 10) = 5.01 s; there, within a step, it ends."""
-    monkeypatch.setattr(field, "MOST_TURNS", 20)
+    monkeypatch.setattr(equation_of_motion, "MOST_TURNS", 20)
     with pytest.raises(ct.MotionError, match=r"turns at t = 5\."):
         ct.simulate(rotor(), ct.Simulation(driving="5", duration=100))
 

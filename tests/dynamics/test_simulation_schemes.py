@@ -10,8 +10,8 @@ import pytest
 
 import centrode as ct
 from centrode.algebra.machine_code import PRESENT
-from centrode.dynamics.simulation.compiled import compiled
-from centrode.dynamics.simulation.setting import setting_of
+from centrode.dynamics.simulation.simulate import setting_of
+from centrode.dynamics.simulation.stepping import compiled
 from simulated import PENDULUM, crank_rocker, pendulum, rotor, sledge, spherical
 
 EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from centrode.dynamics.steady_motion.sizes import by_source, inertia_of, mass_of, wheel
+from centrode.dynamics.steady_motion.flywheel import by_source, inertia_of, mass_of, wheel
 
 EPS = 2.0**-52
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import centrode as ct
-from centrode.dynamics.bodies import Radial, Spread
 from centrode.dynamics.masses import masses_of, massless_links
+from centrode.dynamics.state import Radial, Spread
 from centrode.model.tensors import principal
 from growing_sphere import unit
 from mechanisms import EPS

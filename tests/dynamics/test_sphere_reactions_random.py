@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.dynamics.kinetostatics.scheme import Scheme
+from centrode.dynamics.kinetostatics.equations import Scheme
 from centrode.kinematics.ready import ready
 from growing_sphere import Growing, grown
 from mechanisms import EPS

@@ -13,12 +13,12 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import centrode as ct
-from centrode.dynamics.steady_motion.balance import Mean
-from centrode.dynamics.steady_motion.solution import solution_of
+from centrode.dynamics.steady_motion.speed import MeanSpeed
+from centrode.dynamics.steady_motion.steady import solution_of
 from machines import STROKE, centre_of, crank, engine, kinetic_energy
 
 EPS = float(np.finfo(np.float64).eps)
-MEANS: tuple[Mean, ...] = ("middle", "time")
+MEANS: tuple[MeanSpeed, ...] = ("middle", "time")
 PUSH = """\
 [[loads]]
 kind = "damper"
@@ -65,7 +65,7 @@ def test_a_crank_in_closed_form(speed: float, fluctuation: float) -> None:
 @pytest.mark.parametrize("mean", MEANS)
 @pytest.mark.parametrize("fluctuation", [0.002, 0.05, 0.4])
 @pytest.mark.parametrize("more", ["", PUSH])
-def test_the_speed_has_the_fluctuation_asked_for(mean: Mean, fluctuation: float, more: str) -> None:
+def test_the_speed_has_the_fluctuation_asked_for(mean: MeanSpeed, fluctuation: float, more: str) -> None:
     """To 1e-9 and better, by the energies at many places: from the quadrature, not from the tangents."""
     found = solution_of(engine(f"fluctuation = {fluctuation}", more), mean)
     assert found.needed is not None
@@ -94,7 +94,7 @@ def test_the_speed_has_the_fluctuation_asked_for(mean: Mean, fluctuation: float,
         ("[[machine.shafts]]\ninertia = 0.5\nratio = -3", PUSH, "middle"),
     ],
 )
-def test_the_equation_of_motion_gives_the_same_speed(machine: str, more: str, mean: Mean) -> None:
+def test_the_equation_of_motion_gives_the_same_speed(machine: str, more: str, mean: MeanSpeed) -> None:
     """(J_I + J_II) omega omega' + J_II' omega^2 / 2 = M, integrated over the cycle by DOP853."""
     mechanism = engine(machine, more)
     found = solution_of(mechanism, mean)

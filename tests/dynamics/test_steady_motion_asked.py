@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.dynamics.steady_motion.solution import solution_of
+from centrode.dynamics.steady_motion.steady import solution_of
 from machines import CRANK, crank, engine
 
 EPS = float(np.finfo(np.float64).eps)

@@ -13,7 +13,7 @@ from matplotlib.text import Text
 
 import centrode as ct
 from boxes import outside, overlapping
-from centrode.dynamics.force_polygons.polygon import PAPERS
+from centrode.dynamics.force_polygons.polygons import PAPERS
 from centrode.present.forces.force_signs import force_name
 from centrode.present.forces.polygon_drawing import SHORT
 from centrode.present.page import INCH

@@ -3,33 +3,379 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from math import hypot
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.dynamics.amounts import (
-    Amount,
-    Constant,
-    Damper,
-    Diagram,
-    Formula,
-    Friction,
-    Square,
-    StraightSpring,
-    TorsionSpring,
+from centrode.algebra.text import TextFormula, compile_formula
+from centrode.dynamics.load_coordinates import (
+    Component,
+    Coordinate,
+    Distance,
+    HalfSquare,
+    Slide,
+    Travel,
+    turning_of,
 )
-from centrode.dynamics.coordinates import Component, Distance, HalfSquare, Slide
-from centrode.dynamics.efforts import REST, Acting, Effort, grows
-from centrode.dynamics.masses import Given, Mass, centre_of
-from centrode.dynamics.turning import Travel, turning_of
+from centrode.dynamics.masses import centre_of, masses_of
+from centrode.dynamics.state import Given, Mass, State
+from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, NotComputedYet
+from centrode.kinematics.paths import JETS
 from centrode.locale import _
-from centrode.model.loads import PLAIN_SUM, Load
+from centrode.model.loads import LOAD_VARIABLES, PLAIN_SUM, Load
 from centrode.model.mechanism import FRAME, Mechanism
 
-__all__ = ["REST", "Acting", "Effort", "grows", "loads_of"]
+# How great a load is: constant, a formula, a spring, a damper, an indicator diagram.
 
+Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
+
+SLACK = 1e-9
+"""A stroke may leave its diagram by this share of the diagram's width: that much is rounding of printed rows."""
+
+
+@dataclass(frozen=True)
+class Situation:
+    """What a load may depend on: time, the drive's value, the load's coordinate and its speed.
+
+    `sense` is 1 where the coordinate grows in time, -1 where it falls, 0 where nothing moves. With several drives q
+    has no value. `m` has the functions.
+    """
+
+    t: Number
+    q: Number
+    x: Number
+    v: Number
+    sense: Number
+    m: Any
+
+
+class LoadLaw(Protocol):
+    """A force [N] or moment [N m] along its coordinate."""
+
+    @property
+    def uses(self) -> frozenset[str]:
+        """Which of t, q, x, v it depends on."""
+
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """Values of the coordinate at which it has a kink."""
+
+    @property
+    def jumps(self) -> bool:
+        """Whether it may jump where the coordinate turns round."""
+
+    @property
+    def sensed(self) -> bool:
+        """Whether it asks which way the coordinate goes."""
+
+    def __call__(self, now: Situation) -> Number:
+        """Its value."""
+
+
+@dataclass(frozen=True)
+class Constant:
+    """The same always."""
+
+    value: Number
+    uses: frozenset[str] = frozenset()
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+
+    def __call__(self, now: Situation) -> Number:
+        return self.value
+
+
+@dataclass(frozen=True)
+class LoadFormula:
+    """A text formula of time, drive, coordinate and speed."""
+
+    formula: TextFormula
+    levels: tuple[float, ...] = ()
+    sensed: bool = False
+
+    @classmethod
+    def of(cls, text: str, where: str) -> LoadFormula:
+        """The formula of a text."""
+        return cls(compile_formula(text, LOAD_VARIABLES, where))
+
+    @property
+    def uses(self) -> frozenset[str]:
+        """Which of t, q, x, v it depends on."""
+        return self.formula.used
+
+    @property
+    def jumps(self) -> bool:
+        """Where its speed changes sign it may."""
+        return "v" in self.formula.used
+
+    def __call__(self, now: Situation) -> Number:
+        with np.errstate(all="ignore"):
+            return self.formula(now.m, t=now.t, q=now.q, x=now.x, v=now.v)
+
+
+@dataclass(frozen=True)
+class TorsionSpring:
+    """-k (x - free) along an angle."""
+
+    stiffness: float
+    free: float
+    uses: frozenset[str] = frozenset("x")
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+
+    def __call__(self, now: Situation) -> Number:
+        return -self.stiffness * (now.x - self.free)
+
+
+@dataclass(frozen=True)
+class StraightSpring:
+    """-k (l - free), given along half the squared distance: -k (1 - free/l)."""
+
+    stiffness: float
+    free: float
+    uses: frozenset[str] = frozenset("x")
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+
+    def __call__(self, now: Situation) -> Number:
+        if self.free == 0.0:
+            return -self.stiffness
+        with np.errstate(all="ignore"):
+            return -self.stiffness * (1.0 - self.free / now.m.sqrt(2.0 * now.x))
+
+
+@dataclass(frozen=True)
+class Damper:
+    """-c v along its coordinate."""
+
+    damping: float
+    uses: frozenset[str] = frozenset("v")
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+
+    def __call__(self, now: Situation) -> Number:
+        return -self.damping * now.v
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Against the motion: a constant or a formula (Coulomb), and parts that grow with the speed and its square."""
+
+    dry: LoadLaw
+    viscous: Number = 0.0
+    quadratic: Number = 0.0
+    levels: tuple[float, ...] = ()
+
+    @property
+    def uses(self) -> frozenset[str]:
+        """Dry friction of a constant asks for the sense of the motion only."""
+        return self.dry.uses | frozenset("v" if self.viscous or self.quadratic else "")
+
+    @property
+    def jumps(self) -> bool:
+        """Dry friction changes its sense at once."""
+        return self.sensed
+
+    @property
+    def sensed(self) -> bool:
+        """Whether there is dry friction."""
+        return not (isinstance(self.dry, Constant) and self.dry.value == 0.0)
+
+    def __call__(self, now: Situation) -> Number:
+        found = -self.viscous * now.v - self.quadratic * now.v * now.m.abs(now.v)
+        return found - now.sense * self.dry(now) if self.sensed else found
+
+
+@dataclass(frozen=True)
+class Square:
+    """-a v^2: what the plain sum of the source takes for friction, whichever way the joint turns."""
+
+    quadratic: Number
+    uses: frozenset[str] = frozenset("v")
+    levels: tuple[float, ...] = ()
+    jumps: bool = False
+    sensed: bool = False
+
+    def __call__(self, now: Situation) -> Number:
+        return -self.quadratic * now.v * now.v
+
+
+@dataclass(frozen=True)
+class LoadDiagram:
+    """Straight lines between the rows of an indicator diagram; one column for each sense of motion, or for both."""
+
+    label: str
+    rows: tuple[tuple[float, ...], ...]
+
+    @property
+    def uses(self) -> frozenset[str]:
+        """The displacement alone: of the speed only the sense counts."""
+        return frozenset("x")
+
+    @property
+    def jumps(self) -> bool:
+        """From one column to the other."""
+        return len(self.rows[0]) > 2
+
+    @property
+    def sensed(self) -> bool:
+        """Whether the way back has a column of its own."""
+        return len(self.rows[0]) > 2
+
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """Displacements of its inner rows."""
+        return tuple(row[0] for row in self.rows[1:-1])
+
+    def __call__(self, now: Situation) -> Number:
+        at, *forces = np.array(self.rows).T
+        inside = self._inside(np.asarray(now.x))
+        there = np.where(inside, np.interp(now.x, at, forces[0]), np.nan)
+        if len(forces) == 1:
+            return there
+        return np.where(
+            np.asarray(now.sense) >= 0.0, there, np.where(inside, np.interp(now.x, at, forces[1]), np.nan)
+        )
+
+    def _inside(self, x: Array) -> npt.NDArray[np.bool_]:
+        """Where a displacement lies on the diagram; that of an absent position does not."""
+        low, high = self.rows[0][0], self.rows[-1][0]
+        slack = SLACK * (high - low)
+        return np.asarray((x >= low - slack) & (x <= high + slack))
+
+    def refusal(self, x: float) -> InputError:
+        """What is said of a displacement beside the diagram."""
+        what = _(
+            "the stroke reaches {value:.6g} m, and the diagram lies between {low:.6g} m and {high:.6g} m"
+        )
+        text = what.format(value=x, low=self.rows[0][0], high=self.rows[-1][0])
+        return InputError(self.label, text, _("add rows up to the ends of the stroke"))
+
+
+# Loads as efforts: amounts along coordinates, and how great they are in a state.
+
+REST = 64.0 * 2.0**-52
+"""A speed counts as zero within this share of what rounding can make of it."""
+
+
+@dataclass(frozen=True)
+class LoadTerm:
+    """A load's amount along a coordinate; with a `gate` only where that coordinate grows in time.
+
+    It `works` along another coordinate where the source of a formula has it so, against virtual work.
+    """
+
+    coordinate: Coordinate
+    amount: LoadLaw
+    gate: Coordinate | None = None
+    works: Coordinate | None = None
+
+    def strength(self, state: State) -> Number:
+        """The force [N] or moment [N m] itself."""
+        slope = self.coordinate.slope(state).value
+        q = np.nan if len(state.mechanism.drives) > 1 else state.parameter
+        x, v = self.coordinate.value(state), slope * state.rate
+        sense = self._sense(state, v) if self.amount.sensed else 0.0
+        now = Situation(state.time, q, x, v, sense, state.m.base)
+        amount = self.amount(now)
+        if self.gate is None:
+            return amount
+        if state.m is JETS:
+            return np.where(grows(self.gate, state), amount, 0.0)
+        speed = self.gate.slope(state).value * state.rate
+        return state.m.base.where(state.m.base.less(speed, 0.0), 0.0, amount)
+
+    @property
+    def switches(self) -> tuple[Coordinate, ...]:
+        """Coordinates at whose turning points the amount may jump."""
+        found = (self.gate,) if self.gate is not None else ()
+        return (*found, self.coordinate) if self.amount.jumps else found
+
+    @property
+    def needs_law(self) -> bool:
+        """Whether it depends on how the drive moves in time, and not only on the sense of that."""
+        return bool(self.amount.uses & {"t", "v"})
+
+    def along(self, state: State) -> Number:
+        """Derivative by the parameter of what it works along."""
+        return (self.coordinate if self.works is None else self.works).slope(state).value
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        """What one unit of it does to points and links."""
+        return (self.coordinate if self.works is None else self.works).pulls(state)
+
+    def _sense(self, state: State, speed: Number) -> Number:
+        if state.m is not JETS:
+            return state.m.base.sign(speed)
+        return np.sign(_going(self.coordinate, state))
+
+
+def grows(coordinate: Coordinate, state: State) -> Number:
+    """Where a coordinate grows in time; where it turns, `state.side` decides."""
+    return _going(coordinate, state) >= 0.0
+
+
+def _going(coordinate: Coordinate, state: State) -> Number:
+    """A number with the sign of a coordinate's speed; where it turns that on `state.side`, zero at the place itself."""
+    slope = coordinate.slope(state)
+    speed, bend = slope.value * state.rate, slope.derivative(1) * state.rate
+    reach = np.maximum(1.0, np.abs(state.parameter))
+    with np.errstate(invalid="ignore"):
+        rest = np.abs(slope.value) <= REST * (np.abs(slope.derivative(1)) * reach + state.scale)
+    return np.where(rest, bend * state.side, speed)
+
+
+@dataclass(frozen=True)
+class AppliedLoad:
+    """A load with the efforts it is made of."""
+
+    label: str
+    efforts: tuple[LoadTerm, ...]
+    where: str = field(default="", compare=False)
+
+    def moment(self, state: State, known: Number) -> Number:
+        """Its reduced moment, or generalised force, by the parameter of the state.
+
+        Raises InputError where it has no finite amount although the positions are `known`.
+        """
+        return self.along(state, self.strengths(state, known))
+
+    def strengths(self, state: State, known: Number) -> list[Number]:
+        """How great each effort is [N or N m]; raises InputError as `moment` does."""
+        found = [effort.strength(state) for effort in self.efforts]
+        for effort, strength in zip(self.efforts, found, strict=True):
+            lacking = known & ~np.isfinite(strength)
+            if np.any(lacking):
+                raise self._refusal(effort, state, lacking)
+        return found
+
+    def _refusal(self, effort: LoadTerm, state: State, lacking: Number) -> InputError:
+        """Why an effort has no amount at the first of the samples that lack one."""
+
+        def first(values: Number) -> float:
+            return float(np.broadcast_to(values, lacking.shape)[lacking].flat[0])
+
+        if isinstance(effort.amount, LoadDiagram):
+            return effort.amount.refusal(first(effort.coordinate.value(state)))
+        what = _("it has no finite value at {value:.6g}").format(value=first(state.parameter))
+        return InputError(self.where, what, _("correct its formula"))
+
+    def along(self, state: State, strengths: Sequence[Number]) -> Number:
+        """What efforts of these strengths do along the parameter of a state: the sum of strength times slope."""
+        pairs = zip(self.efforts, strengths, strict=True)
+        return sum(strength * effort.along(state) for effort, strength in pairs)
+
+
 Namespace: TypeAlias = Any
 
 
@@ -39,7 +385,7 @@ def loads_of(
     given: Given | None = None,
     m: Namespace = ARRAYS,
     described: Sequence[Load] | None = None,
-) -> tuple[Acting, ...]:
+) -> tuple[AppliedLoad, ...]:
     """Loads of the description, or some of them, then the weights that gravity adds; each with a label of its own.
 
     Raises
@@ -52,12 +398,14 @@ def loads_of(
     loads = mechanism.loads if described is None else described
     labels = _labels(loads, mechanism, masses)
     found = [
-        Acting(label, tuple(_efforts(mechanism, load, masses, where, given, m)), where)
+        AppliedLoad(label, tuple(_efforts(mechanism, load, masses, where, given, m)), where)
         for label, load in zip(labels, loads, strict=False)
         for where in [f"[[loads]] {label}"]
     ]
     weights = [
-        Acting(label, (_weight(mechanism, mass, mass.mass * _strength(mechanism)),), f"[links.{mass.link}]")
+        AppliedLoad(
+            label, (_weight(mechanism, mass, mass.mass * _strength(mechanism)),), f"[links.{mass.link}]"
+        )
         for label, mass in zip(labels[len(loads) :], _weighing(mechanism, masses), strict=True)
     ]
     return (*found, *weights)
@@ -91,7 +439,7 @@ def _efforts(
     where: str,
     given: Given | None,
     m: Namespace,
-) -> Iterable[Effort]:
+) -> Iterable[LoadTerm]:
     if load.kind == "friction":
         return [_friction(mechanism, load, where)]
     if load.kind == "weight":
@@ -100,14 +448,14 @@ def _efforts(
         return _force(load, where)
     if load.kind == "torque":
         amount = _amount(load.value, where)
-        return [Effort(turning_of(mechanism, load, where, "x" in amount.uses), amount)]
+        return [LoadTerm(turning_of(mechanism, load, where, "x" in amount.uses), amount)]
     return [_between(mechanism, load, where)]
 
 
-def _force(load: Load, where: str) -> list[Effort]:
+def _force(load: Load, where: str) -> list[LoadTerm]:
     if load.guide is not None:
-        amount = Diagram(where, load.table) if load.table is not None else _amount(load.value, where)
-        return [Effort(Slide(load.guide), amount)]
+        amount = LoadDiagram(where, load.table) if load.table is not None else _amount(load.value, where)
+        return [LoadTerm(Slide(load.guide), amount)]
     assert load.point is not None
     assert load.vector is not None
     point, axes = load.point, load.axes
@@ -115,17 +463,17 @@ def _force(load: Load, where: str) -> list[Effort]:
     if all(isinstance(value, float) for value in load.vector):
         vector = tuple(float(value) for value in load.vector)
         size = hypot(*vector)
-        return [Effort(Component(point, vector, axes), Constant(size), gate)] if size else []
+        return [LoadTerm(Component(point, vector, axes), Constant(size), gate)] if size else []
     count = len(load.vector)
     units = [tuple(float(i == k) for i in range(count)) for k in range(count)]
     return [
-        Effort(Component(point, unit, axes), _amount(value, where), gate)
+        LoadTerm(Component(point, unit, axes), _amount(value, where), gate)
         for unit, value in zip(units, load.vector, strict=True)
         if value != 0.0
     ]
 
 
-def _friction(mechanism: Mechanism, load: Load, where: str) -> Effort:
+def _friction(mechanism: Mechanism, load: Load, where: str) -> LoadTerm:
     """Friction of a given size: dry, and parts that grow with the speed and its square."""
     if load.coefficient is not None:
         what = _("friction by a coefficient needs the reactions")
@@ -134,32 +482,32 @@ def _friction(mechanism: Mechanism, load: Load, where: str) -> Effort:
     dry = _amount(load.value, where)
     if load.guide is not None:
         amount = Friction(dry, load.viscous or 0.0, load.quadratic or 0.0)
-        return Effort(Slide(load.guide), amount)
+        return LoadTerm(Slide(load.guide), amount)
     turn = turning_of(mechanism, load, where, "x" in dry.uses)
     if load.form == PLAIN_SUM:
         if len(mechanism.drives) > 1:
             what = _("the plain sum belongs to mechanisms with one drive")
             raise InputError(where, what, _("take form out: virtual work serves any number of drives"))
-        return Effort(turn, Square(load.quadratic or 0.0), works=Travel())
-    return Effort(turn, Friction(dry, load.viscous or 0.0, load.quadratic or 0.0))
+        return LoadTerm(turn, Square(load.quadratic or 0.0), works=Travel())
+    return LoadTerm(turn, Friction(dry, load.viscous or 0.0, load.quadratic or 0.0))
 
 
-def _between(mechanism: Mechanism, load: Load, where: str) -> Effort:
+def _between(mechanism: Mechanism, load: Load, where: str) -> LoadTerm:
     """A spring or a damper, between two points or in a hinge."""
     if load.link is not None:
         turn = turning_of(mechanism, load, where, load.kind == "spring")
         if load.kind == "damper":
-            return Effort(turn, Damper(load.damping or 0.0))
-        return Effort(turn, TorsionSpring(load.stiffness or 0.0, load.free_angle or 0.0))
+            return LoadTerm(turn, Damper(load.damping or 0.0))
+        return LoadTerm(turn, TorsionSpring(load.stiffness or 0.0, load.free_angle or 0.0))
     assert load.points is not None
     first, second = load.points
     if load.kind == "damper":
-        return Effort(Distance(first, second), Damper(load.damping or 0.0))
-    return Effort(HalfSquare(first, second), StraightSpring(load.stiffness or 0.0, load.free_length or 0.0))
+        return LoadTerm(Distance(first, second), Damper(load.damping or 0.0))
+    return LoadTerm(HalfSquare(first, second), StraightSpring(load.stiffness or 0.0, load.free_length or 0.0))
 
 
-def _amount(value: float | str | None, where: str) -> Amount:
-    return Formula.of(value, where) if isinstance(value, str) else Constant(value or 0.0)
+def _amount(value: float | str | None, where: str) -> LoadLaw:
+    return LoadFormula.of(value, where) if isinstance(value, str) else Constant(value or 0.0)
 
 
 def _strength(mechanism: Mechanism) -> float:
@@ -174,8 +522,8 @@ def _down(mechanism: Mechanism, where: str) -> tuple[float, ...]:
     return mechanism.gravity
 
 
-def _weight(mechanism: Mechanism, mass: Mass, size: Number) -> Effort:
-    return Effort(Component(mass.centre, _down(mechanism, mass.link)), Constant(size))
+def _weight(mechanism: Mechanism, mass: Mass, size: Number) -> LoadTerm:
+    return LoadTerm(Component(mass.centre, _down(mechanism, mass.link)), Constant(size))
 
 
 def _given_weight(
@@ -185,20 +533,91 @@ def _given_weight(
     where: str,
     given: Given | None,
     m: Namespace,
-) -> Effort:
+) -> LoadTerm:
     """A weight of its own value, or of mass times gravity, at a link's centre or a point."""
     down = _down(mechanism, where)
     if load.point is not None:
         if load.value is None:
             what = _("a point has no mass of its own")
             raise InputError(where, what, _("give the weight's value, or name a link that has a mass"))
-        return Effort(Component(load.point, down, FRAME), _amount(load.value, where))
+        return LoadTerm(Component(load.point, down, FRAME), _amount(load.value, where))
     assert load.link is not None
     mass = next((mass for mass in masses if mass.link == load.link and mass.weighs), None)
     if load.value is not None:
         at = centre_of(mechanism, load.link, given, m) if mass is None else mass.centre
-        return Effort(Component(at, down, FRAME), _amount(load.value, where))
+        return LoadTerm(Component(at, down, FRAME), _amount(load.value, where))
     if mass is None:
         what = _("link {link} has no mass").format(link=load.link)
         raise InputError(where, what, _("give its mass, or the weight's value"))
     return _weight(mechanism, mass, mass.mass * _strength(mechanism))
+
+
+# Masses and loads of a mechanism together: what everything about forces starts from.
+
+
+@dataclass(frozen=True)
+class MassesAndLoads:
+    """Masses and loads of a mechanism."""
+
+    masses: tuple[Mass, ...]
+    loads: tuple[AppliedLoad, ...]
+
+    @classmethod
+    def of(cls, mechanism: Mechanism, given: Given | None = None, m: Namespace = ARRAYS) -> MassesAndLoads:
+        """What the description gives; `given` are numbers by their paths in place of its own, `m` has their functions.
+
+        Raises
+        ------
+        InputError
+            Neither masses nor loads, or some that are not complete.
+        NotComputedYet
+            Friction by a coefficient.
+        """
+        return cls._of(mechanism, given, m, mechanism.loads)
+
+    @classmethod
+    def for_reactions(cls, mechanism: Mechanism) -> MassesAndLoads:
+        """The same without friction by coefficients, as forces on points and links; InputError for what is no force."""
+        loads = [load for load in mechanism.loads if load.coefficient is None]
+        return cls._of(mechanism, None, ARRAYS, loads)._as_forces()
+
+    @classmethod
+    def _of(
+        cls, mechanism: Mechanism, given: Given | None, m: Namespace, described: Sequence[Load]
+    ) -> MassesAndLoads:
+        masses = masses_of(mechanism, given, m)
+        loads = loads_of(mechanism, masses, given, m, described)
+        if not masses and not loads:
+            what = _("there are neither masses nor loads")
+            raise InputError("", what, _("give links a mass, or [[loads]]"))
+        return cls(masses, loads)
+
+    @classmethod
+    def in_plane(cls, mechanism: Mechanism) -> MassesAndLoads:
+        """The same as forces on links of the plane; NotComputedYet on the sphere, InputError for what is no force."""
+        if mechanism.space == "sphere":
+            what = _("force polygons on the sphere are not computed yet")
+            raise NotComputedYet("space", what, _("describe a plane one"))
+        return cls.of(mechanism)._as_forces()
+
+    def _as_forces(self) -> MassesAndLoads:
+        for load in self.loads:
+            if any(effort.works is not None for effort in load.efforts):
+                what = _("a plain sum is no moment in a hinge, so it makes no reactions")
+                raise InputError(load.where, what, _("take form out"))
+        return self
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links that have mass or inertia."""
+        return tuple(mass.link for mass in self.masses)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the loads, weights at the end."""
+        return tuple(load.label for load in self.loads)
+
+    @property
+    def needs_law(self) -> bool:
+        """Whether a load depends on time or on speeds, so that it matters how the drive moves."""
+        return any(effort.needs_law for load in self.loads for effort in load.efforts)

@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from centrode.dynamics.force_polygons.polygon import sheet_of
+from centrode.dynamics.force_polygons.polygons import sheet_of
 from centrode.locale import _
 from centrode.present.page import Page
 from centrode.present.shown import plain

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from centrode.dynamics.burden import Burden
-from centrode.dynamics.friction.contacts import contacts_of
-from centrode.dynamics.kinetostatics.moving import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
+from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.steady_motion.machine import MachineResults, machine_results
 from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
@@ -109,7 +109,7 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
     if not mechanism.loads and not any(link.mass or link.inertia for link in mechanism.links.values()):
         return None, []
     try:
-        burden = Burden.for_reactions(mechanism)
+        burden = MassesAndLoads.for_reactions(mechanism)
         found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
         return found, _jams(found)
     except (InputError, NotComputedYet) as missing:

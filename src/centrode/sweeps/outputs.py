@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.batches import REDUCED, Values, reduced_number
+from centrode.dynamics.reduction import REDUCED, Values, reduced_number
 from centrode.errors import InputError
 from centrode.kinematics.dataset import by_time, kinds_of
 from centrode.kinematics.solve import Solved

@@ -10,8 +10,7 @@ from typing import Any, TypeAlias
 import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.dynamics.batches import REDUCED, check_reducible
-from centrode.dynamics.reduction import reduction_of
+from centrode.dynamics.reduction import REDUCED, check_reducible, reduction_of
 from centrode.errors import InputError
 from centrode.kinematics.dataset import dataset_of
 from centrode.kinematics.ready import ready

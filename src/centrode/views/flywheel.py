@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.dynamics.steady_motion.sizes import SOURCE_DISC, SOURCE_RIM, Wheel
+from centrode.dynamics.steady_motion.flywheel import SOURCE_DISC, SOURCE_RIM, Wheel
 from centrode.sheets.plots import AxisLabel, Diagram, Plot, Trace, TraceKind
 from centrode.sheets.sheet import (
     Block,

@@ -13,7 +13,7 @@ from numpy.polynomial import legendre
 
 from centrode.cams.frames import Array
 from centrode.cams.wheel.walking import Mover, quadrature_panels
-from centrode.dynamics.steady_motion.quadrature import NODES
+from centrode.dynamics.steady_motion.cycle import NODES
 from centrode.numerics.search import maxima_between
 
 SAMPLES = 181

@@ -18,7 +18,7 @@ from centrode.cams.closed.arcs import Arc, ClosedPath
 from centrode.cams.frames import Array
 from centrode.cams.nodes import nodes_of
 from centrode.cams.wheel.shoe import Shoe, shoe
-from centrode.dynamics.steady_motion.quadrature import Panels, Series
+from centrode.dynamics.steady_motion.cycle import Panels, PanelSeries
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.numerics.search import Extremes, extremes
@@ -155,7 +155,7 @@ class Mover:
         return Pose(turned, steps % self.legs, angles, hub, contact, rollers, along, across)
 
     @cached_property
-    def _lift(self) -> Series:
+    def _lift(self) -> PanelSeries:
         """H' sin phi over the working arc."""
         panels = quadrature_panels(self.shoe.arc)
         slope = self.shoe.arc.curve.radius(panels.nodes, 1)[1]

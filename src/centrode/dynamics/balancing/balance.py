@@ -8,18 +8,37 @@ from typing import Literal, TypeAlias, get_args
 
 import xarray as xr
 
-from centrode.dynamics.balancing.asked import Lengths, Masses, asked_spots
-from centrode.dynamics.balancing.choosing import by_fraction, check_masses, fully, least_effects
 from centrode.dynamics.balancing.counterweights import (
     Counterweight,
+    Lengths,
+    Masses,
+    asked_spots,
     counterweight,
     with_counterweights,
 )
-from centrode.dynamics.balancing.instants import Speed, check_speed, on_sphere
-from centrode.dynamics.balancing.loops import Loop, Share, loop_of, shares_of
-from centrode.dynamics.balancing.moments import Disc, discs_for, with_discs
-from centrode.dynamics.balancing.shaking import ORDERS, About, place_of, shaking
-from centrode.dynamics.balancing.turning import Turning
+from centrode.dynamics.balancing.methods import (
+    CounterweightDisc,
+    Loop,
+    Share,
+    by_fraction,
+    check_masses,
+    discs_for,
+    fully,
+    least_effects,
+    loop_of,
+    shares_of,
+    with_discs,
+)
+from centrode.dynamics.balancing.shaking import (
+    ORDERS,
+    About,
+    ShakingTurning,
+    Speed,
+    check_speed,
+    on_sphere,
+    place_of,
+    shaking,
+)
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -38,7 +57,7 @@ class Balance:
         As described; with the counterweights (and discs) in its links.
     to : "full", "least" or "fraction"
     counterweights : tuple of Counterweight
-    discs : tuple of Disc
+    discs : tuple of CounterweightDisc
         Inertia that balances the shaking moment; none where it was not asked for.
     before, after : Dataset
         Of `shaking`, of both mechanisms; their attributes hold the greatest values over the cycle.
@@ -62,7 +81,7 @@ class Balance:
     balanced: Mechanism
     to: To
     counterweights: tuple[Counterweight, ...]
-    discs: tuple[Disc, ...]
+    discs: tuple[CounterweightDisc, ...]
     before: xr.Dataset
     after: xr.Dataset
     fraction: float | None
@@ -140,7 +159,9 @@ def balance(
     _check(to, speed, moment)
     centre = place_of(mechanism, about)
     spots = asked_spots(mechanism, on, to, radius, most, thickness, density)
-    turning = Turning.of(mechanism, complex(*centre), speed, [(spot.link, spot.base) for spot in spots])
+    turning = ShakingTurning.of(
+        mechanism, complex(*centre), speed, [(spot.link, spot.base) for spot in spots]
+    )
     loop = loop_of(mechanism, turning.masses)
     if to == "full":
         chosen = fully(mechanism, turning, spots, named=on is not None)
@@ -153,9 +174,9 @@ def balance(
     )
     check_masses(chosen.spots, weighed)
     balanced = with_counterweights(mechanism, turning.masses, weighed)
-    discs: tuple[Disc, ...] = ()
+    discs: tuple[CounterweightDisc, ...] = ()
     if moment:
-        discs = discs_for(Turning.of(balanced, complex(*centre), speed), balanced)
+        discs = discs_for(ShakingTurning.of(balanced, complex(*centre), speed), balanced)
         balanced = with_discs(balanced, discs)
     ends = (turning.first, turning.first + turning.period) if speed == "mean" else (None, None)
     before, after = (

@@ -3,24 +3,109 @@
 from __future__ import annotations
 
 import cmath
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import dist, pi
+from typing import TypeAlias
 
 import numpy as np
 
-from centrode.dynamics.balancing.inertial import (
-    Array,
-    Complex,
-    Effects,
-    Pace,
-    cross,
-    orders,
-    track,
-)
-from centrode.dynamics.balancing.making import Made, Making
-from centrode.dynamics.masses import Mass
-from centrode.dynamics.states import State
+from centrode.dynamics.balancing.shaking import Array, Complex, Effects, ShaftMotion, cross, orders, track
+from centrode.dynamics.state import Mass, State
+from centrode.errors import InputError
+from centrode.locale import _
 from centrode.model.mechanism import Link, Mechanism
+from centrode.model.problems import nearest, shown
+from centrode.model.units import to_si
+
+# How counterweights are made: mass, radius and inertia that go with a product of mass and radius.
+
+STEEL = 7800.0
+"""Density [kg/m^3] where none is given."""
+LEAST = 1e-12
+"""Share of the greatest product below which slopes are those there: the root of a disc's size has none at zero."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """A counterweight of one product of mass and radius.
+
+    Attributes
+    ----------
+    mass : float [kg]
+    radius : float [m]
+        Distance of its centre from the hinge it is measured from.
+    inertia : float [kg m^2]
+        About its own centre.
+    mass_slope, inertia_slope : float [1/m], [m]
+        Derivatives of the mass, and of the inertia about the hinge, by the product.
+    """
+
+    mass: float
+    radius: float
+    inertia: float
+    mass_slope: float
+    inertia_slope: float
+
+    @property
+    def about_hinge(self) -> float:
+        """Moment of inertia about the hinge [kg m^2]."""
+        return self.inertia + self.mass * self.radius**2
+
+
+@dataclass(frozen=True)
+class Making:
+    """How one counterweight is made.
+
+    Attributes
+    ----------
+    radius : float or None [m]
+        Distance of its centre from the hinge; None for a disc whose edge passes through the hinge, which has the
+        least inertia of all discs of one product.
+    thickness : float or None [m]
+        Of a disc; None for a mass in one point.
+    density : float [kg/m^3]
+    most : float or None [kg]
+        Greatest mass.
+    """
+
+    radius: float | None
+    thickness: float | None = None
+    density: float = STEEL
+    most: float | None = None
+
+    @property
+    def sheet(self) -> float:
+        """Mass of a disc over the square of its radius [kg/m^2]."""
+        return pi * self.density * (self.thickness or 0.0)
+
+    def made(self, product: float, floor: float = 0.0) -> Made:
+        """The counterweight of a product of mass and radius [kg m]; slopes are those at `floor` if it is less."""
+        if self.radius is not None:
+            mass, slope, inertia = product / self.radius, self.radius, 0.0
+            if self.thickness is not None:
+                inertia = 0.5 * mass**2 / self.sheet
+                slope += mass / (self.sheet * self.radius)
+            return Made(mass, self.radius, inertia, 1.0 / self.radius, slope)
+        # a disc touching its hinge: product = sheet radius^3
+        radius = (product / self.sheet) ** (1 / 3)
+        smooth = (max(product, floor) / self.sheet) ** (1 / 3)
+        mass = self.sheet * radius**2
+        return Made(mass, radius, 0.5 * mass * radius**2, 2 / (3 * smooth) if smooth else 0.0, 2.0 * smooth)
+
+    @property
+    def greatest(self) -> float | None:
+        """Greatest product of mass and radius [kg m]; None without a greatest mass."""
+        if self.most is None:
+            return None
+        if self.radius is not None:
+            return self.most * self.radius
+        return float(self.sheet * (self.most / self.sheet) ** 1.5)
+
+    def disc(self, made: Made) -> float | None:
+        """Radius of the disc [m]; None of a mass in one point."""
+        return None if self.thickness is None else (made.mass / self.sheet) ** 0.5
+
 
 PARAMETERS = 4
 """Mass, product of mass and radius along and across, inertia about the hinge: all that matters of a counterweight."""
@@ -30,7 +115,7 @@ ROUNDING = 2.0**-46
 
 
 @dataclass(frozen=True)
-class Spot:
+class CounterweightPlace:
     """A place for a counterweight: a link, and the point of it that its radius is measured from."""
 
     link: str
@@ -73,7 +158,7 @@ class Counterweight:
         return self.mass * self.radius
 
 
-def counterweight(mechanism: Mechanism, spot: Spot, product: complex) -> Counterweight:
+def counterweight(mechanism: Mechanism, spot: CounterweightPlace, product: complex) -> Counterweight:
     """The counterweight of a product of mass and radius, as a vector in the link's axes [kg m]."""
     product = _straight(complex(product))
     made = spot.making.made(abs(product))
@@ -98,7 +183,7 @@ def _straight(product: complex) -> complex:
     return complex(x if abs(x) > noise else 0.0, y if abs(y) > noise else 0.0)
 
 
-def columns_of(state: State, spot: Spot, pace: Pace, about: complex) -> Effects:
+def columns_of(state: State, spot: CounterweightPlace, pace: ShaftMotion, about: complex) -> Effects:
     """Effects of the PARAMETERS of a counterweight, each of size 1: rows (PARAMETERS, n)."""
     base, turn, angle = _motion(state, spot)
     carried, whirled = pace.second(base), pace.second(turn)
@@ -120,7 +205,7 @@ def columns_of(state: State, spot: Spot, pace: Pace, about: complex) -> Effects:
     return Effects(-np.array(force), -np.array(moment), np.array(driving))
 
 
-def _motion(state: State, spot: Spot) -> tuple[Complex, Complex, Array]:
+def _motion(state: State, spot: CounterweightPlace) -> tuple[Complex, Complex, Array]:
     """Place of the base, rotor and angle of the link, each (3, n)."""
     count = len(state.parameter)
     return (
@@ -130,7 +215,7 @@ def _motion(state: State, spot: Spot) -> tuple[Complex, Complex, Array]:
     )
 
 
-def mass_moments(state: State, spot: Spot) -> tuple[Complex, Complex]:
+def mass_moments(state: State, spot: CounterweightPlace) -> tuple[Complex, Complex]:
     """Place of the base and the link's rotor (n): what mass and product give to the sum of mass times place."""
     base, turn, _angle = _motion(state, spot)
     return base[0], turn[0]
@@ -182,3 +267,150 @@ def stiffened(link: Link, own: Mass | None, inertia: float) -> Link:
     if own.weighs:
         changes["centre"] = (x + own.planar_centre.along, y + own.planar_centre.across)
     return link.model_copy(update=changes)
+
+
+# Which links hinges alone join to the frame, and where counterweights on them are measured from.
+#
+# By the theorem of contours a linkage can be balanced fully by counterweights only if every link is reached
+# from the
+# frame by a way through hinges alone (F. R. Tepper, G. G. Lowen, Journal of Engineering for Industry 94,
+# 1972, 789-796).
+
+
+def hinged_from(mechanism: Mechanism) -> Mapping[str, str]:
+    """Links reached by hinges alone, nearest to the frame first, each with the point by which it is reached."""
+    bodies = {name: tuple(link.coordinates) for name, link in mechanism.links.items()}
+    known = set(mechanism.frame.points)
+    reached: dict[str, str] = {}
+    while True:
+        found = {
+            name: next(point for point in points if point in known)
+            for name, points in bodies.items()
+            if name not in reached and known & set(points)
+        }
+        if not found:
+            return reached
+        reached |= found
+        known |= {point for name in found for point in bodies[name]}
+
+
+def base_of(mechanism: Mechanism, link: str) -> str:
+    """The point that the radius of a counterweight is measured from, where nothing else is said."""
+    return hinged_from(mechanism).get(link) or next(iter(mechanism.links[link].coordinates))
+
+
+def on_frame(mechanism: Mechanism) -> list[str]:
+    """Links that are hinged to the frame."""
+    return [name for name, base in hinged_from(mechanism).items() if base in mechanism.frame.points]
+
+
+# The counterweights that are asked for: on which links, measured from where, how made.
+
+Lengths: TypeAlias = float | str | Mapping[str, float | str] | None
+Masses: TypeAlias = float | str | Mapping[str, float | str] | None
+MOST_COUNTERWEIGHTS = 20
+
+
+def asked_spots(
+    mechanism: Mechanism,
+    on: Sequence[str] | None,
+    to: str,
+    radius: Lengths,
+    most: Masses,
+    thickness: float | str | None,
+    density: float | str,
+) -> list[CounterweightPlace]:
+    """Places for counterweights, in the order they were named."""
+    places = _places(mechanism, on, to)
+    if on is None and radius is None and thickness is None:  # one point tells no radius: sliders, wheels
+        places = [(link, base) for link, base in places if len(mechanism.links[link].coordinates) > 1]
+    links = [link for link, _base in places]
+    radii = _by_link(radius, links, "radius", "length")
+    heaviest = _by_link(most, links, "most", "mass")
+    thick = None if thickness is None else positive(thickness, "thickness", "length")
+    dense = positive(density, "density", "density")
+    spots = []
+    for link, base in places:
+        out = radii.get(link)
+        if out is None and thick is None:
+            out = _half_way(mechanism, link, base)
+        making = Making(out, thick, dense, heaviest.get(link))
+        spots.append(CounterweightPlace(link, base, making, base in mechanism.frame.points))
+    return spots
+
+
+def number(value: object, where: str, kind: str) -> float:
+    """A number in SI of a number or a text with a unit; InputError about `where`."""
+    try:
+        return to_si(value, kind)
+    except InputError as error:
+        raise InputError(where, error.what, error.repair) from None
+
+
+def positive(value: object, where: str, kind: str) -> float:
+    """The same, greater than zero."""
+    found = number(value, where, kind)
+    if not found > 0.0:
+        raise InputError(where, _("it must be positive, got {value}").format(value=shown(value)))
+    return found
+
+
+def _places(mechanism: Mechanism, on: Sequence[str] | None, to: str) -> list[tuple[str, str]]:
+    """Links with the points that radii are measured from."""
+    if on is None:
+        hinged = hinged_from(mechanism)
+        chosen = {
+            name: base for name, base in hinged.items() if to == "full" or base in mechanism.frame.points
+        }
+        if to == "fraction":
+            chosen = {name: base for name, base in chosen.items() if name == mechanism.drives[0].link}
+        if not chosen:
+            what = _("no link is hinged to the frame, where counterweights are put if nothing else is said")
+            raise InputError("on", what, _("name links"))
+        return list(chosen.items())
+    names = [on] if isinstance(on, str) else list(on)
+    if not names or len(names) > MOST_COUNTERWEIGHTS:
+        what = _("{count} links were named").format(count=len(names))
+        raise InputError("on", what, _("name 1 to {most}").format(most=MOST_COUNTERWEIGHTS))
+    places = [_place(mechanism, name) for name in names]
+    links = [link for link, _base in places]
+    twice = next((link for link in links if links.count(link) > 1), None)
+    if twice is not None:
+        raise InputError("on", _("{name} is given twice").format(name=shown(twice)), _("keep one of them"))
+    return places
+
+
+def _place(mechanism: Mechanism, name: str) -> tuple[str, str]:
+    link, sign, base = (part.strip() for part in str(name).partition("@"))
+    if link not in mechanism.links:
+        what = _("there is no link {name}").format(name=shown(link))
+        raise InputError("on", what, nearest(link, list(mechanism.links)))
+    points = list(mechanism.links[link].coordinates)
+    if sign and base not in points:
+        what = _("link {link} has no point {name}").format(link=shown(link), name=shown(base))
+        raise InputError("on", what, nearest(base, points))
+    return link, base or base_of(mechanism, link)
+
+
+def _by_link(given: Lengths | Masses, links: Sequence[str], where: str, kind: str) -> dict[str, float]:
+    """A number for each link that has one."""
+    if given is None:
+        return {}
+    if not isinstance(given, Mapping):
+        one = positive(given, where, kind)
+        return dict.fromkeys(links, one)
+    for link in given:
+        if link not in links:
+            what = _("there is no counterweight on {name}").format(name=shown(link))
+            raise InputError(where, what, nearest(str(link), list(links)))
+    return {link: positive(value, f"{where} {link}", kind) for link, value in given.items()}
+
+
+def _half_way(mechanism: Mechanism, link: str, base: str) -> float:
+    """Half the distance to the farthest point of a link."""
+    places = mechanism.links[link].coordinates
+    out = 0.5 * max(dist(places[base], place) for place in places.values())
+    if not out > 0.0:
+        what = _("link {name} has one point, which tells no radius").format(name=shown(link))
+        raise InputError("radius", what, _("give the radius of its counterweight"))
+    return out

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from centrode.dynamics.balancing.inertial import Array, Complex
+from centrode.dynamics.balancing.shaking import Array, Complex
 
 # slower to import than NumPy
 _optimize = functools.partial(importlib.import_module, "scipy.optimize")
@@ -30,7 +30,7 @@ SOLVER = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1
 
 
 @dataclass(frozen=True)
-class Term:
+class MinimaxTerm:
     """weight * max |constant + rows x|; constant (n), rows (n, unknowns), real or complex."""
 
     weight: float
@@ -43,7 +43,7 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Found:
+class MinimaxSolution:
     """Unknowns, the value they give, and what no unknowns can go below."""
 
     x: Array
@@ -51,12 +51,12 @@ class Found:
     bound: float
 
 
-def value_of(terms: Sequence[Term], x: Array) -> float:
+def value_of(terms: Sequence[MinimaxTerm], x: Array) -> float:
     """The sum of weighted greatest values."""
     return sum(term.weight * float(np.max(term.at(x))) for term in terms)
 
 
-def least(terms: Sequence[Term], low: Array, high: Array, closed: float = CLOSED) -> Found:
+def least(terms: Sequence[MinimaxTerm], low: Array, high: Array, closed: float = CLOSED) -> MinimaxSolution:
     """The unknowns with the least sum of greatest values: pairs, then for each a length not below that of the pair.
 
     Parameters
@@ -96,7 +96,7 @@ def least(terms: Sequence[Term], low: Array, high: Array, closed: float = CLOSED
                 best, value = inside, here
         if value - bound <= closed * max(value, 1e-3):
             break
-    return Found(best, value, min(bound, value))
+    return MinimaxSolution(best, value, min(bound, value))
 
 
 def _split(x: Array) -> tuple[Complex, Array]:
@@ -125,7 +125,7 @@ class _Planes:
     left: list[Array] = field(default_factory=list)
     right: list[float] = field(default_factory=list)
 
-    def touch(self, number: int, term: Term, instant: int, direction: complex) -> None:
+    def touch(self, number: int, term: MinimaxTerm, instant: int, direction: complex) -> None:
         """The component along a unit direction stays below the height of its term."""
         row = np.zeros(self.unknowns + self.terms)
         row[: self.unknowns] = (np.conj(direction) * term.rows[instant]).real
@@ -156,7 +156,7 @@ class _Planes:
         return np.asarray(found.x[: self.unknowns]), np.asarray(found.x[self.unknowns :])
 
 
-def _touch_tops(planes: _Planes, number: int, term: Term, x: Array) -> None:
+def _touch_tops(planes: _Planes, number: int, term: MinimaxTerm, x: Array) -> None:
     """Add the tangents at instants where a term stands out most."""
     vectors = term.constant + term.rows @ x
     for instant in _tops(np.abs(vectors)):
@@ -171,7 +171,7 @@ def _tops(sizes: Array) -> list[int]:
     return [int(instant) for instant in peaks[order]]
 
 
-def _polished(terms: Sequence[Term], x: Array, low: Array, high: Array) -> Array:
+def _polished(terms: Sequence[MinimaxTerm], x: Array, low: Array, high: Array) -> Array:
     """Unknowns nearer to the answer by sequential quadratic programming: tangents alone close in slowly on a curve."""
     for _round in range(POLISHES):
         corners = [(k, i) for k, term in enumerate(terms) for i in _near(term.at(x))]
@@ -189,7 +189,7 @@ def _near(sizes: Array) -> list[int]:
 
 
 def _by_quadratics(
-    terms: Sequence[Term], corners: Sequence[tuple[int, int]], x: Array, low: Array, high: Array
+    terms: Sequence[MinimaxTerm], corners: Sequence[tuple[int, int]], x: Array, low: Array, high: Array
 ) -> Array:
     """The least sum of heights above chosen instants of the terms."""
     unknowns, count = len(x), len(x) // 3

@@ -2,23 +2,465 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias, get_args
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.burden import Burden
-from centrode.dynamics.friction.contacts import Contact, contacts_of, without_friction
-from centrode.dynamics.kinetostatics.finding import find
-from centrode.dynamics.kinetostatics.labelled import labelled
-from centrode.dynamics.kinetostatics.moving import Pace, pace_of, steady_span
-from centrode.errors import InputError, NotComputedYet
+from centrode.dynamics.kinetostatics.applied_forces import (
+    InputMotion,
+    Outer,
+    outer_of,
+    pace_of,
+    rates_of,
+    steady_span,
+)
+from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics, Scheme, Teeth
+from centrode.dynamics.kinetostatics.friction import (
+    JAMMED,
+    LOCKING,
+    Contact,
+    HingeBearing,
+    Outcome,
+    Powers,
+    Rubbed,
+    contacts_of,
+    friction_parts,
+    refuse_undetermined,
+    reversals,
+    rubbed,
+    with_friction,
+    without_friction,
+    works_over,
+)
+from centrode.dynamics.kinetostatics.joints import (
+    JointSide,
+    Mask,
+    centre_forces,
+    column,
+    columns,
+    reaction_status,
+    reactions_of,
+    sides_of,
+    tables,
+    undetermined_parts,
+)
+from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.state import State
+from centrode.dynamics.wrenches import Vector, Wrench, components, total
+from centrode.errors import InputError, NotComputedYet, Status
+from centrode.kinematics.dataset import (
+    Variable,
+    attributes_of,
+    coordinates_of,
+    judgements_of,
+    labels_of,
+    named,
+)
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.kinematics.spans import span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.structure.constraints import Entity
+
+# Reactions at the samples of a motion, as plain arrays with what they come from.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+GREATEST_MATRICES = 30_000_000
+"""Numbers in all matrices of one result: with their inverses some 1 GB."""
+
+
+@dataclass(frozen=True)
+class WithFriction:
+    """Friction with what it takes."""
+
+    rubbed: Rubbed
+    powers: Powers
+
+
+@dataclass(frozen=True)
+class ReactionSolution:
+    """Reactions of a motion.
+
+    Attributes
+    ----------
+    pace : how the drive moved
+    outer : loads and inertia
+    forces : the solved equations
+    parts : name -> reactions (samples, ...); of an undetermined one, one of the many that are possible
+    undetermined : name -> mask (...) of reactions that nothing determines
+    status : (samples)
+    friction : friction by coefficients, where there is any
+    """
+
+    pace: InputMotion
+    outer: Outer
+    forces: ForceSystem
+    sides: tuple[JointSide, ...]
+    parts: dict[str, Array]
+    undetermined: dict[str, Mask]
+    status: npt.NDArray[np.int8]
+    friction: WithFriction | None = None
+
+
+def find(
+    solved: Solved, burden: MassesAndLoads, pace: InputMotion, contacts: Sequence[Contact] = ()
+) -> ReactionSolution:
+    """Solve for all reactions at the samples of a motion of one mechanism.
+
+    Raises InputError for a load without a finite amount, more samples than memory holds, or friction in a contact whose
+    reaction nothing determines.
+    """
+    prepared = solved.ready
+    scheme, teeth = Scheme.of(prepared.structure), Teeth.of(prepared.mechanism)
+    _check_size(scheme, len(pace.acceleration))
+    state = State.of(solved, pace.moving)
+    system = Kinetostatics.of(scheme, prepared.kinematics.numbers, state, teeth)
+    outer = outer_of(state, burden, pace.acceleration, state.exists)
+    forces, sides = system.forces(outer.pulls), sides_of(prepared.mechanism)
+    status = reaction_status(system, solved.status[0])
+    residual = float(np.nanmax(solved.residual, initial=0.0))
+    undetermined = undetermined_parts(system, sides, status, residual)
+    found = ReactionSolution(pace, outer, forces, sides, reactions_of(forces, sides), undetermined, status)
+    return _with_friction(found, solved, burden, state, contacts) if contacts else found
+
+
+def _with_friction(
+    found: ReactionSolution, solved: Solved, burden: MassesAndLoads, state: State, contacts: Sequence[Contact]
+) -> ReactionSolution:
+    """The same with friction, which is as great as the reactions that it changes make it."""
+    refuse_undetermined(contacts, found.undetermined, found.sides, solved.ready.mechanism)
+    useful = (found.status == Status.OK) | (found.status == Status.CUT_OFF)
+    sizes = rubbed(state, found.forces, contacts, found.pace.acceleration, useful)
+    without = found.outer
+    outer = Outer(
+        (*without.loads, *sizes.pulls), without.inertia, without.moment + sizes.moment, without.shares
+    )
+    forces = found.forces.system.forces(outer.pulls)
+    parts = reactions_of(forces, found.sides)
+    with_friction(parts, sizes, state)
+    status = found.status.copy()
+    status[sizes.solution.outcome == Outcome.LOCKED] = Status.SELF_LOCKING
+    status[sizes.solution.outcome == Outcome.LOST] = Status.UNCONVERGED
+    by_time = solved.ready.kinematics.path.by_time
+    drives = parts["balancing"] * rates_of(solved, found.pace) if by_time else parts["balancing"]
+    powers = Powers.of(drives, burden.loads, without.shares, without.moment, sizes, found.pace.moving.rate)
+    parts |= friction_parts(sizes, powers, state.mechanism)
+    return replace(
+        found, outer=outer, forces=forces, parts=parts, status=status, friction=WithFriction(sizes, powers)
+    )
+
+
+def _check_size(scheme: Scheme, samples: int) -> None:
+    most = GREATEST_MATRICES // (scheme.size * len(scheme.unknowns))
+    if samples > most:
+        what = _("reactions at {asked} positions were asked for").format(asked=samples)
+        raise InputError(_("samples"), what, _("ask for at most {most} at once").format(most=most))
+
+
+# What a mechanism does to its frame: all of it, and the part of inertia that shakes it.
+
+
+def totals_of(found: ReactionSolution) -> dict[str, Array]:
+    """Inertia forces of the links, forces and moments on the frame, (samples, ...)."""
+    inertia, samples = found.outer.inertia, found.forces.system.shape[-1]
+    origin = found.forces.system.equilibrium.origin
+    shaking = [pull for one in inertia for pull in one.pulls]
+    moments = [components(one.moment) for one in inertia]
+    return {
+        "inertia_force": tables([one.force for one in inertia], len(origin), samples),
+        "inertia_moment": _moments(moments, len(origin), samples),
+        **_sums("frame", found.forces.on_frame, origin, samples),
+        **_sums("shaking", shaking, origin, samples),
+    }
+
+
+def _moments(moments: Sequence[Vector], axes: int, samples: int) -> Array:
+    """Moments of links: one number each in the plane, three on the sphere."""
+    found = tables(moments, axes if axes == 3 else 1, samples)
+    return found if axes == 3 else found[:, :, 0]
+
+
+def _sums(name: str, pulls: Sequence[Wrench], origin: Vector, samples: int) -> dict[str, Array]:
+    force, moment = total(pulls, origin)
+    turned = columns(moment, samples) if isinstance(moment, tuple) else column(moment, samples)
+    return {f"{name}_force": columns(force, samples), f"{name}_moment": turned}
+
+
+def joint_moments(found: ReactionSolution, forces: Array) -> Array:
+    """On the sphere: moments about its centre [N m] of the forces in hinges, (samples, sides, 3)."""
+    system = found.forces.system
+    samples, radius = system.shape[-1], system.scheme.structure.mechanism.sphere_radius
+    places = [system.at.points[side.point] for side in found.sides]
+    return np.cross(radius * tables(places, 3, samples), forces)
+
+
+# Three checks of solved reactions by other ways: equilibrium of every body, momentum, power.
+
+Number: TypeAlias = Any
+
+
+def checks_of(found: ReactionSolution, rates: Array) -> dict[str, float]:
+    """Worst residuals over all samples that are ok, each over the greatest force or moment of its sample, or power.
+
+    `rates` (samples, drives) are the speeds of the drives.
+    """
+    return {
+        "equilibrium_residual": _worst(found, *_equilibrium(found.forces)),
+        "frame_residual": _worst(found, *_frame(found)),
+        "power_residual": _worst(found, *_power(found, rates)),
+    }
+
+
+def _worst(found: ReactionSolution, missing: Array, size: Array) -> float:
+    good = found.status == Status.OK
+    with np.errstate(all="ignore"):
+        share = np.where(missing == 0.0, 0.0, missing / size)
+    return float(np.max(share[good], initial=0.0))
+
+
+def _equilibrium(forces: ForceSystem) -> tuple[Array, Array]:
+    """What is missing to the equilibrium of every pin and link, moments about its first point; greatest force.
+
+    The centre of a sphere bears what the forces on a link leave, so that there its moments alone tell.
+    """
+    system = forces.system
+    samples = system.shape[-1]
+    sums: dict[Entity, Sequence[Number]] = {entity: (0.0,) * 3 for entity in system.scheme.structure.unknowns}
+    size: Number = 0.0
+    for pull in forces.acting:
+        if pull.body in sums:
+            parts = system.on_link(pull.body.name, pull) if pull.body.kind == "link" else pull.force
+            sums[pull.body] = tuple(x + y for x, y in zip(sums[pull.body], parts, strict=False))
+        size = _greater(_greater(size, pull.force, 1.0), components(pull.moment), system.scale)
+    missing: Number = 0.0
+    for left in sums.values():
+        missing = _greater(missing, left, 1.0)
+    return column(missing, samples), column(size, samples)
+
+
+def _greater(size: Number, parts: Sequence[Number], unit: float) -> Number:
+    """The greatest of a size and of some numbers over their unit."""
+    for part in parts:
+        size = np.maximum(size, np.abs(part) / unit)
+    return size
+
+
+def _frame(found: ReactionSolution) -> tuple[Array, Array]:
+    """What the frame bears, less all loads and the inertia forces, which are minus the rate of momentum."""
+    forces, scale = found.forces, found.forces.system.scale
+    samples = forces.system.shape[-1]
+    origin = forces.system.equilibrium.origin
+    (borne, turned), (acting, turning) = total(forces.on_frame, origin), total(found.outer.pulls, origin)
+    missing = _greater(0.0, [x - y for x, y in zip(borne, acting, strict=True)], 1.0)
+    pairs = zip(components(turned), components(turning), strict=True)
+    missing = _greater(missing, [x - y for x, y in pairs], scale)
+    size: Number = 0.0
+    for pull in [*forces.on_frame, *found.outer.pulls]:
+        size = _greater(_greater(size, pull.force, 1.0), components(pull.moment_about(origin)), scale)
+    return column(missing, samples), column(size, samples)
+
+
+def _power(found: ReactionSolution, rates: Array) -> tuple[Array, Array]:
+    """Power of the drives, and of loads and inertia by virtual work; the greatest of the whole motion."""
+    given = found.parts["balancing"] * rates
+    taken = found.outer.moment[0] * found.pace.moving.rate
+    good = found.status == Status.OK
+    greatest = np.max((np.abs(given).sum(axis=-1) + np.abs(taken))[good], initial=0.0)
+    return np.abs(given.sum(axis=-1) + taken), np.full(len(good), greatest)
+
+
+# Names and units around friction, beside those of reactions.
+
+
+def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bool) -> dict[str, Variable]:
+    """What is known of friction besides what stands at every sample that has reactions; works over a `whole` range."""
+    parameter = solved.span.parameter
+    locking = powers.locking
+    locking[rubbed.solution.outcome == Outcome.LOCKED] = JAMMED
+    dimensions, values, attributes = named("self_locking", ("sample",), locking)
+    flags = {
+        "flag_values": np.array(list(LOCKING), dtype=np.int8),
+        "flag_meanings": " ".join(LOCKING.values()),
+    }
+    works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
+    works = np.where(whole and _found(rubbed), works, np.nan)
+    found = {
+        "friction_work": named("friction_work", ("friction",), works),
+        "friction_turns": named("friction_turns", ("sample", "friction"), rubbed.turns.astype(np.int8)),
+        "self_locking": (dimensions, values, attributes | flags),
+    }
+    if not solved.ready.kinematics.path.by_time:
+        first, last = float(np.min(parameter)), float(np.max(parameter))
+        places = reversals(solved.ready, rubbed.contacts, first, last)
+        found["jumps"] = named("jumps", ("jump",), places, solved.ready.parameter.units[0])
+    return found
+
+
+def friction_coordinates(contacts: tuple[Contact, ...]) -> dict[str, Any]:
+    """Labels of the contacts."""
+    bearings = tuple(contact.label for contact in contacts if isinstance(contact, HingeBearing))
+    found = {"friction": labels_of(tuple(contact.label for contact in contacts))}
+    return found | ({"bearing": labels_of(bearings)} if bearings else {})
+
+
+def friction_attributes(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bool) -> dict[str, Any]:
+    """How well the sizes were found, what does not rub because it does not move, and the efficiency of the whole."""
+    return {
+        "friction_residual": float(np.max(rubbed.solution.residual, initial=0.0)),
+        "friction_iterations": rubbed.solution.tries,
+        "standing": "; ".join(rubbed.standing),
+        "efficiency": powers.mean_efficiency(solved.span.parameter)
+        if whole and _found(rubbed)
+        else float("nan"),
+    }
+
+
+def _found(rubbed: Rubbed) -> bool:
+    return bool((rubbed.solution.outcome == Outcome.FOUND).all())
+
+
+# Names, units and statuses around the arrays of kinetostatics.
+
+SPATIAL = ("inertia_moment", "frame_moment", "shaking_moment")
+"""Moments that have components on the sphere."""
+GEAR_BODIES = ("first", "second", "carrier")
+DIMENSIONS = {
+    "joint_force": ("side", "axis"),
+    "joint_moment": ("side", "axis"),
+    "centre_force": ("held", "axis"),
+    "guide_force": ("guide", "axis"),
+    "guide_normal": ("guide",),
+    "guide_moment": ("guide",),
+    "gear_moment": ("gear", "gear_body"),
+    "tooth_force": ("gear", "axis"),
+    "rolling_force": ("rolling", "axis"),
+    "rolling_normal": ("rolling",),
+    "rolling_tangential": ("rolling",),
+    "friction_moment": ("bearing",),
+    "friction_force": ("guide",),
+    "friction_power": ("friction",),
+    "efficiency": (),
+    "balancing": ("drive",),
+    "inertia_force": ("link", "axis"),
+    "inertia_moment": ("link",),
+    "frame_force": ("axis",),
+    "frame_moment": (),
+    "shaking_force": ("axis",),
+    "shaking_moment": (),
+}
+
+
+def labelled(solved: Solved, burden: MassesAndLoads, found: ReactionSolution, whole: bool) -> xr.Dataset:
+    """The dataset of `reactions`; `whole` where the samples are a range, and works over it have a sense."""
+    parts = found.parts | totals_of(found)
+    checks = checks_of(found, rates_of(solved, found.pace))
+    # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
+    absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
+    undetermined = _masked(parts, found)
+    if "centre_force" in parts:
+        parts["joint_moment"] = joint_moments(found, parts["joint_force"])
+    for values in parts.values():
+        values[absent] = np.nan
+    units = solved.ready.parameter.units
+    variables = {
+        name: named(name, ("sample", *_dimensions(name, values)), values, units[0])
+        for name, values in parts.items()
+    }
+    if len(set(units)) > 1:
+        variables["balancing"][2]["units"] = ", ".join(
+            one.force_unit for one in solved.ready.parameter.drives
+        )
+    if not solved.ready.kinematics.path.by_time:
+        variables["drive_rate"] = named("drive_rate", ("sample",), found.pace.moving.rate.copy(), units[0])
+    variables |= _statuses(solved, found)
+    sides = np.array([side.label not in undetermined for side in found.sides], dtype=np.int8)
+    variables["determined"] = named("determined", ("side",), sides)
+    attributes = attributes_of(solved) | checks
+    attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
+    coordinates = _coordinates(solved, burden, found)
+    if found.friction is not None:
+        rubbed, powers = found.friction.rubbed, found.friction.powers
+        variables |= friction_variables(solved, rubbed, powers, whole)
+        coordinates |= friction_coordinates(rubbed.contacts)
+        attributes |= friction_attributes(solved, rubbed, powers, whole)
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _dimensions(name: str, values: Array) -> tuple[str, ...]:
+    known = DIMENSIONS[name]
+    return (*known, "axis") if name in SPATIAL and values.ndim > 1 + len(known) else known
+
+
+def _statuses(solved: Solved, found: ReactionSolution) -> dict[str, Variable]:
+    motion = judgements_of(solved, ())["status"]
+    flags = {
+        "flag_values": np.array(list(Status), dtype=np.int8),
+        "flag_meanings": " ".join(status.name.lower() for status in Status),
+    }
+    dimensions, values, attributes = named("reaction_status", ("sample",), found.status)
+    loss = found.forces.system.inverse.loss[0]
+    return {
+        "status": motion,
+        "reaction_status": (dimensions, values, attributes | flags),
+        "reaction_loss": named("reaction_loss", ("sample",), np.minimum(loss, 1.0)),
+    }
+
+
+def _coordinates(solved: Solved, burden: MassesAndLoads, found: ReactionSolution) -> dict[str, Any]:
+    known, mechanism = coordinates_of(solved), solved.ready.mechanism
+    wanted = ("time", "drive_value", "drive", "axis", "guide", "rolling")
+    coordinates = {
+        name: known[name] for name in wanted if name in known and (name != "guide" or mechanism.guides)
+    }
+    coordinates["link"] = labels_of(burden.links)
+    coordinates["side"] = labels_of(tuple(side.label for side in found.sides))
+    coordinates["side_point"] = (("side",), np.array([side.point for side in found.sides], dtype=str))
+    coordinates["side_link"] = (("side",), np.array([side.body for side in found.sides], dtype=str))
+    if "centre_force" in found.parts:
+        coordinates["held"] = labels_of(tuple(centre_forces(found.forces)))
+    if mechanism.gears:
+        coordinates["gear"] = labels_of(tuple(gear.id for gear in mechanism.gears))
+        coordinates["gear_body"] = labels_of(GEAR_BODIES)
+    return coordinates
+
+
+def _masked(parts: dict[str, Array], found: ReactionSolution) -> list[str]:
+    """Put NaN where nothing determines a reaction; the names of these."""
+    names = _names(found)
+    said: list[str] = []
+    for part, felt in found.undetermined.items():
+        if part == "balancing":
+            continue  # work tells it, whatever the state of stress
+        for k, mask in enumerate(felt):
+            if np.any(mask):
+                parts[part][:, k] = np.nan
+                said.append(names[part][k])
+    return list(dict.fromkeys(said))
+
+
+def _names(found: ReactionSolution) -> dict[str, list[str]]:
+    mechanism: Mechanism = found.forces.system.scheme.structure.mechanism
+    guides = [guide.id for guide in mechanism.guides]
+    gears = [f"gear {gear.id}" for gear in mechanism.gears]
+    wheels = [f"rolling {wheel.id}" for wheel in mechanism.rolling]
+    return {
+        "joint_force": [side.label for side in found.sides],
+        "centre_force": [f"centre on {name}" for name in centre_forces(found.forces)],
+        "guide_force": [f"guide {guide}" for guide in guides],
+        "guide_normal": [f"guide {guide}" for guide in guides],
+        "guide_moment": [f"moment of guide {guide}" for guide in guides],
+        "gear_moment": gears,
+        "tooth_force": gears,
+        "rolling_force": wheels,
+        "rolling_normal": wheels,
+        "rolling_tangential": wheels,
+    }
+
 
 Speed: TypeAlias = Literal["mean", "steady"]
 SPEEDS = get_args(Speed)
@@ -61,7 +503,7 @@ def reactions(
         Friction by a coefficient on the sphere, and at the real speed.
     """
     mechanism = mechanism if friction else without_friction(mechanism)
-    burden, contacts = Burden.for_reactions(mechanism), contacts_of(mechanism)
+    burden, contacts = MassesAndLoads.for_reactions(mechanism), contacts_of(mechanism)
     if speed not in SPEEDS:
         what = _("{name} is not a speed").format(name=f'"{speed}"')
         raise InputError("speed", what, _("use one of {known}").format(known=", ".join(SPEEDS)))
@@ -88,7 +530,11 @@ def _refuse_unknown_speed(contacts: tuple[Contact, ...]) -> None:
 
 
 def reactions_at(
-    solved: Solved, burden: Burden, pace: Pace, contacts: tuple[Contact, ...] = (), whole: bool = True
+    solved: Solved,
+    burden: MassesAndLoads,
+    pace: InputMotion,
+    contacts: tuple[Contact, ...] = (),
+    whole: bool = True,
 ) -> xr.Dataset:
     """The same for a motion solved before, of one mechanism, with friction in the contacts.
 

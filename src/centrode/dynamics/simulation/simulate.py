@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import cached_property
+from math import inf, tau
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -10,23 +13,300 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.algebra.executors import ARRAYS, chosen
-from centrode.dynamics.simulation.compiled import compiled
-from centrode.dynamics.simulation.course import (
-    Course,
+from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.reduction import Reducer
+from centrode.dynamics.simulation.equation_of_motion import (
+    CREEP,
+    NEAR_LIMIT,
+    OCCASIONS,
+    OF_DRIVE,
+    OF_FRICTION,
+    OF_OTHERS,
+    RATE,
+    STORED,
+    VALUE,
+    DriveForces,
+    Driving,
+    Field,
+    PanelTracks,
+    ReducedFunctions,
+    Trajectory,
+    of_time,
 )
-from centrode.dynamics.simulation.fixed import even_times, fixed_steps
-from centrode.dynamics.simulation.labelled import simulation_dataset
-from centrode.dynamics.simulation.setting import Setting, setting_of
-from centrode.dynamics.simulation.stepping import Stepper
+from centrode.dynamics.simulation.stepping import Stepper, Until, compiled, even_times, fixed_steps
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.compiled.deciding import Untraceable
+from centrode.kinematics.dataset import attributes_of, coordinates_of, dataset_of, judgements_of, named
 from centrode.kinematics.layout import layout_of
-from centrode.kinematics.solve import check_size
+from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.solve import Solved, check_size, solve
+from centrode.kinematics.spans import Span
 from centrode.locale import _
+from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
-from centrode.model.simulations import Simulation
+from centrode.model.simulations import MOST_TURNS, Simulation
+
+# A mechanism and what its description asks of a simulation, made ready and checked.
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What is simulated.
+
+    Attributes
+    ----------
+    mechanism : as described
+    settings : Simulation
+    rows : ReducedFunctions
+    driving : Driving
+    start : value of the drive [rad or m] at time zero
+    rate : its derivative by time
+    """
+
+    mechanism: Mechanism
+    settings: Simulation
+    rows: ReducedFunctions
+    driving: Driving
+    start: float
+    rate: float
+
+    @property
+    def prepared(self) -> Ready:
+        """The mechanism with its plan; one that keeps its assembly is prepared as one that passes change points."""
+        return self.rows.reducer.ready
+
+    @cached_property
+    def field(self) -> Field:
+        """What moves the mechanism; the start is checked."""
+        field = Field(PanelTracks(self.rows), self.driving)
+        self._check_start(field.tracks)
+        return field
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether nothing drives it but weights and springs, and nothing takes energy."""
+        undriven = not self.driving.formula.used and self.driving.at(0.0, 0.0, 0.0) == 0.0
+        return undriven and all(one.sort == STORED for one in self.rows.efforts)
+
+    @property
+    def until(self) -> Until:
+        """When it ends."""
+        settings = self.settings
+        if settings.duration is None and settings.turns is None:
+            raise InputError(
+                "[simulation]",
+                _("nothing says how long it runs"),
+                _("give duration, such as 10 s, or turns of the drive"),
+            )
+        self._check_turns()
+        way = None if settings.turns is None else settings.turns * tau * self._unit
+        time = inf if settings.duration is None else settings.duration
+        if time == inf and (self.driving.of_time or of_time(self.rows.efforts)):
+            raise InputError(
+                "[simulation]",
+                _("drive or loads depend on time, and only turns are given"),
+                _("give duration too"),
+            )
+        return Until(time, way)
+
+    @property
+    def turns_at_start(self) -> float | None:
+        """Turns that the speed at the start makes in the duration; None without one."""
+        duration = self.settings.duration
+        return None if duration is None else abs(self.rate) * duration / (tau * self._unit)
+
+    def _check_turns(self) -> None:
+        """Refuse what at its speed at the start would be too long, before anything is integrated."""
+        turns = self.turns_at_start
+        if self.settings.turns is None and turns is not None and turns > MOST_TURNS:
+            raise InputError(
+                "[simulation]",
+                _(
+                    "at its speed at the start it makes {turns:.3g} turns in {time:.6g} s, "
+                    "and at most {most} are integrated"
+                ).format(turns=turns, time=self.settings.duration, most=MOST_TURNS),
+                _("give a shorter duration, or turns, after which it ends"),
+            )
+
+    @property
+    def _unit(self) -> float:
+        return self.prepared.kinematics.path.unit
+
+    def _check_start(self, tracks: PanelTracks) -> None:
+        """Refuse a start at a dead point, or where the mechanism does not get to."""
+        tracks.stretch(tracks.place(self.start, self.rate * self.rows.sense >= 0.0)[0])
+        known = self.rows.state(np.array([self.start]))[1][0]
+        if known and (tracks.low < self.start < tracks.high or tracks.is_change_point(self.start)):
+            return
+        near = (
+            min(abs(self.start - end) for end in (tracks.low, tracks.high)) <= 2.0 * NEAR_LIMIT * tracks.unit
+        )
+        what = (
+            _("it starts at a dead point, drive at {value:.9g}: there the drive moves nothing")
+            if near or not known
+            else _("it starts at {value:.9g}, where the mechanism does not get to")
+        )
+        raise InputError(
+            "[simulation] start",
+            what.format(value=self.start),
+            _("start between the limits (centrode limits tells them)"),
+        )
+
+
+def setting_of(mechanism: Mechanism, settings: Simulation | None = None) -> Setting:
+    """What a description asks for, or settings in its place.
+
+    Raises
+    ------
+    InputError
+        No `[simulation]`, several drives, nothing that has mass.
+    """
+    settings = settings or mechanism.simulation
+    if settings is None:
+        raise InputError(
+            "[simulation]",
+            _("it is missing"),
+            _('give driving = "20 - 2*v" and duration, or pass ct.Simulation'),
+        )
+    if len(mechanism.drives) != 1:
+        raise InputError(
+            "[[drives]]",
+            _("a simulation needs one drive, the mechanism has {count}").format(count=len(mechanism.drives)),
+            _("tie the drives by a gear"),
+        )
+    if settings.turns is not None and mechanism.drives[0].kind != "angle":
+        raise InputError("[simulation] turns", _("the drive does not turn"), _("give duration"))
+    if settings.motor is not None and mechanism.drives[0].kind != "angle":
+        raise InputError("[simulation] motor", _("the drive does not turn"), _("give driving, a force"))
+    # up to the next change point both continuations are one motion, and the smooth one keeps its digits there
+    kept = mechanism.assembly.continuation == "keep"
+    passing = mechanism.assembly.model_copy(update={"continuation": "smooth"})
+    smooth = mechanism.model_copy(update={"assembly": passing}) if kept else mechanism
+    reducer = Reducer(ready(smooth), MassesAndLoads.of(smooth))
+    shafts = () if mechanism.machine is None else mechanism.machine.shafts
+    rows = ReducedFunctions(reducer, sum(shaft.inertia * shaft.ratio**2 for shaft in shafts), kept)
+    if not reducer.burden.masses and not rows.added:
+        raise InputError(
+            "[links]", _("no link has a mass: nothing carries the motion"), _("give links a mass")
+        )
+    path = reducer.ready.kinematics.path
+    driving = Driving.of(settings, path.forward)
+    start = path.initial if settings.start is None else settings.start
+    return Setting(mechanism, settings, rows, driving, start, path.forward * settings.speed)
+
+
+# What a simulation found, as a labelled result.
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+
+def simulation_dataset(
+    setting: Setting, course: Trajectory, times: Array, *, motion: bool = False
+) -> xr.Dataset:
+    """The labelled course at times [s] within it."""
+    states, senses = course.at(times)
+    forces = _forces(setting, times, states, senses)
+    moving = senses != 0.0
+    acceleration = np.where(moving, forces.acceleration(states[RATE]), 0.0)
+    solved = solve(setting.prepared, Span(times, states[VALUE], states[RATE], acceleration))
+    unit = solved.ready.parameter.units[0]
+    curves = _curves(setting, states, forces, acceleration, moving)
+    curves_named = {name: named(name, ("sample",), values, unit) for name, values in curves.items()}
+    occasions = _occasions(course, unit)
+    facts = _facts(setting, course, curves)
+    if motion:
+        return dataset_of(solved).assign(curves_named | occasions).assign_attrs(facts)
+    variables = {**curves_named, **occasions, **judgements_of(solved, ())}
+    return xr.Dataset(variables, _coordinates(solved), attributes_of(solved) | facts)
+
+
+def _coordinates(solved: Solved) -> dict[str, object]:
+    known = coordinates_of(solved)
+    return {name: known[name] for name in ("time", "drive_value", "drive")}
+
+
+def _forces(setting: Setting, times: Array, states: Array, senses: Array) -> DriveForces:
+    """What acts at every instant; at rest as if it were about to go on in the sense of the drive."""
+    field, found = setting.field, np.empty((len(times), len(fields(DriveForces))))
+    rows = zip(times, states[VALUE], states[RATE], senses, strict=True)
+    for k, (t, value, rate, sense) in enumerate(rows):
+        way = (1.0 if rate > 0.0 else -1.0) if rate else sense or setting.rows.sense
+        leg = field.leg_at(float(value), way)
+        found[k] = field.forces(leg, float(t), float(value), float(rate) or way * CREEP).row
+    return DriveForces(*found.T)
+
+
+def _curves(
+    setting: Setting, states: Array, forces: DriveForces, acceleration: Array, moving: npt.NDArray[np.bool_]
+) -> dict[str, Array]:
+    """Everything over time by the names of the vocabulary; moments, speeds and works in the sense of the drive."""
+    sense = setting.rows.sense
+    rate = states[RATE]
+    inertia, driving = forces.inertia, forces.driving
+    parts = {name: getattr(forces, name) for name in ("stored", "friction", "other")}
+    # friction that holds is what is needed to hold
+    parts["friction"] = np.where(moving, parts["friction"], -(driving + parts["stored"] + parts["other"]))
+    loads = parts["stored"] + parts["friction"] + parts["other"]
+    kinetic = 0.5 * inertia * rate**2
+    potential = setting.rows.energy(states[VALUE])
+    began = 0.5 * inertia_at(setting, setting.start) * setting.rate**2
+    before = float(setting.rows.energy(np.array([setting.start]))[0])
+    works = states[[OF_DRIVE, OF_FRICTION, OF_OTHERS]]
+    return {
+        # adding zero leaves no negative one
+        "turned": sense * (states[VALUE] - setting.start) + 0.0,
+        "drive_speed": sense * rate + 0.0,
+        "drive_acceleration": sense * acceleration + 0.0,
+        "inertia": inertia,
+        "driving_moment": sense * driving + 0.0,
+        "moment_of_loads": sense * loads + 0.0,
+        "moment_of_friction": sense * parts["friction"] + 0.0,
+        "power_of_drive": driving * rate + 0.0,
+        "power_of_loads": loads * rate + 0.0,
+        "work_of_drive": works[0],
+        "work_of_friction": works[1],
+        "work_of_other_loads": works[2],
+        "kinetic_energy": kinetic,
+        "potential_energy": potential,
+        "energy_residual": (kinetic - began) + (potential - before) - works.sum(axis=0),
+    }
+
+
+def inertia_at(setting: Setting, value: float) -> float:
+    """Inertia of everything at a value of the drive, reduced to it."""
+    return float(setting.rows.at(np.array([value]))[0, 0])
+
+
+def _occasions(course: Trajectory, unit: str) -> dict[str, object]:
+    found = course.occasions
+    kinds = np.array([OCCASIONS.index(one.kind) for one in found], dtype=np.int8)
+    dimensions, values, attributes = named("occasion_kind", ("occasion",), kinds)
+    attributes["flag_values"] = np.arange(len(OCCASIONS), dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in OCCASIONS)
+    return {
+        "occasion_time": named("occasion_time", ("occasion",), np.array([one.time for one in found])),
+        "occasion_value": named(
+            "occasion_value", ("occasion",), np.array([one.value for one in found]), unit
+        ),
+        "occasion_kind": (dimensions, values, attributes),
+    }
+
+
+def _facts(setting: Setting, course: Trajectory, curves: dict[str, Array]) -> dict[str, float | str]:
+    """Attributes: what holds for the whole course."""
+    return {
+        "ended": course.ended,
+        "scheme": course.scheme,
+        "executor": course.executor,
+        "evaluations": course.evaluations,
+        "driving": setting.settings.law,
+        "speed_at_start": setting.settings.speed,
+        "mechanism": mechanism_text(setting.mechanism),
+        "worst_energy_residual": float(np.nanmax(np.abs(curves["energy_residual"]), initial=0.0)),
+        "representation_error": setting.field.tracks.error,
+    }
+
+
 Tell: TypeAlias = Callable[[float], None]
 Executor: TypeAlias = Literal["auto", "arrays", "machine code"]
 
@@ -80,7 +360,7 @@ def simulate(
     return simulation_dataset(setting, course, _times(setting, course, at), motion=motion)
 
 
-def course_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Course:
+def course_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Trajectory:
     """Integrate by the scheme that is asked for."""
     settings, until = setting.settings, setting.until
     if settings.scheme != "runge-kutta-4":
@@ -107,7 +387,7 @@ def course_of(setting: Setting, executor: Executor = "auto", progress: Tell | No
     return course
 
 
-def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None) -> Course:
+def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None) -> Trajectory:
     settings = setting.settings
     if settings.duration is None or settings.turns is not None:
         raise InputError(
@@ -127,7 +407,7 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
     return fixed_steps(field, setting.start, setting.rate, settings.duration, settings.steps, progress)
 
 
-def _times(setting: Setting, course: Course, at: npt.ArrayLike | None) -> Array:
+def _times(setting: Setting, course: Trajectory, at: npt.ArrayLike | None) -> Array:
     """The instants of the result, no later than the end."""
     if at is not None:
         times = np.asarray(at, dtype=np.float64)

@@ -2,21 +2,216 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import tau
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from numpy.polynomial import legendre
 
-from centrode.dynamics.steady_motion.driving import Shape
-from centrode.dynamics.steady_motion.quadrature import Array, Panels, Series, resolved
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.text import TextFormula
+from centrode.dynamics.reduction import Reducer
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.ready import Ready
 from centrode.kinematics.solve import solve
 from centrode.kinematics.spans import Span
 from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+
+# Integrals of what is smooth but for jumps: composite Gauss-Legendre quadrature with its error.
+#
+# Functions are given at Gauss nodes of panels, which end at the jumps. Each panel holds the Legendre series
+# through its nodes, so that values and integrals exist everywhere, not at the nodes alone. Panels whose
+# series
+# has not died away are halved. Source: Gauss-Legendre quadrature and the recurrence of its polynomials, NIST
+# Handbook of Mathematical Functions, sections 3.5(v) and 18.9.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Function: TypeAlias = Callable[[Array], Array]
+
+NODES = 12
+"""Gauss nodes of a panel."""
+NOISE = 1e-9
+"""Last terms, over the greatest value, that are noise (of change points passed) where halving makes them no smaller."""
+MOST_PANELS = 4000
+MOST_ROUNDS = 45
+"""Halvings after which a jump that nobody announced lies in a panel of no importance."""
+
+_ROOTS, _WEIGHTS = legendre.leggauss(NODES)
+_ORDERS = np.arange(NODES)
+_TO_SERIES = (legendre.legvander(_ROOTS, NODES - 1) * _WEIGHTS[:, None] * (_ORDERS + 0.5)).T
+
+
+@dataclass(frozen=True)
+class Panels:
+    """Stretches of a range, end to end: `edges` (panels + 1), growing."""
+
+    edges: Array
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Gauss nodes (panels * NODES), growing."""
+        return _nodes(self.edges[:-1], self.edges[1:]).reshape(-1)
+
+    @cached_property
+    def ends_and_nodes(self) -> Array:
+        """Edges and nodes together, growing: where extremes are looked for."""
+        return np.unique(np.concatenate([self.nodes, self.edges]))
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the nodes (panels * NODES): the integral is the sum of weight times value."""
+        return (0.5 * np.diff(self.edges)[:, None] * _WEIGHTS).reshape(-1)
+
+    def series(self, values: Array) -> PanelSeries:
+        """The function that has these values (panels * NODES) at the nodes."""
+        return PanelSeries(self, values.reshape(-1, NODES) @ _TO_SERIES.T)
+
+
+@dataclass(frozen=True)
+class PanelSeries:
+    """A function on panels: `coefficients` (panels, NODES) of Legendre polynomials."""
+
+    panels: Panels
+    coefficients: Array
+
+    def at(self, places: Array) -> Array:
+        """Values at places within the range; at a jump the one behind it."""
+        panel, inner = self._inside(places)
+        found = np.einsum("...k,...k->...", legendre.legvander(inner, NODES - 1), self.coefficients[panel])
+        return np.asarray(found)
+
+    def integral(self, places: Array) -> Array:
+        """Integrals from the first edge to places within the range."""
+        panel, inner = self._inside(places)
+        inside = np.einsum("...k,...k->...", legendre.legvander(inner, NODES), self._antiderivative[panel])
+        return np.asarray(self._before[panel] + inside)
+
+    @property
+    def total(self) -> float:
+        """The integral over the whole range."""
+        return float(self._before[-1])
+
+    @property
+    def error(self) -> float:
+        """Bound of what the series leave out of `total`: their last two terms, over all panels."""
+        return float(np.sum(tails(self.coefficients) * np.diff(self.panels.edges)))
+
+    def _inside(self, places: Array) -> tuple[npt.NDArray[np.intp], Array]:
+        """Panel of each place, and where in it, from -1 to 1."""
+        edges = self.panels.edges
+        panel = np.clip(np.searchsorted(edges, places, side="right") - 1, 0, len(edges) - 2)
+        low, high = edges[panel], edges[panel + 1]
+        return panel, (2.0 * places - low - high) / (high - low)
+
+    @cached_property
+    def _antiderivative(self) -> Array:
+        """Coefficients (panels, NODES + 1) of the integral from each panel's beginning."""
+        half = 0.5 * np.diff(self.panels.edges)[:, None]
+        shares = half * self.coefficients / (2 * _ORDERS + 1)
+        found = np.zeros((len(shares), NODES + 1))
+        found[:, 1:] += shares
+        found[:, : NODES - 1] -= shares[:, 1:]
+        found[:, 0] += shares[:, 0]  # of P_0 the integral is P_1 + 1
+        return found
+
+    @cached_property
+    def _before(self) -> Array:
+        """Integrals from the first edge to every edge."""
+        widths = np.diff(self.panels.edges)
+        return np.concatenate([[0.0], np.cumsum(widths * self.coefficients[:, 0])])
+
+
+def tails(coefficients: Array) -> Array:
+    """The last terms of series (..., NODES): what they may leave out."""
+    return np.asarray(np.max(np.abs(coefficients[..., -2:]), axis=-1))
+
+
+def resolved(
+    functions: Function, edges: Array, tolerances: Sequence[float], scales: Function = np.asarray
+) -> tuple[Panels, Array]:
+    """Panels on which several functions are smooth enough, and their values at the nodes.
+
+    Parameters
+    ----------
+    functions : places (n) -> values (functions, n)
+    edges : (any) growing
+        The ends of the range with the jumps that are known, and as many places between as a first look needs.
+    tolerances : one a function
+        What a panel's series may leave out of an integral, over the greatest value times the whole range.
+    scales : greatest values (functions) -> (functions)
+        What counts as the greatest value, where a function may be nothing but rounding beside another.
+
+    Returns
+    -------
+    panels, values (functions, panels * NODES)
+        Halved until the series leave out less than that, or there are `MOST_PANELS`; `PanelSeries.error` tells
+        what is left.
+    """
+    low, high = edges[:-1], edges[1:]
+    done: list[tuple[Array, Array]] = []
+    span, allowed = float(edges[-1] - edges[0]), np.asarray(tolerances)
+    count, peak = len(low), np.zeros(0)
+    before = np.full((len(allowed), count), np.inf)  # the last terms of the panel that each one is half of
+    for _round in range(MOST_ROUNDS):
+        values = functions(_nodes(low, high).reshape(-1)).reshape(-1, len(low), NODES)
+        greatest = np.max(np.abs(values), axis=(1, 2))
+        peak = greatest if not peak.size else np.maximum(peak, greatest)
+        scale = scales(peak)[:, None]
+        last = tails(values @ _TO_SERIES.T)
+        too_great = last * (high - low) > span * allowed[:, None] * scale
+        resolvable = (last < before / 4) | (last > NOISE * scale)
+        coarse: npt.NDArray[np.bool_] = np.any(too_great & resolvable, axis=0)
+        if count + int(coarse.sum()) > MOST_PANELS:
+            coarse[:] = False
+        done.append((low[~coarse], values[:, ~coarse]))
+        if not coarse.any():
+            break
+        count += int(coarse.sum())
+        middle = 0.5 * (low[coarse] + high[coarse])
+        before = np.concatenate([last[:, coarse]] * 2, axis=1)
+        low, high = np.concatenate([low[coarse], middle]), np.concatenate([middle, high[coarse]])
+    else:
+        done.append((low, functions(_nodes(low, high).reshape(-1)).reshape(-1, len(low), NODES)))
+    firsts = np.concatenate([part[0] for part in done])
+    order = np.argsort(firsts)
+    panels = Panels(np.append(firsts[order], edges[-1]))
+    together = np.concatenate([part[1] for part in done], axis=1)[:, order]
+    return panels, together.reshape(len(together), -1)
+
+
+def _nodes(low: Array, high: Array) -> Array:
+    return 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * _ROOTS
+
+
+# How a driving moment goes over a cycle: a formula of the drive's value and speed.
+
+
+@dataclass(frozen=True)
+class MomentShape:
+    """A driving moment up to a factor, by a formula of `q` [rad] and of the speed `v` [rad/s], which is positive."""
+
+    formula: TextFormula
+
+    def at(self, values: Array, speed: Array | float) -> Array:
+        """Its values (n) at values and speeds of the drive; raises InputError where it has none."""
+        # one speed as an array too: plain numbers would raise where arrays have infinities
+        speeds = np.broadcast_to(np.asarray(speed, dtype=np.float64), values.shape)
+        with np.errstate(all="ignore"):
+            found = self.formula(ARRAYS, q=values, v=speeds)
+        found = np.broadcast_to(np.asarray(found, dtype=np.float64), values.shape)
+        if not np.isfinite(found).all():
+            raise InputError(
+                "[machine] driving",
+                _("the driving moment has no finite value everywhere in the cycle"),
+                _("correct the formula"),
+            )
+        return found
+
 
 PANELS_PER_TURN = 72
 TOLERANCES = (1e-13, 1e-13, 1e-8, 1e-13)
@@ -28,7 +223,7 @@ SAME = 1e-7
 """Difference, over the greatest value, up to which two turns are the same: that of interpolated change points."""
 
 
-class Reduction(Protocol):
+class CycleReduction(Protocol):
     """What a cycle asks of a mechanism reduced to its drive, by the drive's value [rad]."""
 
     def at(self, values: Array, rate: Array) -> tuple[Array, Array, Array]:
@@ -52,19 +247,19 @@ class Cycle:
     sense : +1.0 or -1.0
     turns : int
         Whole turns of the drive until everything repeats.
-    inertia, slope : Series [kg m^2], [kg m^2/rad]
+    inertia, slope : PanelSeries [kg m^2], [kg m^2/rad]
         Inertia of the links (group II), reduced to the drive, and its derivative.
-    moment : Series [N m]
+    moment : PanelSeries [N m]
         Of all loads and weights, at the speed the cycle was asked at.
     """
 
-    reduction: Reduction
+    reduction: CycleReduction
     first: float
     sense: float
     turns: int
-    inertia: Series
-    slope: Series
-    moment: Series
+    inertia: PanelSeries
+    slope: PanelSeries
+    moment: PanelSeries
 
     @property
     def period(self) -> float:
@@ -86,7 +281,7 @@ class Cycle:
         return replace(self, moment=self.panels.series(moment))
 
 
-def cycle_of(prepared: Ready, reduction: Reduction, shape: Shape | None, speed: float) -> Cycle:
+def cycle_of(prepared: Ready, reduction: CycleReduction, shape: MomentShape | None, speed: float) -> Cycle:
     """The cycle of a mechanism at a constant speed [rad/s], on panels that fit the shape of the drive too.
 
     Raises
@@ -134,13 +329,13 @@ def check_drive(prepared: Ready) -> None:
         )
 
 
-def _reduced(reduction: Reduction, first: float, sense: float, turned: Array, speed: Array) -> Array:
+def _reduced(reduction: CycleReduction, first: float, sense: float, turned: Array, speed: Array) -> Array:
     """Inertia, moment and slope (3, n) in the sense of the motion."""
     inertia, slope, moment = reduction.at(first + sense * turned, sense * speed)
     return np.stack([inertia, sense * moment, sense * slope])
 
 
-def _edges(reduction: Reduction, first: float, sense: float, turns: int) -> Array:
+def _edges(reduction: CycleReduction, first: float, sense: float, turns: int) -> Array:
     """Edges of the first panels: evenly, and at the jumps."""
     period = tau * turns
     ends = sorted((first, first + sense * period))
@@ -153,7 +348,7 @@ def _edges(reduction: Reduction, first: float, sense: float, turns: int) -> Arra
     return np.unique(np.concatenate([even[[0, -1]], inner, jumps]))
 
 
-def _turns(prepared: Ready, reduction: Reduction, speed: float) -> int:
+def _turns(prepared: Ready, reduction: CycleReduction, speed: float) -> int:
     """The least number of turns after which places, inertia and loads repeat."""
     path = prepared.kinematics.path
     for most in (FEW_TURNS, MOST_TURNS):
@@ -212,3 +407,30 @@ def _locks(prepared: Ready, turned: Array) -> MotionError:
         ),
         _("change the dimensions (centrode rotatability says what stops it)"),
     )
+
+
+# The reduction of a mechanism to its drive as a cycle asks for it.
+
+
+class ReducedCycle:
+    """A `Reducer` seen by a cycle; the time in formulas of loads runs as at the mean speed."""
+
+    def __init__(self, reducer: Reducer) -> None:
+        self.reducer = reducer
+        path = reducer.ready.kinematics.path
+        self.first, self.steady = path.driven[0].start, reducer.default_rate or path.forward
+
+    def at(self, values: Array, rate: Array) -> tuple[Array, Array, Array]:
+        """Inertia, its derivative and moment at values and rates of the drive."""
+        found = self.reducer.at(values, rate, time=(values - self.first) / self.steady)
+        return found.inertia, found.inertia_slope, found.moment
+
+    def jumps(self, low: float, high: float) -> Sequence[float]:
+        """Values of the drive between two where one-sided loads jump."""
+        found: list[float] = self.reducer.jumps(low, high).tolist()
+        return found
+
+
+def reduction_of(mechanism: Mechanism) -> CycleReduction:
+    """A mechanism reduced to its drive."""
+    return ReducedCycle(Reducer.of(mechanism))

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from centrode.dynamics.steady_motion.balance import Mean
 from centrode.dynamics.steady_motion.flywheel import Flywheel, flywheel_of
-from centrode.dynamics.steady_motion.solution import solution_of
-from centrode.dynamics.steady_motion.steady import Method, steady_dataset, turned_at
+from centrode.dynamics.steady_motion.speed import MeanSpeed
+from centrode.dynamics.steady_motion.steady import Method, solution_of, steady_dataset, turned_at
 from centrode.model.mechanism import Mechanism
 
 
@@ -35,7 +34,7 @@ class MachineResults:
 def machine_results(
     mechanism: Mechanism,
     samples: int | None = None,
-    mean: Mean = "middle",
+    mean: MeanSpeed = "middle",
     method: Method = "exact",
     *,
     instants: Sequence[float] | None = None,

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from math import tau
 from typing import Literal, TypeAlias, get_args
 
@@ -9,16 +12,270 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.steady_motion.balance import Mean
-from centrode.dynamics.steady_motion.quadrature import Array
-from centrode.dynamics.steady_motion.solution import Solution, solution_of
-from centrode.errors import InputError
+from centrode.algebra.text import compile_formula
+from centrode.dynamics.steady_motion.coursework_method import SpeedBySource, needed_by_source
+from centrode.dynamics.steady_motion.cycle import (
+    Array,
+    Cycle,
+    CycleReduction,
+    MomentShape,
+    check_drive,
+    cycle_of,
+    reduction_of,
+)
+from centrode.dynamics.steady_motion.speed import (
+    MEANS,
+    EnergyBalance,
+    MeanSpeed,
+    Speed,
+    Tangents,
+    balance_of,
+    tangents,
+    with_fluctuation,
+    with_inertia,
+)
+from centrode.errors import InputError, MotionError
 from centrode.kinematics.dataset import dataset_of, named
+from centrode.kinematics.ready import Ready, ready
 from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
 from centrode.kinematics.spans import Span
 from centrode.locale import _
 from centrode.model import limits
+from centrode.model.machines import DRIVING_VARIABLES, Machine
 from centrode.model.mechanism import Mechanism
+
+# Fixed points of functions of many numbers: iteration that learns from its former steps.
+#
+# Source: D. G. Anderson, Iterative procedures for nonlinear integral equations, J. ACM 12 (1965) 547-560.
+
+KEPT = 16
+"""Former steps that the next one is made from."""
+
+
+@dataclass
+class Mixing:
+    """Proposes arguments x for which f(x) = x, from those tried before."""
+
+    arguments: list[Array] = field(default_factory=list)
+    changes: list[Array] = field(default_factory=list)
+
+    def following(self, argument: Array, value: Array) -> Array:
+        """What to try after an argument (n) with its value (n): the combination whose change would be least."""
+        self.arguments = [*self.arguments[-KEPT:], argument]
+        self.changes = [*self.changes[-KEPT:], value - argument]
+        if len(self.changes) == 1:
+            return value
+        steps = np.diff(np.stack(self.arguments), axis=0).T
+        bends = np.diff(np.stack(self.changes), axis=0).T
+        shares = np.linalg.lstsq(bends, self.changes[-1], rcond=1e-12)[0]
+        return np.asarray(value - (steps + bends) @ shares)
+
+
+# The steady motion of a machine: cycle, energies, inertia that is needed, and speed, in every way it is
+# computed.
+
+MOST_ITERATIONS = 60
+SETTLED = 1e-13
+"""Change of the resultant moment, over the greatest ones that it is the sum of, at which loads and speed agree."""
+
+
+@dataclass(frozen=True)
+class SteadySolution:
+    """A machine in steady motion.
+
+    Attributes
+    ----------
+    kind : "middle" or "time"
+        What the mean speed is.
+    balance : EnergyBalance
+        With loads at the mean speed.
+    present : float [kg m^2]
+        Inertia of the shafts, reduced to the drive.
+    by_source : SpeedBySource
+    tangents : Tangents or None
+        Wittenbauer's, with loads at the mean speed; None where no fluctuation is asked for.
+    needed : float or None [kg m^2]
+        J_I for the fluctuation asked for, exactly; negative where the links alone are enough.
+    speed : Speed
+        Exact, with the greater one of `needed` and `present`.
+    iterations : int
+        How often loads and speed were made to agree.
+    """
+
+    prepared: Ready
+    machine: Machine
+    kind: MeanSpeed
+    balance: EnergyBalance
+    present: float
+    by_source: SpeedBySource
+    tangents: Tangents | None
+    needed: float | None
+    speed: Speed
+    iterations: int
+
+    @property
+    def cycle(self) -> Cycle:
+        """The cycle with loads at the mean speed."""
+        return self.balance.cycle
+
+
+def solution_of(
+    mechanism: Mechanism, kind: MeanSpeed = "middle", reduction: CycleReduction | None = None
+) -> SteadySolution:
+    """Solve the steady motion of a mechanism with `[machine]`.
+
+    Raises
+    ------
+    InputError
+        No machine, no drive that turns, nothing that moves or resists, loads that drive or do not repeat.
+    MotionError
+        The mechanism does not turn fully, or loads and speed do not settle.
+    """
+    machine = _machine(mechanism)
+    if kind not in MEANS:
+        raise InputError(
+            "mean",
+            _("{kind} is not a mean speed").format(kind=f'"{kind}"'),
+            _("use one of {known}").format(known=", ".join(MEANS)),
+        )
+    prepared = ready(mechanism)
+    check_drive(prepared)
+    shape = (
+        None
+        if machine.driving is None
+        else MomentShape(compile_formula(machine.driving, DRIVING_VARIABLES, ""))
+    )
+    mean = machine.mean_speed
+    cycle = cycle_of(prepared, reduction or reduction_of(mechanism), shape, mean)
+    nodes = cycle.panels.nodes
+    balance = balance_of(cycle, shape, np.full(len(nodes), mean))
+    _check_matter(balance)
+    present = sum(shaft.inertia * shaft.ratio**2 for shaft in machine.shafts)
+    lines = None
+    if machine.fluctuation is not None:
+        spread = 0.5 * machine.fluctuation
+        lines = tangents(balance, mean * (1 + spread), mean * (1 - spread))
+    needed, speed, iterations = _settled(cycle, shape, machine, present, kind)
+    return SteadySolution(
+        prepared,
+        machine,
+        kind,
+        balance,
+        present,
+        _by_source(balance, machine, present),
+        lines,
+        needed,
+        speed,
+        iterations,
+    )
+
+
+def in_other_mean(found: SteadySolution, kind: MeanSpeed) -> SteadySolution:
+    """The same machine with another meaning of its mean speed."""
+    shape = (
+        None
+        if found.machine.driving is None
+        else MomentShape(compile_formula(found.machine.driving, DRIVING_VARIABLES, ""))
+    )
+    needed, speed, iterations = _settled(found.cycle, shape, found.machine, found.present, kind)
+    return replace(found, kind=kind, needed=needed, speed=speed, iterations=iterations)
+
+
+def _machine(mechanism: Mechanism) -> Machine:
+    if mechanism.machine is None:
+        raise InputError(
+            "[machine]", _("it is missing"), _('give mean_speed = "65 rpm" and fluctuation = 0.05')
+        )
+    return mechanism.machine
+
+
+def _check_matter(balance: EnergyBalance) -> None:
+    """Refuse a machine in which nothing has mass and nothing resists."""
+    nodes = balance.cycle.panels.nodes
+    if not balance.cycle.inertia.at(nodes).any() and not balance.cycle.moment.at(nodes).any():
+        raise InputError(
+            "[machine]",
+            _("no link has a mass and no load acts: there is no energy to compute"),
+            _("give masses, gravity or [[loads]]"),
+        )
+
+
+def _by_source(balance: EnergyBalance, machine: Machine, present: float) -> SpeedBySource:
+    energies = balance.energy_extremes(machine.mean_speed**2)
+    inertia = present
+    if machine.fluctuation is not None:
+        inertia = max(present, needed_by_source(energies, machine.mean_speed, machine.fluctuation))
+    return SpeedBySource(balance, energies, machine.mean_speed, inertia)
+
+
+def _settled(
+    cycle: Cycle, shape: MomentShape | None, machine: Machine, present: float, kind: MeanSpeed
+) -> tuple[float | None, Speed, int]:
+    """Inertia needed and speed at which loads, drive and speed agree, and after how many rounds they do."""
+
+    def as_asked(balance: EnergyBalance) -> tuple[float | None, Speed]:
+        return _speed(balance, machine, present, kind)
+
+    def as_present(balance: EnergyBalance) -> tuple[float | None, Speed]:
+        return None, with_inertia(balance, machine.mean_speed, present, kind)
+
+    found = _iterated(cycle, shape, machine.mean_speed, as_asked)
+    if found is None and machine.fluctuation is not None:
+        # loads that damp may keep the speed more even than asked, whatever the inertia: then none is needed
+        with suppress(InputError):  # it stands still on the way to an answer
+            found = _iterated(cycle, shape, machine.mean_speed, as_present)
+        if found is not None:
+            speed = found[1]
+            needed = with_fluctuation(speed.balance, machine.mean_speed, machine.fluctuation, kind)[0].inertia
+            found = (needed, speed, found[2]) if needed <= present else None
+    if found is not None:
+        return found
+    raise MotionError(
+        "[machine]",
+        _("loads that depend on the speed and the speed itself do not settle after {count} rounds").format(
+            count=MOST_ITERATIONS
+        ),
+        _("give more inertia, or a smaller fluctuation"),
+    )
+
+
+def _iterated(
+    cycle: Cycle,
+    shape: MomentShape | None,
+    mean: float,
+    speed_of: Callable[[EnergyBalance], tuple[float | None, Speed]],
+) -> tuple[float | None, Speed, int] | None:
+    """What `speed_of` finds when loads and drive are those of the speed it finds; None where they never are."""
+    nodes = cycle.panels.nodes
+    speeds, mixing = np.full(len(nodes), mean), Mixing()
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        balance = balance_of(cycle, shape, speeds)
+        needed, speed = speed_of(balance)
+        found = speed.at(nodes)
+        if _agrees(balance, balance_of(cycle.at_speed(found), shape, found), nodes):
+            return needed, speed, iteration
+        mixed = mixing.following(speeds, found)
+        speeds = mixed if mixed.min() > 0.0 else found
+        cycle = cycle.at_speed(speeds)
+    return None
+
+
+def _speed(
+    balance: EnergyBalance, machine: Machine, present: float, kind: MeanSpeed
+) -> tuple[float | None, Speed]:
+    if machine.fluctuation is None:
+        return None, with_inertia(balance, machine.mean_speed, present, kind)
+    speed, _lines = with_fluctuation(balance, machine.mean_speed, machine.fluctuation, kind)
+    if speed.inertia < present or speed.inertia <= 0.0:
+        return speed.inertia, with_inertia(balance, machine.mean_speed, present, kind)
+    return speed.inertia, speed
+
+
+def _agrees(one: EnergyBalance, other: EnergyBalance, nodes: Array) -> bool:
+    before, after = one.total.at(nodes), other.total.at(nodes)
+    size = sum(float(np.max(np.abs(part.at(nodes)))) for part in (one.cycle.moment, one.driving))
+    return bool(np.max(np.abs(after - before)) <= SETTLED * size)
+
 
 Method: TypeAlias = Literal["exact", "first-order"]
 METHODS = get_args(Method)
@@ -29,7 +286,7 @@ def steady_motion(
     samples: int | None = None,
     at: npt.ArrayLike | None = None,
     *,
-    mean: Mean = "middle",
+    mean: MeanSpeed = "middle",
     method: Method = "exact",
 ) -> xr.Dataset:
     """A machine in steady motion: its energies over a cycle and the motion with the drive's real speed.
@@ -61,7 +318,7 @@ def steady_motion(
     return steady_dataset(found, turned_at(found, samples, at), method)
 
 
-def turned_at(found: Solution, samples: int | None = None, at: npt.ArrayLike | None = None) -> Array:
+def turned_at(found: SteadySolution, samples: int | None = None, at: npt.ArrayLike | None = None) -> Array:
     """Angles turned [rad] of evenly spaced samples, or of values of the drive."""
     cycle = found.cycle
     if at is None:
@@ -81,7 +338,7 @@ def turned_at(found: Solution, samples: int | None = None, at: npt.ArrayLike | N
     return np.asarray(turned - cycle.period * np.floor(turned / cycle.period))
 
 
-def steady_dataset(found: Solution, turned: Array, method: Method = "exact") -> xr.Dataset:
+def steady_dataset(found: SteadySolution, turned: Array, method: Method = "exact") -> xr.Dataset:
     """The labelled steady motion at angles turned [rad] within a cycle."""
     if method not in METHODS:
         raise InputError(
@@ -100,7 +357,7 @@ def steady_dataset(found: Solution, turned: Array, method: Method = "exact") -> 
     return data.assign(with_energies).assign_attrs(_facts(found, method))
 
 
-def _curves(found: Solution, turned: Array) -> dict[str, Array]:
+def _curves(found: SteadySolution, turned: Array) -> dict[str, Array]:
     """Everything that is known of the drive over the cycle, by the names of the vocabulary."""
     balance, cycle, square = found.speed.balance, found.cycle, found.machine.mean_speed**2
     resisting, driving, total = balance.cycle.moment, balance.driving, balance.total
@@ -122,7 +379,7 @@ def _curves(found: Solution, turned: Array) -> dict[str, Array]:
     }
 
 
-def _facts(found: Solution, method: Method) -> dict[str, float | str | list[float]]:
+def _facts(found: SteadySolution, method: Method) -> dict[str, float | str | list[float]]:
     """Attributes of the dataset: what holds for the whole cycle, in SI."""
     lines = found.tangents
     touching: dict[str, list[float]] = (

@@ -19,7 +19,7 @@ from centrode.present.style import GROUND, INK, MUTED, Pen, pens
 from centrode.present.wheels import wheel_at
 
 if TYPE_CHECKING:
-    from centrode.dynamics.force_polygons.result import ForcePolygons, GroupForces
+    from centrode.dynamics.force_polygons.polygons import ForcePolygons, GroupForces
     from centrode.model.mechanism import Guide
 
 RAIL = 14.0

@@ -21,8 +21,7 @@ from centrode.present.style import INK, pens
 from centrode.study.forces.force_polygons import lever_lines
 
 if TYPE_CHECKING:
-    from centrode.dynamics.force_polygons.lever import Lever
-    from centrode.dynamics.force_polygons.result import ForcePolygons
+    from centrode.dynamics.force_polygons.polygons import ForcePolygons, Lever
 
 WIDE = 0.68
 """Share of the sheet that the lever has."""

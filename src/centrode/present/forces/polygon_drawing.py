@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.board import round_scale as round_length
-from centrode.dynamics.force_polygons.polygon import PARTS, round_scale
+from centrode.dynamics.force_polygons.polygons import PARTS, round_scale
 from centrode.locale import _
 from centrode.present.diagram_drawing import arrow, flat
 from centrode.present.forces.force_signs import force_name
@@ -25,8 +25,7 @@ from centrode.present.style import INK, MUTED, Pen, house_style, pens
 from centrode.study.forces.force_polygons import force_text, group_title
 
 if TYPE_CHECKING:
-    from centrode.dynamics.force_polygons.polygon import Polygon, PolygonVector
-    from centrode.dynamics.force_polygons.result import ForcePolygons, GroupForces
+    from centrode.dynamics.force_polygons.polygons import ForcePolygons, GroupForces, Polygon, PolygonVector
 
 SHORT = 0.5
 """Vectors shorter than this [mm] are told, not drawn."""

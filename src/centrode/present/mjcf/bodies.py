@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from xml.etree import ElementTree as ET
 
-from centrode.dynamics.bodies import Centre
+from centrode.dynamics.state import Centre
 from centrode.present.mjcf.pose import Pose
 from centrode.present.mjcf.spelled import less, number, numbers, turned
 from centrode.present.mjcf.tree import Place, outline

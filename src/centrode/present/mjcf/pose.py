@@ -16,7 +16,7 @@ from centrode.present.mjcf.tree import Place, Tree, cylinder_names, slider_name,
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.dynamics.bodies import Mass
+    from centrode.dynamics.state import Mass
     from centrode.model.mechanism import Drive, Guide, Mechanism
 
 NOMINAL = 1e-3

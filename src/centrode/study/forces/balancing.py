@@ -9,7 +9,7 @@ import numpy as np
 
 from centrode.dynamics.balancing.balance import Balance
 from centrode.dynamics.balancing.counterweights import Counterweight
-from centrode.dynamics.balancing.loops import Loop, Share
+from centrode.dynamics.balancing.methods import Loop, Share
 from centrode.dynamics.masses import massless_links
 from centrode.locale import _
 from centrode.model.mechanism import Display, Mechanism

@@ -10,9 +10,13 @@ from centrode.locale import _
 from centrode.model.spoken import body_name, load_name
 
 if TYPE_CHECKING:
-    from centrode.dynamics.force_polygons.lever import Lever
-    from centrode.dynamics.force_polygons.polygon import Polygon, PolygonVector
-    from centrode.dynamics.force_polygons.result import ForcePolygons, GroupForces
+    from centrode.dynamics.force_polygons.polygons import (
+        ForcePolygons,
+        GroupForces,
+        Lever,
+        Polygon,
+        PolygonVector,
+    )
 
 Rows: TypeAlias = list[tuple[str, ...]]
 NONE = 1e-13

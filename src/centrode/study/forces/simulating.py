@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from centrode.dynamics.simulation.regime import Regime
+from centrode.dynamics.simulation.steady_state import Regime
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.study.wording import value_text

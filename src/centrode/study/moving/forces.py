@@ -10,11 +10,11 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.burden import Burden
-from centrode.dynamics.kinetostatics.moving import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import pace_of
 from centrode.dynamics.kinetostatics.reactions import reactions
-from centrode.dynamics.pulls import Pull
-from centrode.dynamics.states import State, length_unit
+from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.state import State, length_unit
+from centrode.dynamics.wrenches import Wrench
 from centrode.kinematics.ready import ready
 from centrode.kinematics.solve import solve
 from centrode.kinematics.spans import span_at
@@ -51,7 +51,7 @@ def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:
     """Forces of all loads and weights at given places, as `reactions` takes them; moments are not among them."""
     prepared = ready(mechanism)
     solved = solve(prepared, span_at(prepared.kinematics.path, places))
-    burden = Burden.for_reactions(mechanism)
+    burden = MassesAndLoads.for_reactions(mechanism)
     state = State.of(solved, pace_of(solved, burden).moving)
     found = []
     for load in burden.loads:
@@ -66,7 +66,7 @@ def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:
     return found
 
 
-def _joined(label: str, pulls: Sequence[Pull], samples: int, unit: float) -> list[LoadForce]:
+def _joined(label: str, pulls: Sequence[Wrench], samples: int, unit: float) -> list[LoadForce]:
     """Pulls of a load as forces; components on one body are one force."""
     bodies = dict.fromkeys(pull.body for pull in pulls)
     found = []

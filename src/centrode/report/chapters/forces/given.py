@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.dynamics.bodies import Centre
 from centrode.dynamics.masses import masses_of, massless_links
+from centrode.dynamics.state import Centre
 from centrode.locale import _, mark
 from centrode.model.spoken import LOADS, load_name
 from centrode.quantities import display_unit
@@ -16,7 +16,7 @@ from centrode.render.document.rows import told
 from centrode.report.telling import facts, listed
 
 if TYPE_CHECKING:
-    from centrode.dynamics.bodies import Mass
+    from centrode.dynamics.state import Mass
     from centrode.model.loads import Load
     from centrode.model.mechanism import Mechanism
     from centrode.render.document.numbers import Numbers

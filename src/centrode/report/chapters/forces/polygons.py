@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.dynamics.force_polygons.solving import force_polygons
+from centrode.dynamics.force_polygons.polygons import force_polygons
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.forces.lever_drawing import lever_column
@@ -30,8 +30,7 @@ from centrode.study.forces.force_polygons import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from centrode.dynamics.force_polygons.lever import Lever
-    from centrode.dynamics.force_polygons.result import ForcePolygons
+    from centrode.dynamics.force_polygons.polygons import ForcePolygons, Lever
     from centrode.report.study import ReportStudy
 
 PAPER = "A5"

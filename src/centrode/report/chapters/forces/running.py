@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.dynamics.simulation.regime import steady_regime
+from centrode.dynamics.simulation.steady_state import steady_regime
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.present.forces.simulation_figures import simulation_figures

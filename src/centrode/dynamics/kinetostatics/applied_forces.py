@@ -1,0 +1,208 @@
+"""What acts on a mechanism in motion: its loads, and the inertia of its links."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.jets import Jet
+from centrode.dynamics.load_coordinates import place_of
+from centrode.dynamics.loads import AppliedLoad, MassesAndLoads
+from centrode.dynamics.masses import shares
+from centrode.dynamics.reduction import Reducer, refuse_drive_in_formulas
+from centrode.dynamics.state import About, Mass, Moving, Spread, State, Vector3
+from centrode.dynamics.steady_motion.steady import solution_of, turned_at
+from centrode.dynamics.wrenches import Moment, Vector, Wrench, couple, on_link
+from centrode.geometry.sphere import add, cross, dot, times
+from centrode.kinematics.paths import JETS
+from centrode.kinematics.ready import Ready
+from centrode.kinematics.solve import Solved
+from centrode.kinematics.spans import Span
+from centrode.model.mechanism import Mechanism
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
+
+
+@dataclass(frozen=True)
+class InertiaForce:
+    """Inertia force -m a [N] in the centre of mass, and inertia moment [N m] about it, of one link.
+
+    The moment is -I alpha, on the sphere minus the rate of the moment of momentum about the centre of mass.
+    """
+
+    link: str
+    force: Vector
+    at: Vector
+    moment: Moment
+
+    @property
+    def pulls(self) -> tuple[Wrench, ...]:
+        """The same as forces on the link."""
+        return on_link(self.link, self.force, self.at), couple(self.link, self.moment)
+
+
+@dataclass(frozen=True)
+class Outer:
+    """Loads and inertia at the positions of a state.
+
+    Attributes
+    ----------
+    loads : forces and moments of all loads
+    inertia : of each link that has mass
+    moment : (1, n)
+        What both do along the path's parameter, by virtual work: power over its rate.
+    shares : (loads, 1, n)
+        What each load does.
+    """
+
+    loads: tuple[Wrench, ...]
+    inertia: tuple[InertiaForce, ...]
+    moment: Array
+    shares: Array
+
+    @property
+    def pulls(self) -> tuple[Wrench, ...]:
+        """Everything that acts."""
+        return (*self.loads, *(pull for one in self.inertia for pull in one.pulls))
+
+
+def outer_of(state: State, burden: MassesAndLoads, acceleration: Array, known: Any) -> Outer:
+    """What acts on a mechanism; `acceleration` is that of the path's parameter.
+
+    Raises InputError for a load without a finite amount although the positions are `known`.
+    """
+    pulls, by_load = _loads(state, burden.loads, known)
+    inertia, slope = (part.sum(axis=0) for part in shares(state, burden.masses, by_load.shape[1:]))
+    moment = by_load.sum(axis=0) - inertia * acceleration - 0.5 * slope * state.rate**2
+    return Outer(tuple(pulls), _inertia_forces(state, burden.masses, acceleration), moment, by_load)
+
+
+def _loads(state: State, loads: Sequence[AppliedLoad], known: Any) -> tuple[list[Wrench], Array]:
+    pulls: list[Wrench] = []
+    done = np.zeros((len(loads), 1, len(state.parameter)))
+    with np.errstate(all="ignore"):
+        for k, load in enumerate(loads):
+            strengths = load.strengths(state, known)
+            done[k] = load.along(state, strengths)
+            for effort, strength in zip(load.efforts, strengths, strict=True):
+                pulls += [pull.times(strength) for pull in effort.pulls(state)]
+    return pulls, done
+
+
+def _inertia_forces(state: State, masses: Sequence[Mass], acceleration: Array) -> tuple[InertiaForce, ...]:
+    inertial = _Inertial(state, acceleration if acceleration.any() else None)
+    return tuple(inertial.of(mass) for mass in masses)
+
+
+@dataclass(frozen=True)
+class _Inertial:
+    """Inertia forces in a state; `acceleration` is that of the parameter, None where there is none."""
+
+    state: State
+    acceleration: Array | None
+
+    def of(self, mass: Mass) -> InertiaForce:
+        centre = self.state.centre(mass.centre)
+        force = tuple(-mass.mass * self._second(x) if mass.weighs else 0.0 for x in centre)
+        return InertiaForce(mass.link, force, place_of(centre), self._moment(mass))
+
+    def _moment(self, mass: Mass) -> Moment:
+        if not isinstance(mass.inertia, tuple):
+            inertia, angle = mass.moment_of_inertia, mass.link
+            return -inertia * self._second(self.state.angle(angle)) if mass.resists else 0.0
+        moment: Vector3 = (0.0, 0.0, 0.0)
+        for part in mass.inertia:
+            rate = (
+                self._of_spread(mass.link, part)
+                if isinstance(part, Spread)
+                else self._of_ring(mass.link, part)
+            )
+            moment = add(moment, times(-part.moment, rate))
+        return moment
+
+    def _of_spread(self, link: str, part: Spread) -> Vector3:
+        """Mass spread along u has the moment of momentum u x u', whose rate is u x u''."""
+        x, y, z = self.state.heading(link, part.direction)
+        return cross((x.value, y.value, z.value), (self._second(x), self._second(y), self._second(z)))
+
+    def _of_ring(self, link: str, part: About) -> Vector3:
+        """A ring has the moment of momentum (omega . e) e."""
+        x, y, z = (axis.lowered() for axis in self.state.heading(link, part.direction))
+        u, v, w = self.state.spin(link)
+        along = dot((u, v, w), (x, y, z))
+        return self._first(along * x), self._first(along * y), self._first(along * z)
+
+    def _second(self, jet: Jet) -> Number:
+        """Second derivative by time."""
+        straight = jet.derivative(2) * self.state.rate**2
+        return straight if self.acceleration is None else straight + jet.derivative(1) * self.acceleration
+
+    def _first(self, jet: Jet) -> Number:
+        """Derivative by time of what is itself a derivative by the parameter."""
+        straight = jet.derivative(1) * self.state.rate**2
+        return straight if self.acceleration is None else straight + jet.value * self.acceleration
+
+
+# How the drive moves while reactions are asked for.
+
+
+@dataclass(frozen=True)
+class InputMotion:
+    """Speed and acceleration of the path's parameter at samples, and whose they are.
+
+    Attributes
+    ----------
+    acceleration : (n)
+    source : "drive", "machine" or "steady"
+    """
+
+    moving: Moving
+    acceleration: Array
+    source: str
+
+
+def pace_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
+    """As `reduce` takes it: the mean speed of a machine, where the drive has a constant speed; else the drive's own."""
+    span, prepared = solved.span, solved.ready
+    path = prepared.kinematics.path
+    if path.by_time:
+        refuse_drive_in_formulas(burden)
+    if path.by_time or prepared.mechanism.machine is None or not path.parameter.is_uniform:
+        return _along(span, "drive")
+    moving = Reducer(prepared, burden).moving(span.parameter)
+    return InputMotion(moving, np.zeros(len(span.parameter)), "machine")
+
+
+def steady_span(
+    mechanism: Mechanism, samples: int | None, at: npt.ArrayLike | None
+) -> tuple[Ready, Span, InputMotion]:
+    """Samples of a machine in steady motion, with the real speed of its drive; raises as `steady_motion` does."""
+    found = solution_of(mechanism)
+    turned, cycle, speed = turned_at(found, samples, at), found.cycle, found.speed
+    span = Span(
+        speed.time(turned),
+        cycle.value(turned),
+        cycle.sense * speed.at(turned),
+        cycle.sense * speed.acceleration(turned),
+    )
+    return found.prepared, span, _along(span, "steady")
+
+
+def rates_of(solved: Solved, pace: InputMotion) -> Array:
+    """Speeds of the drives (samples, drives)."""
+    path = solved.ready.kinematics.path
+    if not path.by_time:
+        return pace.moving.rate[:, None]
+    time = Jet.variable(solved.span.time, 1)
+    values = path.drive_values(JETS, time).values()
+    speeds = [value.derivative(1) if isinstance(value, Jet) else 0.0 for value in values]
+    return np.stack([np.broadcast_to(speed, solved.span.time.shape) for speed in speeds], axis=-1)
+
+
+def _along(span: Span, source: str) -> InputMotion:
+    return InputMotion(Moving(span.time, span.parameter, span.rate), span.second_rate, source)

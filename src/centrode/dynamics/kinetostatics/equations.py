@@ -1,0 +1,715 @@
+"""What the equations of kinetostatics are solved for: one unknown for each scalar constraint.
+
+Unknowns are the multipliers of J' lambda = -Q: the force of a constraint is its multiplier times its row. A
+pin has no mass, so a link of each pin, its host, bears whatever else acts on the pin: the force between pin and
+host is left to the pin's own balance, and three equations a link remain. The host's own two rows are the axes
+of that balance, along the sphere as in the plane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Protocol, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.dynamics.load_coordinates import place_of
+from centrode.dynamics.state import State
+from centrode.dynamics.wrenches import NOWHERE, Vector, Wrench, couple, on_frame, on_link, on_point
+from centrode.geometry import sphere as space
+from centrode.geometry.plane import dot as plane_dot
+from centrode.geometry.plane import subtract as plane_subtract
+from centrode.geometry.sphere import Attitude, add, basis, combined, cross, dot, subtract, times, unit
+from centrode.model.mechanism import Gear, Mechanism
+from centrode.structure.constraints import (
+    FRAME,
+    Constraint,
+    Contact,
+    DisplacementDrive,
+    GearRatio,
+    NoSlip,
+    PointInLink,
+    PointOnGuide,
+    Positions,
+    Row,
+)
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.plan import Structure
+
+Unknown: TypeAlias = tuple[Constraint, int]
+"""One scalar equation: a constraint and its row there."""
+Axis: TypeAlias = tuple[str, int]
+"""A point and one of its two coordinates."""
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """Unknowns and equations of one structure.
+
+    Attributes
+    ----------
+    solved : as many unknowns as there are equations
+    hosts : (point, axis) -> unknown that follows from the pin's balance
+    loose : (point, axis) of points without a link to bear them: they keep their own equations
+    repeating : unknowns of the equations that repeat others; nothing tells how great they are
+    """
+
+    structure: Structure
+    solved: tuple[Unknown, ...]
+    hosts: Mapping[Axis, Unknown]
+    loose: tuple[Axis, ...]
+    repeating: tuple[Unknown, ...]
+
+    @classmethod
+    def of(cls, structure: Structure) -> Scheme:
+        """The scheme of a structure."""
+        left_out = set(structure.repeating)
+        kept = [
+            (constraint, row)
+            for constraint in structure.constraints
+            for row in range(constraint.size)
+            if (constraint, row) not in left_out
+        ]
+        points = [entity.name for entity in structure.unknowns if entity.kind == "point"]
+        hosts = _hosts(points, kept)
+        taken = set(hosts.values())
+        loose = tuple((point, axis) for point in points for axis in range(2) if (point, axis) not in hosts)
+        solved = tuple(unknown for unknown in kept if unknown not in taken)
+        return cls(structure, solved, hosts, loose, structure.repeating)
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links, each with three equations."""
+        return tuple(self.structure.mechanism.links)
+
+    @property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """Unknowns of the linear system, those of repeating equations behind the others."""
+        return (*self.solved, *self.repeating)
+
+    @property
+    def size(self) -> int:
+        """Number of equations."""
+        return 3 * len(self.links) + len(self.loose)
+
+    def first_row(self, link: str) -> int:
+        """Row of a link's first force equation; the other and that of moments follow."""
+        return 3 * self.links.index(link)
+
+
+def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
+    """The unknowns that bear each pin: both rows of the first link that has both."""
+    found: dict[Axis, Unknown] = {}
+    whole = set(kept)
+    for constraint, row in kept:
+        if (
+            isinstance(constraint, PointInLink)
+            and constraint.point in points
+            and (constraint, 1 - row) in whole
+        ):
+            found.setdefault((constraint.point, row), (constraint, row))
+    return found
+
+
+# How forces act on bodies: three equations a link and two a pin, in the plane and on the sphere.
+
+Number: TypeAlias = Any
+Foot: TypeAlias = tuple[Any, ...]
+"""The place of a link's first point, on the sphere with two directions square to it."""
+
+
+@dataclass(frozen=True)
+class Pressing:
+    """A force taken off a pin and given to what bears it: a link, or the frame by way of the centre."""
+
+    point: str
+    bearer: str
+    force: Vector
+    at: Vector
+
+    @property
+    def pulls(self) -> tuple[Wrench, ...]:
+        """The same as forces on both."""
+        at = NOWHERE if self.bearer == FRAME else self.at
+        return on_point(self.point, tuple(-x for x in self.force), self.at), on_link(
+            self.bearer, self.force, at
+        )
+
+
+class Equilibrium(Protocol):
+    """What the equations of equilibrium ask of a space."""
+
+    @property
+    def origin(self) -> Vector:
+        """The origin of the frame's axes, as a place."""
+
+    def scale(self, numbers: Dimensions) -> float:
+        """Greatest length of the mechanism [m], by which moments are measured."""
+
+    def positions(self, state: State, numbers: Dimensions) -> Positions:
+        """Plain positions of a state, to evaluate constraints on."""
+
+    def by_moment(self, constraint: Constraint) -> bool:
+        """Whether the multipliers of a constraint are moments; else they are forces."""
+
+    def of_row(self, constraint: Constraint, row: Row, at: Positions, link: str | None) -> tuple[Wrench, ...]:
+        """Forces and moments of a constraint's row at a multiplier of one; `link` bears what acts on its point."""
+
+    def foot(self, first: Vector) -> Foot:
+        """What the equations of a link whose first point has this place are taken about, and along."""
+
+    def on_link(self, pull: Wrench, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+        """What a pull does to the three equations of its link [N]."""
+
+    def pin_axes(self, place: Vector) -> Sequence[Vector]:
+        """Two directions in which a pin at a place must be in equilibrium."""
+
+    def pressing(self, outer: Iterable[Wrench], mechanism: Mechanism, at: Positions) -> tuple[Pressing, ...]:
+        """What of the loads on moving pins the space does not let act on them."""
+
+    def centre(self, pulls: Iterable[Wrench], mechanism: Mechanism) -> tuple[Wrench, ...]:
+        """What the centre of the space exerts on each link, of those that all `pulls` act on; two a link.
+
+        The first acts on the link, the second on the frame.
+        """
+
+
+class InPlane:
+    """Two forces and a moment about its first point for a link; a pin is in equilibrium along x and y."""
+
+    origin = (0.0, 0.0)
+
+    def scale(self, numbers: Dimensions) -> float:
+        return float(numbers.scale)
+
+    def positions(self, state: State, numbers: Dimensions) -> Positions:
+        mechanism, space = state.mechanism, numbers.space
+        points = {name: place_of(state.point(name)) for name in mechanism.points}
+        poses = {FRAME: space.at_rest}
+        for link, inside in numbers.local.items():
+            point, local = next(iter(inside.items()))
+            poses[link] = space.pose_of(state.m.base, place_of(state.rotor(link)), local, points[point])
+        return Positions(dict(points), poses, {})
+
+    def by_moment(self, constraint: Constraint) -> bool:
+        return constraint.angular
+
+    def of_row(self, constraint: Constraint, row: Row, at: Positions, link: str | None) -> tuple[Wrench, ...]:
+        found = []
+        for entity, values in row.items():
+            if entity.kind == "link":
+                x, y, moment = values
+                found.append(Wrench(entity, (x, y), at.poses[entity.name].origin, moment))
+                continue
+            place = at.points[entity.name]
+            found.append(
+                on_point(entity.name, values, place) if link is None else on_link(link, values, place)
+            )
+        return tuple(found)
+
+    def foot(self, first: Vector) -> Foot:
+        return (first,)
+
+    def on_link(self, pull: Wrench, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+        return pull.force[0], pull.force[1], pull.moment_about(foot[0]) / scale
+
+    def pin_axes(self, place: Vector) -> Sequence[Vector]:
+        return (1.0, 0.0), (0.0, 1.0)
+
+    def pressing(self, outer: Iterable[Wrench], mechanism: Mechanism, at: Positions) -> tuple[Pressing, ...]:
+        return ()
+
+    def centre(self, pulls: Iterable[Wrench], mechanism: Mechanism) -> tuple[Wrench, ...]:
+        return ()
+
+
+@dataclass(frozen=True)
+class OnSphere:
+    """Three moments about the centre of the sphere for a link; a pin is in equilibrium along the sphere.
+
+    Links turn about the centre, so that it bears them: hinges bear what lies along the sphere, at its `radius` [m].
+    Moments about the centre are taken along the direction of the link's first point, about that point, and square
+    to it, where they are forces there times the radius: so small linkages keep their accuracy.
+    """
+
+    radius: float
+    origin = NOWHERE
+
+    def scale(self, numbers: Dimensions) -> float:
+        return self.radius * float(numbers.scale)
+
+    def positions(self, state: State, numbers: Dimensions) -> Positions:
+        mechanism = state.mechanism
+        points = {
+            name: tuple(x / self.radius for x in place_of(state.point(name))) for name in mechanism.points
+        }
+        poses = {FRAME: numbers.space.at_rest}
+        for link in mechanism.links:
+            x, y, z = (place_of(axis) for axis in state.attitude(link))
+            poses[link] = Attitude(x, y, z)
+        return Positions(points, poses, {})
+
+    def by_moment(self, constraint: Constraint) -> bool:
+        # the value of a drive along a circle is an arc
+        return constraint.angular or isinstance(constraint, DisplacementDrive)
+
+    def of_row(self, constraint: Constraint, row: Row, at: Positions, link: str | None) -> tuple[Wrench, ...]:
+        point = next((entity for entity in row if entity.kind == "point"), None)
+        if point is None:
+            return tuple(couple(entity.name, tuple(moment)) for entity, moment in row.items())
+        place = at.points[point.name]
+        unit = 1.0 / self.radius if self.by_moment(constraint) else 1.0
+        first, second = basis(ARRAYS, place)
+        force = times(unit, combined((row[point][0], first), (row[point][1], second)))
+        there = times(self.radius, place)
+        others = [on_link(entity.name, times(-1.0, force), there) for entity in row if entity is not point]
+        return on_point(point.name, force, there), *others
+
+    def foot(self, first: Vector) -> Foot:
+        return first, *basis(ARRAYS, first)
+
+    def on_link(self, pull: Wrench, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+        (up, one, other), force = foot, pull.force
+        place = times(1.0 / self.radius, pull.at)
+        turning, twist = cross(place, force), cross(subtract(place, up), force)
+        if isinstance(pull.moment, tuple):
+            moment = times(1.0 / self.radius, pull.moment)
+            turning, twist = add(turning, moment), add(twist, moment)
+        return dot(one, turning), dot(other, turning), dot(up, twist) * (self.radius / scale)
+
+    def pin_axes(self, place: Vector) -> Sequence[Vector]:
+        return basis(ARRAYS, place)
+
+    def pressing(self, outer: Iterable[Wrench], mechanism: Mechanism, at: Positions) -> tuple[Pressing, ...]:
+        """What does not lie along the sphere.
+
+        The only link of a pin bears it; with several links nothing tells which, so that the centre does.
+        """
+        found = []
+        for pull in outer:
+            name = pull.body.name
+            if pull.body.kind == "point" and name in mechanism.moving_points:
+                up = at.points[name]
+                outwards = times(dot(pull.force, up), up)
+                links = [link for link, one in mechanism.links.items() if name in one.coordinates]
+                found.append(Pressing(name, links[0] if len(links) == 1 else FRAME, outwards, pull.at))
+        return tuple(found)
+
+    def centre(self, pulls: Iterable[Wrench], mechanism: Mechanism) -> tuple[Wrench, ...]:
+        sums: dict[str, Vector] = dict.fromkeys(mechanism.links, NOWHERE)
+        for pull in pulls:
+            if pull.body.kind == "link" and pull.body.name in sums:
+                sums[pull.body.name] = add(sums[pull.body.name], pull.force)
+        found: list[Wrench] = []
+        for link, force in sums.items():
+            found += [on_link(link, tuple(-x for x in force), NOWHERE), on_link(FRAME, force, NOWHERE)]
+        return tuple(found)
+
+
+def equilibrium_of(mechanism: Mechanism) -> Equilibrium:
+    """That of the mechanism's space."""
+    return OnSphere(mechanism.sphere_radius) if mechanism.space == "sphere" else InPlane()
+
+
+# Where gears mesh: the pitch point, where it follows from the axes of both wheels.
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """Axes of gears: gear -> points about which its first and its second wheel turn in the carrier.
+
+    A gear is in it if each wheel has exactly one point in common with the carrier, and the wheels do not turn
+    alike. Its radii follow from the distance of the axes and the ratio.
+
+    `radius` is that of the sphere [m], None in the plane.
+    """
+
+    axes: Mapping[str, tuple[str, str]]
+    radius: float | None = None
+
+    @classmethod
+    def of(cls, mechanism: Mechanism) -> Teeth:
+        """The gears of a mechanism whose pitch points follow."""
+        found = {}
+        for gear in mechanism.gears:
+            first, second = (_common(mechanism, wheel, gear.carrier) for wheel in gear.links)
+            if len(first) == len(second) == 1 and first != second and gear.ratio != 1.0:
+                found[gear.id] = (first[0], second[0])
+        return cls(found, mechanism.sphere_radius if mechanism.space == "sphere" else None)
+
+    def pulls(self, constraint: GearRatio, at: Positions, numbers: Dimensions) -> tuple[Wrench, ...]:
+        """The force between the teeth, square to the line of centres, with a moment of one on the second wheel.
+
+        Its radial part, which presses the wheels apart, is left out: nothing tells the pressure angle.
+        """
+        ratio = numbers.gearing.ratio[constraint.gear]
+        first, second = (at.points[name] for name in self.axes[constraint.gear])
+        if self.radius is not None:
+            return _on_sphere(constraint, ratio, first, second, self.radius)
+        pitch = tuple((a - ratio * b) / (1.0 - ratio) for a, b in zip(first, second, strict=True))
+        place = pitch[0], pitch[1]
+        x, y = plane_subtract(place, second)
+        square = plane_dot((x, y), (x, y))
+        force = -y / square, x / square
+        return (
+            on_link(constraint.second, force, place),
+            on_link(constraint.first, (-force[0], -force[1]), place),
+        )
+
+    def without(self, gears: tuple[Gear, ...]) -> tuple[str, ...]:
+        """Gears whose tooth forces are not known: their moments are."""
+        return tuple(gear.id for gear in gears if gear.id not in self.axes)
+
+
+def _on_sphere(
+    gear: GearRatio, ratio: float, first: Vector, second: Vector, radius: float
+) -> tuple[Wrench, ...]:
+    """The same of bevel gears, whose pitch cones touch along the axis of their relative turning.
+
+    Wheels that turn against each other mesh between their axes. Of others nothing tells on which side of the centre,
+    and so which way the force points: then its moment about the centre alone is put on the wheels.
+    """
+    a, b = (first[0], first[1], first[2]), (second[0], second[1], second[2])
+    pitch = unit(ARRAYS, space.subtract(a, space.times(ratio, b)))
+    along = space.cross(b, pitch)
+    square = space.dot(along, along)
+    if ratio < 0.0:
+        force, place = space.times(1.0 / (radius * square), along), space.times(radius, pitch)
+        return on_link(gear.second, force, place), on_link(gear.first, space.times(-1.0, force), place)
+    moment = space.times(1.0 / square, space.cross(pitch, along))
+    return couple(gear.second, moment), couple(gear.first, space.times(-1.0, moment))
+
+
+def _common(mechanism: Mechanism, wheel: str, carrier: str) -> list[str]:
+    """Points in which a wheel is hinged to its carrier."""
+
+    def points(body: str) -> set[str]:
+        return set(mechanism.frame.points if body == FRAME else mechanism.links[body].coordinates)
+
+    return sorted(points(wheel) & points(carrier))
+
+
+# What each constraint does to points and links: its row of the Jacobian as forces and moments of one unit.
+
+
+def pulls_of(
+    constraint: Constraint,
+    mechanism: Mechanism,
+    numbers: Dimensions,
+    at: Positions,
+    teeth: Teeth,
+    space: Equilibrium,
+) -> list[tuple[Wrench, ...]]:
+    """Forces and moments of each row of a constraint, at a multiplier of one.
+
+    Rows act on points; where a guide has a slider of its own, and under a rolling wheel, the force is put on the
+    slider or the wheel itself: the pin's share of it would be a mere name.
+    """
+    if isinstance(constraint, GearRatio) and constraint.gear in teeth.axes:
+        return [teeth.pulls(constraint, at, numbers)]
+    link = _bearer(constraint, mechanism)
+    return [space.of_row(constraint, row, at, link) for row in constraint.rows(numbers, at)]
+
+
+def _bearer(constraint: Constraint, mechanism: Mechanism) -> str | None:
+    """The link that takes what a constraint's row gives to a point; None where it is the pin itself."""
+    if isinstance(constraint, (PointOnGuide, DisplacementDrive)):
+        return mechanism.guide(constraint.guide).link
+    return constraint.link if isinstance(constraint, (Contact, NoSlip)) else None
+
+
+# Matrices inverted at many positions, with what rounding makes of each.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+EPSILON = 2.0**-52
+
+
+@dataclass(frozen=True)
+class Inverse:
+    """Matrices (..., n, m), m at least n, and for each some inverse (..., m, n); NaN where there is none.
+
+    Attributes
+    ----------
+    condition : (...)
+        Condition number; infinite where a matrix is singular, NaN where the matrix itself is not known.
+    """
+
+    matrix: Array
+    inverse: Array
+    condition: Array
+
+    def times(self, right: Array) -> Array:
+        """Solutions (m, ...) for right sides (n, ...), with one step of refinement."""
+        asked = np.moveaxis(right, 0, -1)[..., None]
+        with np.errstate(invalid="ignore"):
+            found = self.inverse @ asked
+            found = found + self.inverse @ (asked - self.matrix @ found)
+        return np.moveaxis(found[..., 0], -1, 0)
+
+    @property
+    def loss(self) -> Array:
+        """What share of a solution rounding can make wrong; from 1 on no digit is left.
+
+        Positions are solved with the same equations, so they carry rounding multiplied by the condition number;
+        the matrix moves with them, and what is solved with it is off by that, multiplied by the condition number
+        once more: its square times the rounding of a sum over a row.
+        """
+        with np.errstate(over="ignore"):
+            return np.asarray(self.condition**2 * (EPSILON * self.matrix.shape[-2]))
+
+    @property
+    def useless(self) -> Mask:
+        """Where rounding leaves no digit of a solution; not where nothing is known."""
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self.loss >= 1.0)
+
+
+def inverse_of(matrix: Array) -> Inverse:
+    """Inverses of matrices (..., n, m): of their first n columns, where these are regular.
+
+    Where they are not, the columns behind them may help: then it is the pseudo-inverse of the whole. Singular
+    matrices and those with NaN are no error.
+    """
+    size, width = matrix.shape[-2:]
+    inverse, condition = _square(matrix[..., :size])
+    if width == size:
+        return Inverse(matrix, inverse, condition)
+    wide = np.zeros((*matrix.shape[:-2], width, size))
+    wide[..., :size, :] = inverse
+    found = Inverse(matrix, wide, condition)
+    lost = found.useless
+    if lost.any():
+        wide[lost], condition[lost] = _pseudo(matrix[lost])
+    return found
+
+
+def _square(matrix: Array) -> tuple[Array, Array]:
+    """Inverses and condition numbers in the norm of the greatest row sum."""
+    known = np.isfinite(matrix.sum(axis=(-1, -2)))
+    regular = known
+    try:
+        inverse: Array = np.asarray(np.linalg.inv(_where(regular, matrix)), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        # a pivot is exactly zero somewhere: there the determinant has no sign, whatever the size of the others
+        regular = known & (np.linalg.slogdet(_where(known, matrix))[0] != 0.0)
+        inverse = np.asarray(np.linalg.inv(_where(regular, matrix)), dtype=np.float64)
+    if not regular.all():
+        inverse = np.where(regular[..., None, None], inverse, np.nan)
+    with np.errstate(invalid="ignore", over="ignore"):
+        condition = _norm(matrix) * _norm(inverse)
+    return inverse, np.where(regular, condition, np.where(known, np.inf, np.nan))
+
+
+def _where(regular: Mask, matrix: Array) -> Array:
+    return matrix if regular.all() else np.where(regular[..., None, None], matrix, np.eye(matrix.shape[-1]))
+
+
+def _norm(matrix: npt.NDArray[Any]) -> Any:
+    return np.abs(matrix).sum(axis=-1).max(axis=-1)
+
+
+def _pseudo(matrix: Array) -> tuple[Array, Array]:
+    """Pseudo-inverses (k, m, n) and condition numbers of matrices (k, n, m) that are known."""
+    left, values, right = np.linalg.svd(matrix, full_matrices=False)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        condition = values[:, 0] / values[:, -1]
+        inverse = np.swapaxes(right, 1, 2) @ (np.swapaxes(left, 1, 2) / values[..., None])
+    return inverse, condition
+
+
+# The equations of kinetostatics at many positions: built once, solved for any forces that act.
+
+
+@dataclass(frozen=True)
+class ForceSystem:
+    """What the equations give for some outer forces.
+
+    Attributes
+    ----------
+    multipliers : unknown -> its value at every position [N or N m]
+    outer : the forces that acted
+    """
+
+    system: Kinetostatics
+    multipliers: Mapping[Unknown, Number]
+    outer: tuple[Wrench, ...]
+
+    def pulls(self, unknown: Unknown) -> list[Wrench]:
+        """Forces and moments of one scalar constraint on all it ties together."""
+        return self._tied[unknown]
+
+    @cached_property
+    def _tied(self) -> dict[Unknown, list[Wrench]]:
+        pulls = self.system.pulls
+        return {one: [pull.times(value) for pull in pulls[one]] for one, value in self.multipliers.items()}
+
+    @cached_property
+    def pressing(self) -> tuple[Pressing, ...]:
+        """What of loads on pins does not lie along a sphere."""
+        mechanism = self.system.scheme.structure.mechanism
+        return self.system.equilibrium.pressing(self.outer, mechanism, self.system.at)
+
+    @cached_property
+    def acting(self) -> tuple[Wrench, ...]:
+        """Everything that acts on any body but the centre of a sphere."""
+        tied = [pull for pulls in self._tied.values() for pull in pulls]
+        return (*tied, *self.outer, *(pull for one in self.pressing for pull in one.pulls))
+
+    @cached_property
+    def centre(self) -> tuple[Wrench, ...]:
+        """What the centre of a sphere exerts on each link, and the opposite on the frame."""
+        return self.system.equilibrium.centre(self.acting, self.system.scheme.structure.mechanism)
+
+    @cached_property
+    def all_pulls(self) -> tuple[Wrench, ...]:
+        """Everything that acts on any body."""
+        return (*self.acting, *self.centre)
+
+    @cached_property
+    def on_frame(self) -> list[Wrench]:
+        """Everything that acts on the frame and its points."""
+        fixed = self.system.scheme.structure.mechanism.frame.points
+        return [pull for pull in self.all_pulls if on_frame(pull.body, fixed)]
+
+
+@dataclass(frozen=True)
+class Kinetostatics:
+    """J' lambda = -Q at the positions of a state (one mechanism): any Q, without building J again.
+
+    Attributes
+    ----------
+    scheme : what is solved for
+    numbers : the mechanism's dimensions
+    teeth : where gears mesh
+    equilibrium : what the space makes of forces
+    scale : the mechanism's greatest length [m], by which moments are measured
+    at : plain positions
+    pulls : unknown -> forces and moments of its row, at a multiplier of one
+    shape : of every array, (1, n)
+    """
+
+    scheme: Scheme
+    numbers: Dimensions
+    teeth: Teeth
+    equilibrium: Equilibrium
+    scale: float
+    at: Positions
+    pulls: Mapping[Unknown, tuple[Wrench, ...]]
+    shape: tuple[int, ...]
+
+    @classmethod
+    def of(cls, scheme: Scheme, numbers: Dimensions, state: State, teeth: Teeth) -> Kinetostatics:
+        """The equations at the positions of a state."""
+        space = equilibrium_of(state.mechanism)
+        at = space.positions(state, numbers)
+        pulls: dict[Unknown, tuple[Wrench, ...]] = {}
+        with np.errstate(all="ignore"):
+            for constraint in scheme.structure.constraints:
+                found = pulls_of(constraint, state.mechanism, numbers, at, teeth, space)
+                pulls |= {(constraint, row): each for row, each in enumerate(found)}
+        shape = (1, len(state.parameter))
+        return cls(scheme, numbers, teeth, space, space.scale(numbers), at, pulls, shape)
+
+    @cached_property
+    def inverse(self) -> Inverse:
+        """The matrix of the equations, inverted at every position."""
+        size, unknowns = self.scheme.size, self.scheme.unknowns
+        matrix = np.zeros((size, len(unknowns), *self.shape))
+        for column, unknown in enumerate(unknowns):
+            self._add(matrix[:, column], self.pulls[unknown])
+            if self.equilibrium.by_moment(unknown[0]):
+                matrix[:, column] *= self.scale
+        return inverse_of(np.ascontiguousarray(np.moveaxis(matrix, (0, 1), (-2, -1))))
+
+    def right_side(self, outer: Iterable[Wrench]) -> Array:
+        """Forces and moments [N] on the links, as (equations, 1, n)."""
+        found = np.zeros((self.scheme.size, *self.shape))
+        self._add(found, outer)
+        return found
+
+    def forces(self, outer: Sequence[Wrench]) -> ForceSystem:
+        """Constraint forces that balance what acts on points and links.
+
+        Equations that repeat others bear nothing, except where the others alone are singular: there all together bear
+        the least. What nothing determines is one of the many forces that are possible.
+        """
+        solved = self.inverse.times(-self.right_side(outer))
+        multipliers: dict[Unknown, Number] = {}
+        for row, unknown in enumerate(self.scheme.unknowns):
+            turns = self.equilibrium.by_moment(unknown[0])
+            multipliers[unknown] = solved[row] * self.scale if turns else solved[row]
+        multipliers |= self._at_hosts(multipliers, outer)
+        return ForceSystem(self, multipliers, tuple(outer))
+
+    def _at_hosts(
+        self, multipliers: Mapping[Unknown, Number], outer: Sequence[Wrench]
+    ) -> dict[Unknown, Number]:
+        """What the host of each pin bears: the rest of what acts on the pin."""
+        sums: dict[Axis, Number] = dict.fromkeys(self.scheme.hosts, np.zeros(self.shape))
+        acting = [(pull, value) for unknown, value in multipliers.items() for pull in self.pulls[unknown]]
+        for pull, value in [*acting, *((pull, 1.0) for pull in outer)]:
+            if pull.body.kind == "point":
+                for axis in range(2):
+                    place = pull.body.name, axis
+                    along = _along(pull.force, self._host_axis(place)) if place in sums else 0.0
+                    if not _nothing(along):
+                        sums[place] = sums[place] + along * value
+        return {unknown: -sums[place] for place, unknown in self.scheme.hosts.items()}
+
+    def _host_axis(self, place: Axis) -> Vector:
+        """Direction in which a pin's host bears it: that of its row, a unit vector square to that of its other row."""
+        pulls = self.pulls[self.scheme.hosts[place]]
+        return next(pull.force for pull in pulls if pull.body.kind == "point")
+
+    def _add(self, column: Array, pulls: Iterable[Wrench]) -> None:
+        """Add what pulls do to each equation; the frame has none."""
+        for pull in pulls:
+            for row, value in self._entries(pull):
+                if not _nothing(value):
+                    column[row] += value
+
+    def _entries(self, pull: Wrench) -> list[tuple[int, Number]]:
+        name, scheme = pull.body.name, self.scheme
+        if pull.body.kind == "link":
+            return self._on_link(name, pull) if name in scheme.links else []
+        if (name, 0) in scheme.hosts:
+            return self._on_link(scheme.hosts[name, 0][0].link, pull)  # type: ignore[attr-defined]
+        if (name, 0) not in scheme.loose:
+            return []
+        row, axes = 3 * len(scheme.links) + scheme.loose.index((name, 0)), self._pin_axes(name)
+        return [(row + k, _along(pull.force, axis)) for k, axis in enumerate(axes)]
+
+    def _pin_axes(self, point: str) -> Sequence[Vector]:
+        return self.equilibrium.pin_axes(self.at.points[point])
+
+    def _on_link(self, link: str, pull: Wrench) -> list[tuple[int, Number]]:
+        row = self.scheme.first_row(link)
+        return [(row + k, value) for k, value in enumerate(self.on_link(link, pull))]
+
+    def on_link(self, link: str, pull: Wrench) -> tuple[Number, Number, Number]:
+        """What a pull does to the three equations of its link [N]: about its first point, by the greatest length."""
+        return self.equilibrium.on_link(pull, self._feet[link], self.scale)
+
+    @cached_property
+    def _feet(self) -> dict[str, Foot]:
+        links = self.scheme.structure.mechanism.links
+        firsts = {name: next(iter(link.coordinates)) for name, link in links.items()}
+        return {name: self.equilibrium.foot(self.at.points[first]) for name, first in firsts.items()}
+
+
+def _along(force: Vector, axis: Vector) -> Number:
+    """Component of a force; a component that is plainly zero costs nothing."""
+    found: Number = 0.0
+    for x, u in zip(force, axis, strict=True):
+        if not _nothing(x) and not _nothing(u):
+            found = found + (x if isinstance(u, float) and u == 1.0 else x * u)
+    return found
+
+
+def _nothing(value: Number) -> bool:
+    return isinstance(value, float) and value == 0.0

@@ -1,0 +1,272 @@
+"""Sides of hinges: the force of each pin on each link that it joins, the frame included."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.rounding import SAFETY
+from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics, Unknown
+from centrode.dynamics.wrenches import Vector, Wrench
+from centrode.errors import Status
+from centrode.model.mechanism import FRAME, Mechanism
+from centrode.structure.constraints import (
+    Constraint,
+    Contact,
+    Entity,
+    GearRatio,
+    NoSlip,
+    NoTurning,
+    PointInLink,
+    PointOnGuide,
+    is_drive,
+)
+from centrode.structure.gearing import Straight
+
+Number: TypeAlias = Any
+
+
+@dataclass(frozen=True)
+class JointSide:
+    """A point and a body that is hinged there."""
+
+    point: str
+    body: str
+
+    @property
+    def label(self) -> str:
+        """Its name in results."""
+        return f"{self.point}/{self.body}"
+
+
+def sides_of(mechanism: Mechanism) -> tuple[JointSide, ...]:
+    """Sides of all hinges, in the order in which links name the points; of each its links, then the frame.
+
+    A moving point in one link is a hinge if a guide or a cylinder holds it as well; so is a fixed one in none.
+    """
+    held = {guide.point for guide in mechanism.guides}
+    held |= {point for drive in mechanism.drives for point in drive.distance or ()}
+    found = []
+    named = [point for link in mechanism.links.values() for point in link.coordinates]
+    for point in dict.fromkeys([*named, *mechanism.moving_points, *mechanism.frame.points]):
+        links = [name for name, link in mechanism.links.items() if point in link.coordinates]
+        fixed = point in mechanism.frame.points
+        if len(links) > 1 or (links and fixed) or (point in held and (links or fixed)):
+            found += [JointSide(point, link) for link in links]
+            found += [JointSide(point, FRAME)] if fixed else []
+    return tuple(found)
+
+
+def side_forces(forces: ForceSystem, sides: Iterable[JointSide]) -> dict[JointSide, Vector]:
+    """Force of the pin on the body at each side [N], in the frame's axes."""
+    origin = forces.system.equilibrium.origin
+    return {
+        side: _sum(
+            pulls_on_point(forces, side.point) if side.body == FRAME else _on_body(forces, side), origin
+        )
+        for side in sides
+    }
+
+
+def _on_body(forces: ForceSystem, side: JointSide) -> list[Wrench]:
+    """What the pin does to a link: by being its point, and on the sphere by being pressed against it alone."""
+    tie = PointInLink(side.point, side.body)
+    known = [(tie, row) for row in range(tie.size) if (tie, row) in forces.multipliers]
+    tied = [pull for unknown in known for pull in forces.pulls(unknown) if pull.body.kind == "link"]
+    pressed = [pull for one in forces.pressing if one.point == side.point for pull in one.pulls]
+    return [*tied, *(pull for pull in pressed if pull.body == Entity("link", side.body))]
+
+
+def _sum(pulls: Iterable[Wrench], origin: Vector) -> Vector:
+    """Sum of forces; of none, nothing."""
+    found = origin
+    for pull in pulls:
+        found = tuple(x + y for x, y in zip(found, pull.force, strict=True))
+    return found
+
+
+def pulls_on_point(forces: ForceSystem, point: str) -> list[Wrench]:
+    """All forces on a pin: of links, guides, cylinders and loads."""
+    return [pull for pull in forces.all_pulls if pull.body.kind == "point" and pull.body.name == point]
+
+
+# Numbers over samples put together as arrays, samples first.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+
+def column(value: Number, samples: int) -> Array:
+    """One number over the samples (n), from arrays (1, n) or a plain number."""
+    return np.array(np.broadcast_to(value, (1, samples))[0], dtype=np.float64)
+
+
+def columns(values: Sequence[Number], samples: int) -> Array:
+    """Numbers over the samples (n, numbers)."""
+    found = np.empty((samples, len(values)))
+    for k, value in enumerate(values):
+        found[:, k] = column(value, samples)
+    return found
+
+
+def tables(values: Sequence[Sequence[Number]], width: int, samples: int) -> Array:
+    """Rows of so many numbers over the samples (n, rows, width)."""
+    return columns([value for row in values for value in row], samples).reshape(samples, len(values), width)
+
+
+# Reactions of all joints from the solved equations, as plain arrays by the names of the dataset.
+
+
+def reactions_of(forces: ForceSystem, sides: Sequence[JointSide]) -> dict[str, Array]:
+    """Every reaction, (samples, ...) as the dataset has it."""
+    structure = forces.system.scheme.structure
+    of_kind = {
+        kind: [c for c in structure.constraints if isinstance(c, kind)]
+        for kind in (PointOnGuide, GearRatio, Contact, NoSlip)
+    }
+    samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
+    drives = [_value(forces, c) for c in structure.constraints if is_drive(c)]
+    found = {
+        "joint_force": tables([*side_forces(forces, sides).values()], axes, samples),
+        "balancing": columns(drives, samples),
+    }
+    if axes == 3:
+        found["centre_force"] = tables([*centre_forces(forces).values()], axes, samples)
+    if of_kind[PointOnGuide]:
+        found |= _of_guides(forces, of_kind[PointOnGuide])
+    if of_kind[GearRatio]:
+        found |= _of_gears(forces, of_kind[GearRatio])
+    if of_kind[Contact]:
+        found |= _of_wheels(forces, of_kind[Contact], of_kind[NoSlip])
+    return found
+
+
+def centre_forces(forces: ForceSystem) -> dict[str, Vector]:
+    """On the sphere: force of its centre on each link, and on each pin of several links that loads act on."""
+    found = {pull.body.name: pull.force for pull in forces.centre if pull.body.name != FRAME}
+    for one in forces.pressing:
+        if one.bearer == FRAME:
+            known = found.get(f"pin {one.point}", forces.system.equilibrium.origin)
+            found[f"pin {one.point}"] = tuple(x - y for x, y in zip(known, one.force, strict=True))
+    return found
+
+
+def _value(forces: ForceSystem, constraint: Constraint | None) -> Number:
+    """Multiplier of a constraint of one row; zero of one that repeats others, or that there is none of."""
+    return 0.0 if constraint is None else forces.multipliers.get((constraint, 0), 0.0)
+
+
+def _force_of(pulls: Iterable[Wrench]) -> list[Number]:
+    """The first of the forces that a constraint exerts: on the point, slider or wheel; carriers come after."""
+    return next(list(pull.force) for pull in pulls if not isinstance(pull.force[0], float) or any(pull.force))
+
+
+def _of_guides(forces: ForceSystem, guides: Sequence[Constraint]) -> dict[str, Array]:
+    turning = {c.guide: c for c in forces.system.scheme.structure.constraints if isinstance(c, NoTurning)}
+    normal = [_value(forces, c) for c in guides]
+    units = [_force_of(forces.system.pulls[c, 0]) for c in guides]
+    vectors = [[value * x for x in unit] for value, unit in zip(normal, units, strict=True)]
+    moments = [_value(forces, turning.get(c.guide)) for c in guides if isinstance(c, PointOnGuide)]
+    samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
+    found = {"guide_force": tables(vectors, axes, samples), "guide_normal": columns(normal, samples)}
+    # the guides of the sphere have no links of their own
+    return found if axes == 3 else found | {"guide_moment": columns(moments, samples)}
+
+
+def _of_gears(forces: ForceSystem, gears: Sequence[Constraint]) -> dict[str, Array]:
+    moments, teeth = [], []
+    for gear in gears:
+        assert isinstance(gear, GearRatio)
+        value = _value(forces, gear)
+        weights = gear.weights(forces.system.numbers)
+        moments.append([value * weights[link] for link in gear.links])
+        force = forces.system.pulls[gear, 0][0].force
+        # of bevel wheels that turn alike the moment alone is known
+        told = any(not isinstance(x, float) or x for x in force)
+        known = told and gear.gear in forces.system.teeth.axes
+        teeth.append([value * x if known else np.nan for x in force])
+    samples, axes = forces.system.shape[-1], len(forces.system.equilibrium.origin)
+    return {"gear_moment": tables(moments, 3, samples), "tooth_force": tables(teeth, axes, samples)}
+
+
+def _of_wheels(
+    forces: ForceSystem, contacts: Sequence[Constraint], slips: Sequence[Constraint]
+) -> dict[str, Array]:
+    vectors, normal, along = [], [], []
+    for contact, slip in zip(contacts, slips, strict=True):
+        assert isinstance(contact, Contact)
+        track = forces.system.numbers.gearing.track[contact.rolling]
+        out = _force_of(forces.system.pulls[contact, 0])
+        press, drag = _value(forces, contact), _value(forces, slip)
+        grip = [drag * x for x in _force_of(forces.system.pulls[slip, 0])]
+        vectors.append([press * x + y for x, y in zip(out, grip, strict=True)])
+        # a wheel inside a circle, or a ring around a pin, is pressed towards the circle's centre
+        normal.append(press if isinstance(track, Straight) or not track.inside else -press)
+        way = (out[1], -out[0]) if isinstance(track, Straight) else (-out[1], out[0])
+        along.append(grip[0] * way[0] + grip[1] * way[1])
+    samples = forces.system.shape[-1]
+    return {
+        "rolling_force": tables(vectors, 2, samples),
+        "rolling_normal": columns(normal, samples),
+        "rolling_tangential": columns(along, samples),
+    }
+
+
+# What reactions are worth: where the equations are singular, and which reactions nothing determines.
+
+Mask: TypeAlias = npt.NDArray[np.bool_]
+Codes: TypeAlias = npt.NDArray[np.int8]
+MOMENTS = ("guide_moment", "gear_moment", "balancing")
+"""Reactions that may be moments: measured by the greatest length beside forces."""
+
+
+def reaction_status(system: Kinetostatics, status: Codes) -> Codes:
+    """The motion's statuses (n), and `singular` where rounding leaves no digit of the reactions."""
+    found = status.copy()
+    lost = system.inverse.useless[0]
+    found[lost & ((status == Status.OK) | (status == Status.CUT_OFF))] = Status.SINGULAR
+    return found
+
+
+def undetermined_parts(
+    system: Kinetostatics, sides: Sequence[JointSide], status: Codes, residual: float
+) -> dict[str, Mask]:
+    """Which entries of each reaction nothing determines, over all samples that are ok.
+
+    Each equation that repeats others leaves a state of stress free: forces that balance among themselves. What any
+    of them changes is not determined. `residual` is how well the equations repeat each other.
+    """
+    good = status == Status.OK
+    found: dict[str, Mask] = {}
+    if not good.any():
+        return found
+    condition = system.inverse.condition[0][good]
+    noise = SAFETY * (system.inverse.loss[0][good] + condition * residual)
+    for unknown in system.scheme.repeating:
+        parts = _measured(reactions_of(_self_stress(system, unknown), sides), system.scale)
+        greatest = np.max([_greatest(values[good]) for values in parts.values()], axis=0)
+        for name, values in parts.items():
+            bound = (noise * greatest).reshape(-1, *[1] * (values.ndim - 1))
+            felt = (np.abs(values[good]) > bound).any(axis=0)
+            found[name] = found.get(name, np.zeros_like(felt)) | felt
+    return found
+
+
+def _self_stress(system: Kinetostatics, unknown: Unknown) -> ForceSystem:
+    """All constraint forces that a unit of one repeating equation brings about."""
+    multipliers = system.forces(system.pulls[unknown]).multipliers
+    return ForceSystem(system, {**multipliers, unknown: multipliers[unknown] + 1.0}, ())
+
+
+def _measured(parts: Mapping[str, Array], scale: float) -> dict[str, Array]:
+    return {
+        name: values / scale if name in MOMENTS else np.nan_to_num(values) for name, values in parts.items()
+    }
+
+
+def _greatest(values: Array) -> Array:
+    greatest: Array = np.abs(values).reshape(len(values), -1).max(axis=1)
+    return greatest

@@ -1,0 +1,291 @@
+"""What loads work along: a coordinate's derivative by the drive's value, times the load, is its reduced moment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+from typing import Any, Protocol, TypeAlias
+
+from centrode.algebra.jets import Jet
+from centrode.dynamics.state import Centre, Place, Radial, State
+from centrode.dynamics.wrenches import Vector, Wrench, couple, on_link, on_point
+from centrode.errors import InputError
+from centrode.geometry.plane import turned
+from centrode.geometry.sphere import cross, unit, unit_vector
+from centrode.locale import _
+from centrode.model.loads import Load
+from centrode.model.mechanism import FRAME, Mechanism
+from centrode.model.values import Placed
+
+Number: TypeAlias = Any
+
+
+class Coordinate(Protocol):
+    """A number that a load works along."""
+
+    def value(self, state: State) -> Number:
+        """The number itself [m or rad]."""
+
+    def slope(self, state: State) -> Jet:
+        """Its derivative by the parameter, at held directions, and the derivative of that."""
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        """What a load of one unit along it does to points and links: its derivatives by their coordinates."""
+
+
+@dataclass(frozen=True)
+class Turn:
+    """Angle of a link from another."""
+
+    link: str
+    base: str = FRAME
+
+    def value(self, state: State) -> Number:
+        return state.angle(self.link).value - state.angle(self.base).value
+
+    def slope(self, state: State) -> Jet:
+        return (state.angle(self.link) - state.angle(self.base)).slope()
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        return couple(self.link, 1.0), couple(self.base, -1.0)
+
+
+@dataclass(frozen=True)
+class Slide:
+    """Displacement along a guide."""
+
+    guide: str
+
+    def value(self, state: State) -> Number:
+        return state.slide(self.guide).value
+
+    def slope(self, state: State) -> Jet:
+        return state.slide(self.guide).slope()
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        guide = state.mechanism.guide(self.guide)
+        at, along = place_of(state.point(guide.point)), self._along(state)
+        # a slider that is a link of its own is what is pushed, and not the pin in it
+        slider = on_point(guide.point, along, at) if guide.link is None else on_link(guide.link, along, at)
+        return slider, on_link(guide.on, tuple(-x for x in along), at)
+
+    def _along(self, state: State) -> Vector:
+        """Unit vector along which the displacement grows: of the line, or of the circle at the point."""
+        guide = state.mechanism.guide(self.guide)
+        if not state.on_sphere:
+            (x, y), (cosine, sine) = guide.unit, place_of(state.rotor(guide.on))
+            return turned((x, y), (cosine, sine))
+        spot = guide.pole.at if isinstance(guide.pole, Placed) else guide.pole
+        assert spot is not None
+        pole = (
+            state.point(spot)
+            if isinstance(spot, str)
+            else state.heading(guide.on, unit_vector(state.m.base, spot))
+        )
+        (x, y, z), (u, v, w) = place_of(pole), place_of(state.point(guide.point))
+        return unit(state.m.base, cross((x, y, z), (u, v, w)))
+
+
+@dataclass(frozen=True)
+class Distance:
+    """Distance of two points."""
+
+    first: str
+    second: str
+
+    def value(self, state: State) -> Number:
+        return self._length(state).value
+
+    def slope(self, state: State) -> Jet:
+        return self._length(state).slope()
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        return _apart(state, self.first, self.second, self._length(state).value)
+
+    def _length(self, state: State) -> Jet:
+        length: Jet = state.m.sqrt(_squared(state, self.first, self.second))
+        return length
+
+
+@dataclass(frozen=True)
+class HalfSquare:
+    """Half the squared distance of two points: unlike the distance it has a derivative where they meet."""
+
+    first: str
+    second: str
+
+    def value(self, state: State) -> Number:
+        return self._half(state).value
+
+    def slope(self, state: State) -> Jet:
+        return self._half(state).slope()
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        return _apart(state, self.first, self.second, 1.0)
+
+    def _half(self, state: State) -> Jet:
+        return _squared(state, self.first, self.second) * 0.5
+
+
+def _squared(state: State, first: str, second: str) -> Jet:
+    """Squared straight distance of two points [m^2], on the sphere too."""
+    parts = [(v - u) * (v - u) for u, v in zip(state.point(first), state.point(second), strict=True)]
+    return sum(parts[1:], parts[0])
+
+
+@dataclass(frozen=True)
+class Component:
+    """Component of a point's place, or of a link's centre of mass, along a direction fixed in a link or the frame."""
+
+    at: str | Centre | Radial
+    direction: tuple[float, ...]
+    axes: str = FRAME
+
+    def value(self, state: State) -> Number:
+        parts = [u * x for u, x in zip(self._direction(state), self._place(state), strict=True)]
+        return sum(parts[1:], parts[0]).value
+
+    def slope(self, state: State) -> Jet:
+        pairs = zip(self._direction(state), self._place(state), strict=True)
+        parts = [u.lowered() * x.slope() for u, x in pairs]
+        return sum(parts[1:], parts[0])
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        force, at = place_of(self._direction(state)), place_of(self._place(state))
+        body = self.at
+        return (on_point(body, force, at) if isinstance(body, str) else on_link(body.link, force, at),)
+
+    def _place(self, state: State) -> Place:
+        return state.point(self.at) if isinstance(self.at, str) else state.centre(self.at)
+
+    def _direction(self, state: State) -> Place:
+        size = hypot(*self.direction)
+        unit = tuple(x / size for x in self.direction)
+        if self.axes == FRAME:
+            return tuple(Jet((x, 0.0, 0.0)) for x in unit)
+        if state.on_sphere:
+            return state.heading(self.axes, unit)  # type: ignore[arg-type]
+        x, y = unit
+        cosine, sine = state.rotor(self.axes)
+        return cosine * x - sine * y, sine * x + cosine * y
+
+
+def place_of(place: Place) -> Vector:
+    """Coordinates without their derivatives."""
+    return tuple(x.value for x in place)
+
+
+def _apart(state: State, first: str, second: str, size: Number) -> tuple[Wrench, ...]:
+    """Two points pushed apart, each with a force of their distance over `size`."""
+    one, other = place_of(state.point(first)), place_of(state.point(second))
+    force = tuple((u - x) / size for x, u in zip(one, other, strict=True))
+    return on_point(second, force, other), on_point(first, tuple(-x for x in force), one)
+
+
+# What moments work along: the angle between two links, in the plane, in a hinge of the sphere, about an axis.
+
+
+@dataclass(frozen=True)
+class Spin:
+    """On the sphere: turning of a link against another about an axis, a hinge or a direction of the frame.
+
+    Attributes
+    ----------
+    axis : a point's name, or components in the frame's axes
+    joint : str or None
+        The link whose joint angle this is, where one is measured in this hinge; `sense` tells which way.
+    """
+
+    link: str
+    base: str
+    axis: str | tuple[float, ...]
+    joint: str | None = None
+    sense: float = 1.0
+
+    def value(self, state: State) -> Number:
+        if self.joint is None:
+            return float("nan")
+        return self.sense * state.angle(self.joint).value
+
+    def slope(self, state: State) -> Jet:
+        along = [x.lowered() for x in self._axis(state)]
+        pairs = zip(state.spin(self.link), state.spin(self.base), along, strict=True)
+        parts = [(own - other) * axis for own, other, axis in pairs]
+        return sum(parts[1:], parts[0])
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        axis = place_of(self._axis(state))
+        return couple(self.link, axis), couple(self.base, tuple(-x for x in axis))
+
+    def _axis(self, state: State) -> Place:
+        if isinstance(self.axis, str):
+            unit = 1.0 / state.mechanism.sphere_radius
+            return tuple(x * unit for x in state.point(self.axis))
+        size = hypot(*self.axis)
+        return tuple(Jet((x / size, 0.0, 0.0)) for x in self.axis)
+
+
+@dataclass(frozen=True)
+class Travel:
+    """How far the drive has gone, whichever way: what works along it resists the drive itself."""
+
+    def value(self, state: State) -> Number:
+        return float("nan")
+
+    def slope(self, state: State) -> Jet:
+        return Jet((state.m.base.sign(state.rate), 0.0))
+
+    def pulls(self, state: State) -> tuple[Wrench, ...]:
+        raise NotImplementedError("no force on a link works along it")
+
+
+def turning_of(mechanism: Mechanism, load: Load, where: str, measured: bool) -> Coordinate:
+    """The turning of a load's link against another; `measured` where the load asks for the angle itself.
+
+    Raises InputError on the sphere where nothing tells the axis, or nothing measures an angle that is asked for.
+    """
+    assert load.link is not None
+    if mechanism.space != "sphere":
+        return Turn(load.link, load.relative_to)
+    axis = hinge_of(mechanism, load.link, load.relative_to, where) if load.axis is None else load.axis
+    joint, sense = _joint(mechanism, load.link, load.relative_to, axis)
+    if measured and joint is None:
+        what = _("no angle is measured between {link} and {other} there, and the load depends on it")
+        repair = _("let the first point of one of them be the hinge, and give it a reference on the other")
+        raise InputError(where, what.format(link=load.link, other=load.relative_to), repair)
+    return Spin(load.link, load.relative_to, axis, joint, sense)
+
+
+def hinge_of(mechanism: Mechanism, link: str, other: str, where: str) -> str:
+    """The point that two links share; raises InputError where there is none or more than one."""
+    shared = [point for point in points_of(mechanism, link) if point in points_of(mechanism, other)]
+    if len(shared) == 1:
+        return shared[0]
+    if shared:
+        what = _("{link} and {other} share the points {points}")
+        repair = _("say which: axis = a point")
+        raise InputError(where, what.format(link=link, other=other, points=", ".join(shared)), repair)
+    what = _("{link} and {other} have no hinge in common").format(link=link, other=other)
+    repair = _("give relative_to, or axis: a point, or [x, y, z] in the axes of the frame")
+    raise InputError(where, what, repair)
+
+
+def points_of(mechanism: Mechanism, link: str) -> list[str]:
+    """Names of the points of a link or of the frame."""
+    return list(mechanism.frame.points if link == FRAME else mechanism.links[link].coordinates)
+
+
+def _joint(
+    mechanism: Mechanism, link: str, other: str, axis: str | tuple[float, ...]
+) -> tuple[str | None, float]:
+    """The link whose joint angle is that of one against the other about a point, and which way it counts."""
+    for one, base, sense in ((link, other, 1.0), (other, link, -1.0)):
+        reference = None if one == FRAME else mechanism.links[one].reference
+        # a reference starts in the first point of its link, which is the axis of the angle
+        if (
+            reference is not None
+            and reference[0] == axis
+            and set(reference) <= set(points_of(mechanism, base))
+        ):
+            return one, sense
+    return None, 1.0

@@ -1,0 +1,277 @@
+"""The steady regime of a machine that is left to itself: the speed that comes back after a period of the mechanism.
+
+Poincare's return map at one value of the drive: from the speed there to that a period later. Its fixed point is found
+by the secant method; the derivative of the map there, the multiplier, says how fast deviations die away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import floor, inf, tau
+
+import numpy as np
+
+from centrode.dynamics.simulation.equation_of_motion import OF_DRIVE, RATE, VALUE, Field, Trajectory
+from centrode.dynamics.simulation.simulate import Setting, setting_of
+from centrode.dynamics.simulation.stepping import Stepper, Until
+from centrode.errors import InputError, MotionError
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.model.simulations import Simulation
+from centrode.numerics.search import tops
+
+# The return map of a machine: from the speed at one value of the drive to that a period later, and its fixed
+# point.
+
+TOLERANCE = 1e-11
+"""Relative one of the integration from period to period."""
+SETTLED = 1e-9
+"""Change of the speed over a period, relative, at which it has come back."""
+MOST_MAPS = 60
+MOST_STEPS = 60_000
+RUN_IN = 2
+"""Periods that are run through before the return map is looked at."""
+PROBES = tau * np.array([0.0133, 0.291, 0.618, 0.911])
+
+
+class ReturnMap:
+    """The return map of a setting."""
+
+    def __init__(self, setting: Setting, period: float) -> None:
+        self.setting, self.period = setting, period
+        self.count = 0
+
+    def __call__(self, speed: float) -> float:
+        """The speed after a period; NaN where it does not get there."""
+        course = self.course(speed)
+        return self._speed(course) if course.ended == "turns" else np.nan
+
+    def course(self, speed: float) -> Trajectory:
+        """One period from a speed at the section."""
+        self.count += 1
+        return self._run(speed, 1)
+
+    def run_in(self) -> float:
+        """The speed after some periods from the start itself."""
+        speed = self.setting.settings.speed
+        self.count += RUN_IN
+        course = self._run(speed, RUN_IN)
+        if course.ended != "turns":
+            states = course.at(np.array([course.last]))[0]
+            raise MotionError(
+                "[simulation]",
+                _("there is no steady regime: it comes to rest with the drive at {value:.6g}").format(
+                    value=float(states[VALUE, 0])
+                ),
+                _("give it more moment, inertia or speed at the start"),
+            )
+        return self._speed(course)
+
+    def _run(self, speed: float, periods: int) -> Trajectory:
+        setting = self.setting
+        stiff = setting.settings.scheme == "stiff"
+        until = Until(inf, periods * self.period)
+        stepper = Stepper(setting.field, until, TOLERANCE, stiff, most=MOST_STEPS)
+        return stepper.run(setting.start, setting.rows.sense * speed)
+
+    def _speed(self, course: Trajectory) -> float:
+        return float(course.at(np.array([course.last]))[0][RATE, 0]) * self.setting.rows.sense
+
+
+def period_of(setting: Setting) -> float:
+    """Angle after which everything repeats."""
+    field = setting.field
+    if field.of_time:
+        raise InputError(
+            "[simulation]",
+            _("drive or loads depend on time: a speed that repeats is not looked for"),
+            _("use formulas of q, v and x"),
+        )
+    period = field.tracks.period
+    if not period:
+        raise MotionError(
+            "[simulation]",
+            _("a steady regime needs a drive that turns all the way round and loads that repeat"),
+            _("simulate it for a time instead"),
+        )
+    if not _repeats(field, period, setting.rows.sense):
+        raise InputError(
+            "[simulation]",
+            _("drive or loads do not repeat with the motion"),
+            _("use formulas that are the same after whole turns"),
+        )
+    return period
+
+
+def _repeats(field: Field, period: float, sense: float) -> bool:
+    """Whether moments are the same a period later."""
+    for probe in PROBES:
+        here, there = (field.tracks.first + float(probe) + k * period for k in (0, 1))
+        one, other = (field.forces(field.leg(q, sense), 0.0, q, sense) for q in (here, there))
+        for name in ("stored", "friction", "other", "driving"):
+            a, b = getattr(one, name), getattr(other, name)
+            if abs(a - b) > 1e-7 * (abs(a) + abs(b) + one.inertia):
+                return False
+    return True
+
+
+def fixed_point(maps: Callable[[float], float], speed: float) -> float:
+    """The speed that comes back, by the secant method; plain iteration where that leads astray."""
+    before, missed_before = speed, maps(speed) - speed
+    if abs(missed_before) <= SETTLED * speed:
+        return speed
+    here = before + missed_before
+    for _k in range(MOST_MAPS):
+        back = maps(here) if here > 0.0 else np.nan
+        missed = back - here
+        if not np.isfinite(missed):
+            break
+        if abs(missed) <= SETTLED * here * min(1.0, abs(1.0 - _slope(before, here, missed_before, missed))):
+            return here
+        slope = _slope(before, here, missed_before, missed)
+        ahead = here - missed / (slope - 1.0) if slope != 1.0 else back
+        if not 0.2 * here < ahead < 5.0 * here:
+            ahead = back
+        before, missed_before, here = here, missed, ahead
+    raise unsettled(speed, here)
+
+
+def unsettled(first: float, last: float) -> MotionError:
+    """The failure of a speed that does not come back."""
+    return MotionError(
+        "[simulation]",
+        _("the speed does not settle: it goes from {first:.6g} to {last:.6g} rad/s, and on").format(
+            first=first, last=last
+        ),
+        _("let drive or loads depend on the speed, or give another start"),
+    )
+
+
+def _slope(before: float, here: float, missed_before: float, missed: float) -> float:
+    """Derivative of the return map by two of its values."""
+    return 1.0 + (missed - missed_before) / (here - before) if here != before else 1.0
+
+
+NEUTRAL = 1e-5
+"""A multiplier as near to 1 says that any speed comes back, but for the rounding of its differences."""
+INDIFFERENT = 1e-4
+"""The same of a regime that is found: nothing tells its speed from another."""
+PARTS = 2000
+
+
+@dataclass(frozen=True)
+class Regime:
+    """A machine whose speed repeats; speeds in the sense of the drive.
+
+    Attributes
+    ----------
+    turns : int
+        Turns of the drive until everything repeats.
+    time : float [s]
+        Of a period.
+    mean_speed : float [rad/s]
+        In time: angle of a period over its time.
+    least_speed, least_at, least_time : float [rad/s, rad, s]
+        The least speed, the drive's value there, and the time from the section.
+    greatest_speed, greatest_at, greatest_time : float
+    fluctuation : float
+        (greatest - least) over half their sum.
+    driving_moment : float [N m]
+        Mean over the angle.
+    section, section_speed : float [rad, rad/s]
+        Value of the drive at which the map was taken, and the speed that comes back there.
+    multiplier : float
+        What is left of a deviation after a period; 1 where any speed would come back.
+    maps : int
+        Periods that were integrated.
+    """
+
+    turns: int
+    time: float
+    mean_speed: float
+    least_speed: float
+    least_at: float
+    least_time: float
+    greatest_speed: float
+    greatest_at: float
+    greatest_time: float
+    fluctuation: float
+    driving_moment: float
+    section: float
+    section_speed: float
+    multiplier: float
+    maps: int
+
+    @property
+    def indifferent(self) -> bool:
+        """Whether any speed would come back, as of a conservative machine: nothing runs up to this one."""
+        return abs(self.multiplier - 1.0) < INDIFFERENT
+
+
+def steady_regime(mechanism: Mechanism, settings: Simulation | None = None) -> Regime:
+    """The steady regime that a machine runs up to from the start of its simulation.
+
+    Raises
+    ------
+    InputError
+        As `simulate`; loads or a drive that depend on time or do not repeat.
+    MotionError
+        It does not turn all the way round, comes to rest, or its speed does not settle.
+    """
+    return regime_of(setting_of(mechanism, settings))
+
+
+def regime_of(setting: Setting) -> Regime:
+    """The same of a mechanism made ready."""
+    period = period_of(setting)
+    maps = ReturnMap(setting, period)
+    speed = maps.run_in()
+    if setting.is_conservative:
+        # with the place the energy comes back, and with it any speed
+        return _regime(setting, maps.course(speed), speed, 1.0, maps)
+    found = fixed_point(maps, speed)
+    course = maps.course(found)
+    slightly = found * (1.0 + 1e-5)
+    multiplier = (maps(slightly) - maps(found)) / (slightly - found)
+    if abs(found - speed) > 0.01 * speed and abs(multiplier - 1.0) < NEUTRAL:
+        raise unsettled(speed, found)  # it went so far that rounding hides how it grows
+    return _regime(setting, course, found, multiplier, maps)
+
+
+def _regime(setting: Setting, course: Trajectory, speed: float, multiplier: float, maps: ReturnMap) -> Regime:
+    sense, period = setting.rows.sense, maps.period
+    least, greatest = (_extreme(course, sense, sign) for sign in (-1.0, 1.0))
+    ended = course.at(np.array([course.last]))[0][:, 0]
+    time = float(course.last - course.first)
+    values = [float(course.at(np.array([t]))[0][VALUE, 0]) for t, _speed in (least, greatest)]
+    return Regime(
+        round(period / tau),
+        time,
+        period / time,
+        least[1],
+        _in_turn(values[0], setting.start, period, sense),
+        least[0],
+        greatest[1],
+        _in_turn(values[1], setting.start, period, sense),
+        greatest[0],
+        2.0 * (greatest[1] - least[1]) / (greatest[1] + least[1]),
+        float(ended[OF_DRIVE]) / period,
+        setting.start,
+        speed,
+        multiplier,
+        maps.count,
+    )
+
+
+def _in_turn(value: float, start: float, period: float, sense: float) -> float:
+    """A value within one period from the start."""
+    turned = sense * (value - start)
+    return start + sense * (turned - period * floor(turned / period))
+
+
+def _extreme(course: Trajectory, sense: float, sign: float) -> tuple[float, float]:
+    """Time and greatest value of `sign` times the speed; the speed there."""
+    nodes = np.linspace(course.first, course.last, PARTS)
+    times, speeds = tops(lambda t: sign * sense * course.at(t)[0][RATE], nodes, most=1)
+    return float(times[0]), sign * float(speeds[0])

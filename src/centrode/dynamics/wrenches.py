@@ -1,0 +1,92 @@
+"""Forces and moments on points and links: what every load, constraint and inertia comes down to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from centrode.geometry import plane, sphere
+from centrode.structure.constraints import FRAME, Entity
+
+Number: TypeAlias = Any
+Vector: TypeAlias = tuple[Number, ...]
+"""Components along the axes of the space: two, on the sphere three."""
+Moment: TypeAlias = Any
+"""A number in the plane, a vector on the sphere; a plain zero is none in both."""
+NO_FORCE: Vector = (0.0, 0.0)
+NOWHERE: Vector = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """A force at a place, and a moment, on one body.
+
+    Attributes
+    ----------
+    body : a point (a pin), or a link, the frame included
+    force : (x, y), on the sphere (x, y, z) [N]
+    at : the same [m]
+        Where the force acts, as a place of that body.
+    moment : number, on the sphere a vector [N m]
+        A couple that comes on top; points take none.
+    """
+
+    body: Entity
+    force: Vector
+    at: Vector
+    moment: Moment = 0.0
+
+    def times(self, factor: Number) -> Wrench:
+        """The same, so many times as great."""
+        force = tuple(x * factor for x in self.force)
+        moment = self.moment
+        turned = tuple(x * factor for x in moment) if isinstance(moment, tuple) else moment * factor
+        return Wrench(self.body, force, self.at, turned)
+
+    def moment_about(self, place: Vector) -> Moment:
+        """Moment of the force about a place, and the couple [N m]."""
+        if len(self.force) == 2:
+            (x, y), (u, v) = self.at, place
+            return plane.cross((x - u, y - v), (self.force[0], self.force[1])) + self.moment
+        x, y, z = self.at
+        u, v, w = place
+        turned = sphere.cross((x - u, y - v, z - w), (self.force[0], self.force[1], self.force[2]))
+        return sphere.add(turned, self.moment) if isinstance(self.moment, tuple) else turned
+
+
+def on_point(point: str, force: Vector, at: Vector) -> Wrench:
+    """A force on a pin."""
+    return Wrench(Entity("point", point), force, at)
+
+
+def on_link(link: str, force: Vector, at: Vector) -> Wrench:
+    """A force on a link."""
+    return Wrench(Entity("link", link), force, at)
+
+
+def couple(link: str, moment: Moment) -> Wrench:
+    """A moment on a link."""
+    none = NOWHERE if isinstance(moment, tuple) else NO_FORCE
+    return Wrench(Entity("link", link), none, none, moment)
+
+
+def total(pulls: Iterable[Wrench], about: Vector) -> tuple[Vector, Moment]:
+    """Force and moment about a place of all pulls together."""
+    force: list[Number] = [0.0] * len(about)
+    moment: Moment = 0.0 if len(about) == 2 else NOWHERE
+    for pull in pulls:
+        force = [x + y for x, y in zip(force, pull.force, strict=True)]
+        turned = pull.moment_about(about)
+        moment = sphere.add(moment, turned) if isinstance(moment, tuple) else moment + turned
+    return tuple(force), moment
+
+
+def components(moment: Moment) -> Vector:
+    """The numbers of a moment: one, or three."""
+    return moment if isinstance(moment, tuple) else (moment,)
+
+
+def on_frame(body: Entity, fixed: Iterable[str]) -> bool:
+    """Whether a body is the frame or one of its points."""
+    return body == Entity("link", FRAME) or (body.kind == "point" and body.name in fixed)
