@@ -7,26 +7,25 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.choosing.problem import Family
-from centrode.cams.choosing.tried import Mesh, Trial
-from centrode.cams.contacts.line import Contact, Material, pressed
+from centrode.cams.contact_stress import ContactMaterial, LineContact, pressed
 from centrode.cams.curvature_laws import ExponentialCurvature
-from centrode.cams.expanded import ExpandedPath, expanded_path
+from centrode.cams.parameter_choice.problem import Family, Mesh, PathTrial
+from centrode.cams.path_series import ExpandedPath, expanded_path
 
 Array = NDArray[np.float64]
 
-STEEL = Material(2.06e11, 0.3)
-CONTACT = Contact(3000.0, 0.03, 0.015, STEEL, STEEL)
+STEEL = ContactMaterial(2.06e11, 0.3)
+CONTACT = LineContact(3000.0, 0.03, 0.015, STEEL, STEEL)
 END = math.pi / 4
 
 
-def family(end: float = END, contact: Contact | None = CONTACT) -> Family:
+def family(end: float = END, contact: LineContact | None = CONTACT) -> Family:
     """Exponential laws from a radius of their own: k0, k1, rho0."""
     return Family(
         names=("k0", "k1", "radius"),
         low=np.array([5.0, -1.0, 0.03]),
         high=np.array([40.0, 2.0, 0.09]),
-        trial=lambda p: Trial(lambda phi: p[0] * np.exp(p[1] * phi), float(p[2]), 0.0, 0.015),
+        trial=lambda p: PathTrial(lambda phi: p[0] * np.exp(p[1] * phi), float(p[2]), 0.0, 0.015),
         mesh=Mesh((0.0, end), mirrored=True),
         contact=contact,
     )

@@ -13,8 +13,8 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.cams.curvature_laws import ExponentialCurvature
-from centrode.cams.expanded import expanded_path
-from centrode.cams.path import SymmetricPath
+from centrode.cams.path_series import expanded_path
+from centrode.cams.roller_path import SymmetricPath
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)

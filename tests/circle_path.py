@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from centrode.cams.curvature_laws import ConstantCurvature, CurvatureLaw
-from centrode.cams.path import Array, StatePath
+from centrode.cams.roller_path import Array, StatePath
 
 
 @dataclass(frozen=True)

@@ -134,13 +134,13 @@ from .present import write_balance_csv as write_balance_csv
 from .present import write_harmonics_csv as write_harmonics_csv
 
 # Cams
-from .cams.labelled import cam as cam
-from .cams.comparison import cam_routes as cam_routes
-from .cams.described import path_of as path_of
+from .cams.cam import cam as cam
+from .cams.cam import cam_routes as cam_routes
+from .cams.path_series import path_of as path_of
 from .study.cams.results import cam_results as cam_results
 from .cams.followers.motion import follower_motion as follower_motion
-from .cams.followers.comparing import cam_laws as cam_laws
-from .cams.followers.comparing import compare_laws as compare_laws
+from .cams.followers.motion import cam_laws as cam_laws
+from .cams.followers.motion import compare_laws as compare_laws
 from .present import write_cam_csv as write_cam_csv
 from .present import write_cam_routes_csv as write_cam_routes_csv
 from .present import write_cam_tables as write_cam_tables
@@ -151,17 +151,17 @@ from .present import cam_figures as cam_figures
 from .present import write_cam_motion_csv as write_cam_motion_csv
 from .present import write_cam_laws_csv as write_cam_laws_csv
 from .present import cam_motion_figure as cam_motion_figure
-from .cams.followers.described import follower_cam as follower_cam
-from .cams.followers.described import least_cam as least_cam
-from .cams.followers.outlines import follower_outlines as follower_outlines
-from .cams.followers.tabled import cam_points as cam_points
-from .cams.followers.forces.labelled import cam_forces as cam_forces
-from .cams.followers.forces.acting import follower_forces as follower_forces
-from .cams.followers.forces.demand import Burden as Burden
-from .cams.followers.forces.keeping import least_push as least_push
-from .cams.followers.forces.keeping import jump_speed as jump_speed
-from .cams.followers.forces.keeping import preload_needed as preload_needed
-from .cams.followers.forces.keeping import stiffness_needed as stiffness_needed
+from .cams.followers.sizing import follower_cam as follower_cam
+from .cams.followers.sizing import least_cam as least_cam
+from .cams.followers.manufacture import follower_outlines as follower_outlines
+from .cams.followers.manufacture import cam_points as cam_points
+from .cams.followers.forces import cam_forces as cam_forces
+from .cams.followers.forces import follower_forces as follower_forces
+from .cams.followers.forces import Burden as Burden
+from .cams.followers.forces import least_push as least_push
+from .cams.followers.forces import jump_speed as jump_speed
+from .cams.followers.forces import preload_needed as preload_needed
+from .cams.followers.forces import stiffness_needed as stiffness_needed
 from .study.cams.forces import forces_rows as forces_rows
 from .present import write_cam_forces_csv as write_cam_forces_csv
 from .present import cam_forces_figure as cam_forces_figure
@@ -170,13 +170,13 @@ from .present import animate_follower as animate_follower
 from .present import laws_figure as laws_figure
 
 # Profiles of cams, walking wheels
-from .cams.profiles.tables import cam_profile as cam_profile
-from .cams.profiles.tables import shoe_profile as shoe_profile
-from .cams.profiles.tables import walking_wheel as walking_wheel
-from .cams.profiles.bodies import cam_body as cam_body
-from .cams.profiles.outlines import cam_outlines as cam_outlines
-from .cams.profiles.outlines import shoe_outlines as shoe_outlines
-from .cams.wheel.rolling import rolling as rolling
+from .cams.results import cam_profile as cam_profile
+from .cams.results import shoe_profile as shoe_profile
+from .cams.results import walking_wheel as walking_wheel
+from .cams.profiles import cam_body as cam_body
+from .cams.profiles import cam_outlines as cam_outlines
+from .cams.profiles import shoe_outlines as shoe_outlines
+from .cams.walking_wheel import rolling as rolling
 from .present import write_profile_csv as write_profile_csv
 from .present import write_outlines_svg as write_outlines_svg
 from .present import write_outlines_dxf as write_outlines_dxf
@@ -188,10 +188,10 @@ from .present import walking_figure as walking_figure
 from .present import cam_body_figures as cam_body_figures
 
 # Contact of roller and cam, choice of parameters
-from .cams.contacts.labelled import cam_contact as cam_contact
+from .cams.results import cam_contact as cam_contact
 from .study.cams.contact import contact_rows as contact_rows
-from .cams.choosing.chosen import choose_cam as choose_cam
-from .cams.choosing.chosen import CamChoice as CamChoice
+from .cams.parameter_choice.search import choose_cam as choose_cam
+from .cams.parameter_choice.search import CamChoice as CamChoice
 from .study.cams.choice import choice_rows as choice_rows
 from .present import write_cam_contact_csv as write_cam_contact_csv
 from .present import write_choice as write_choice

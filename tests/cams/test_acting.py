@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.cams.followers.forces.meeting_of import meeting_of
+from centrode.cams.followers.forces import meeting_of
 from centrode.study.cams.forces import forces_part
 from centrode.study.cams.said import Asked
 

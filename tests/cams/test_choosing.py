@@ -10,11 +10,8 @@ import pytest
 from scipy.optimize import brentq
 
 from cam_families import CONTACT, END, family, measured, path_of
-from centrode.cams.choosing.choice import Choice, choose
-from centrode.cams.choosing.measures import MEASURES
-from centrode.cams.choosing.problem import Family
-from centrode.cams.choosing.trade_off import trade_off
-from centrode.cams.choosing.tried import Mesh, Trial, paths_of
+from centrode.cams.parameter_choice.problem import MEASURES, Family, Mesh, PathTrial, paths_of
+from centrode.cams.parameter_choice.search import Choice, choose, trade_off
 from centrode.errors import InputError
 
 EPS = 2.0**-52
@@ -41,7 +38,7 @@ def test_tried_paths_are_the_paths(end: float) -> None:
     """The iteration leaves some rounding of each of its sums over 21 nodes, in a few panels."""
     designs = np.array([[10.0, 0.75, 0.05], [20.0, 0.0, 0.05], [14.0, -0.4, 0.06]])
     phi = np.linspace(min(0, end), max(0, end), 23)
-    trials = [Trial(lambda at, p=p: p[0] * np.exp(p[1] * at), float(p[2]), 0.0, 0.015) for p in designs]
+    trials = [PathTrial(lambda at, p=p: p[0] * np.exp(p[1] * at), float(p[2]), 0.0, 0.015) for p in designs]
     tried = paths_of(trials, Mesh((min(0, end), max(0, end))), phi)
     for column, design in enumerate(designs):
         k0, k1, radius = design
@@ -54,7 +51,9 @@ def test_tried_paths_are_the_paths(end: float) -> None:
 
 def test_a_path_that_stalls_is_steep_and_finite() -> None:
     tried = paths_of(
-        [Trial(lambda phi: 1.0 + 0 * phi, 0.05, 0.0, 0.015)], Mesh((0.0, math.pi)), np.linspace(0, math.pi, 9)
+        [PathTrial(lambda phi: 1.0 + 0 * phi, 0.05, 0.0, 0.015)],
+        Mesh((0.0, math.pi)),
+        np.linspace(0, math.pi, 9),
     )
     assert np.isfinite(tried.rho).all()
     assert np.abs(tried.gamma).max() > math.radians(71.25)  # that is refused
@@ -111,7 +110,7 @@ def test_one_parameter_has_a_root() -> None:
         ("k0",),
         np.array([5.0]),
         np.array([25.0]),
-        lambda p: Trial(lambda phi: p[0] + 0 * phi, 0.05, 0.0, 0.015),
+        lambda p: PathTrial(lambda phi: p[0] + 0 * phi, 0.05, 0.0, 0.015),
         Mesh((0.0, END), mirrored=True),
         CONTACT,
     )
@@ -129,7 +128,7 @@ def test_a_round_cam_is_found_where_nothing_asks_for_another() -> None:
         ("k", "swing"),
         np.array([0.3 / rho, -0.6]),
         np.array([1.7 / rho, 0.6]),
-        lambda p: Trial(lambda phi: p[0] * (1 + p[1] * np.sin(3 * phi)), rho, 0.0, 0.01),
+        lambda p: PathTrial(lambda phi: p[0] * (1 + p[1] * np.sin(3 * phi)), rho, 0.0, 0.01),
         Mesh((0.0, 1.1)),
         CONTACT,
     )

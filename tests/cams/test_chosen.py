@@ -11,14 +11,19 @@ import pytest
 
 import centrode as ct
 from cam_shapes import WHEEL
-from centrode.cams.choosing.chosen import CamChoice, choose_cam
-from centrode.cams.choosing.families import bounds_of, family_of, start_of
-from centrode.cams.choosing.measures import MEASURES
-from centrode.cams.choosing.proving import excess_of, measures_of
-from centrode.cams.closed.arcs import working_arc
-from centrode.cams.closed.designing import designed
-from centrode.cams.described import path_of
-from centrode.cams.wheel.walking import mover
+from centrode.cams.parameter_choice.problem import MEASURES
+from centrode.cams.parameter_choice.search import (
+    CamChoice,
+    bounds_of,
+    choose_cam,
+    excess_of,
+    family_of,
+    measures_of,
+    start_of,
+)
+from centrode.cams.path_series import path_of
+from centrode.cams.return_arc import designed, working_arc
+from centrode.cams.walking_wheel import mover
 from centrode.model.cams.description import Cam, varied
 
 WHEELS = ["walking-wheel-four-legs", "walking-wheel-three-legs"]

@@ -9,11 +9,11 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
-from centrode.cams.contacts.line import (
+from centrode.cams.contact_stress import (
     DEEPEST_SHEAR,
     GREATEST_SHEAR,
-    Contact,
-    Material,
+    ContactMaterial,
+    LineContact,
     contact_modulus,
     line_contact,
     normal_load,
@@ -25,15 +25,20 @@ from centrode.cams.contacts.line import (
 from centrode.errors import InputError
 
 EPS = 2.0**-52
-STEEL = Material(2.06e11, 0.3)
-BRONZE = Material(1.1e11, 0.34)
-PAIRS = [(STEEL, STEEL), (STEEL, BRONZE), (Material(3e9, 0.5), STEEL), (STEEL, Material(7e10, 0.0))]
+STEEL = ContactMaterial(2.06e11, 0.3)
+BRONZE = ContactMaterial(1.1e11, 0.34)
+PAIRS = [
+    (STEEL, STEEL),
+    (STEEL, BRONZE),
+    (ContactMaterial(3e9, 0.5), STEEL),
+    (STEEL, ContactMaterial(7e10, 0.0)),
+]
 
 
 @pytest.mark.parametrize(("first", "second"), PAIRS)
 @pytest.mark.parametrize(("r", "R"), [(0.012, 0.05), (0.012, math.inf), (0.012, -0.03), (2.0, 0.1)])
 def test_the_strip_is_in_equilibrium_and_fills_the_gap(
-    first: Material, second: Material, r: float, R: float
+    first: ContactMaterial, second: ContactMaterial, r: float, R: float
 ) -> None:
     """The pressures add up to the load, and bend both surfaces by just what the gap between the cylinders asks.
 
@@ -111,7 +116,7 @@ def test_cylinders_by_hand() -> None:
     b^2 = 2 F/(pi l) (2 (1 - nu^2)/E)/(1/d1 + 1/d2), p = 2 F/(pi b l), in newtons and millimetres.
     """
     half = math.sqrt(2 * 1000 / (math.pi * 25) * (2 * (1 - 0.292**2) / 207e3) / (1 / 20 + 1 / 40))
-    steel = Material(207e9, 0.292)
+    steel = ContactMaterial(207e9, 0.292)
     found = line_contact(1000 / 0.025, 1 / 0.010 + 1 / 0.020, contact_modulus(steel, steel))
     assert found.half_width == pytest.approx(1e-3 * half, rel=16 * EPS)
     assert found.pressure == pytest.approx(1e6 * 2 * 1000 / (math.pi * half * 25), rel=16 * EPS)
@@ -122,7 +127,7 @@ def test_the_factor_of_the_source_is_that_of_steel() -> None:
     exact = math.sqrt(1 / (2 * math.pi * (1 - 0.3**2)))
     assert abs(exact - 0.418) <= 0.0005
     assert abs(math.sqrt(0.175) - 0.418) <= 0.0005
-    contact = Contact(5000.0, 0.02, 0.015, STEEL, STEEL)
+    contact = LineContact(5000.0, 0.02, 0.015, STEEL, STEEL)
     gamma, curvature = np.array([0.0, 0.2, -0.4]), np.array([10.0, 20.0, -5.0])
     ratio = source_stress(contact, gamma, curvature) / pressed(contact, gamma, curvature).pressure
     assert ratio == pytest.approx(0.418 / exact, rel=16 * EPS)
@@ -131,7 +136,7 @@ def test_the_factor_of_the_source_is_that_of_steel() -> None:
 
 def test_the_formula_in_its_own_units() -> None:
     """Newtons, millimetres and megapascals, as the paper writes (11)."""
-    contact = Contact(3000.0, 0.018, 0.012, STEEL, BRONZE)
+    contact = LineContact(3000.0, 0.018, 0.012, STEEL, BRONZE)
     gamma, curvature = 0.15, 22.0
     r, R = 12.0, 1000 / curvature - 12.0
     elasticity = 2 * 2.06e5 * 1.1e5 / (2.06e5 + 1.1e5)
@@ -152,7 +157,7 @@ def test_curvatures_of_roller_and_cam() -> None:
 
 
 def test_the_normal_force_grows_with_the_pressure_angle() -> None:
-    contact = Contact(1000.0, 0.02, 0.01, STEEL, STEEL)
+    contact = LineContact(1000.0, 0.02, 0.01, STEEL, STEEL)
     assert normal_load(contact, math.pi / 3) == pytest.approx(2 * 1000 / 0.02, rel=8 * EPS)
     assert np.isnan(normal_load(contact, 2.0))
 
@@ -160,13 +165,13 @@ def test_the_normal_force_grows_with_the_pressure_angle() -> None:
 @pytest.mark.parametrize(
     "wrong",
     [
-        lambda: Material(0.0, 0.3),
-        lambda: Material(math.inf, 0.3),
-        lambda: Material(2e11, 0.51),
-        lambda: Material(2e11, math.nan),
-        lambda: Contact(-1.0, 0.02, 0.01, STEEL, STEEL),
-        lambda: Contact(1.0, 0.0, 0.01, STEEL, STEEL),
-        lambda: Contact(1.0, 0.02, math.nan, STEEL, STEEL),
+        lambda: ContactMaterial(0.0, 0.3),
+        lambda: ContactMaterial(math.inf, 0.3),
+        lambda: ContactMaterial(2e11, 0.51),
+        lambda: ContactMaterial(2e11, math.nan),
+        lambda: LineContact(-1.0, 0.02, 0.01, STEEL, STEEL),
+        lambda: LineContact(1.0, 0.0, 0.01, STEEL, STEEL),
+        lambda: LineContact(1.0, 0.02, math.nan, STEEL, STEEL),
     ],
 )
 def test_what_cannot_be(wrong: object) -> None:

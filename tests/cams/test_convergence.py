@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.cams.comparison import foretold_error, routes_of
-from centrode.cams.convergence import convergence
-from centrode.cams.curvature_laws import ConstantCurvature, ExponentialCurvature, LinearCurvature
-from centrode.cams.expanded import expanded_path
-from centrode.cams.series import series_path
-from centrode.cams.text_curvature import TextCurvature
+from centrode.cams.cam import foretold_error, routes_of
+from centrode.cams.curvature_laws import (
+    ConstantCurvature,
+    ExponentialCurvature,
+    LinearCurvature,
+    TextCurvature,
+)
+from centrode.cams.path_series import convergence, expanded_path, series_path
 from centrode.study.cams.routes import routes_part
 from centrode.study.cams.said import Asked
 

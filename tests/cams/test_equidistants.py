@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 
 from cam_shapes import EPS, Limacon, paper_path, three_point_curvature
-from centrode.cams.closed.arcs import Arc, ClosedPath, working_arc
-from centrode.cams.closed.designing import designed
-from centrode.cams.frames import frames
-from centrode.cams.profiles.bodies import CamBody
-from centrode.cams.profiles.equidistants import equidistant, fitting, greatest_roller, undercut
+from centrode.cams.profiles import ProfileBody, equidistant, fitting, greatest_roller, undercut
+from centrode.cams.return_arc import Arc, ClosedPath, designed, working_arc
+from centrode.cams.roller_path import frames
 from centrode.errors import InputError
 from circle_path import CirclePath
 
@@ -68,7 +66,7 @@ def test_equidistants_keep_their_distance_and_the_angle_of_the_normal() -> None:
 
 def test_the_profile_is_the_envelope_of_the_rollers_by_force() -> None:
     closed = designed(working_arc(paper_path(), legs=4)).closed
-    body = CamBody(closed, ROLLER)
+    body = ProfileBody(closed, ROLLER)
     phi = np.linspace(closed.start, closed.stop, 20001)
     centres = frames(closed, phi).place
     profile = body.profile(np.linspace(closed.start, closed.stop, 37)[1:-1])
@@ -87,7 +85,7 @@ def test_the_profile_is_the_envelope_of_the_rollers_by_force() -> None:
 
 def test_curvature_computed_back_from_three_points_converges_to_the_profile() -> None:
     closed = designed(working_arc(paper_path(), legs=4)).closed
-    body = CamBody(closed, ROLLER)
+    body = ProfileBody(closed, ROLLER)
     errors = []
     for count in (200, 400, 800):
         phi = np.linspace(0.85, 5.4, count + 1)
@@ -152,15 +150,15 @@ def test_a_roller_larger_than_the_hollow_of_a_groove_is_refused_with_the_greates
 def test_a_roller_that_overlaps_the_cam_across_a_waist_is_found() -> None:
     # at the waist the path is 2 x 12 mm wide: a roller of 15 mm overlaps the profile of the other side by 6 mm
     arc = Arc("working", Limacon(0.04, 0.028, 2), -math.pi, math.pi)
-    body = CamBody(ClosedPath((arc,)), 0.015)
+    body = ProfileBody(ClosedPath((arc,)), 0.015)
     assert body.undercuts == []
     depth, at = body.overlap
     # the deepest place is at the waist or beside it
     assert depth >= 0.006 - 1e-6
     assert abs(abs(at) - math.pi / 2) < 0.5
-    assert CamBody(ClosedPath((arc,)), 0.008).overlap == (0.0, 0.0)
+    assert ProfileBody(ClosedPath((arc,)), 0.008).overlap == (0.0, 0.0)
     closed = designed(working_arc(paper_path(), legs=4)).closed
-    assert CamBody(closed, ROLLER).overlap == (0.0, 0.0)
+    assert ProfileBody(closed, ROLLER).overlap == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("radius", [0.0, -0.01, math.nan, math.inf])

@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.contact import Face, Point
-from centrode.cams.followers.guidance import (
+from centrode.cams.followers.geometry import (
+    Face,
+    FollowerCam,
     Oscillating,
+    Point,
     Translating,
     oscillating,
     oscillating_face,
     translating,
 )
-from centrode.cams.followers.outlines import follower_outlines, joined
+from centrode.cams.followers.manufacture import follower_outlines, joined
 from centrode.errors import InputError
 from centrode.laws.segments import Segment, SegmentedLaw
 from follower_motions import Array, Lift, lift_of, rise_dwell_fall_dwell

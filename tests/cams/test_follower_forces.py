@@ -7,9 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from centrode.cams.followers.forces import keeping, meeting
-from centrode.cams.followers.forces.cycle import greatest, least
-from centrode.cams.followers.forces.demand import Burden
+from centrode.cams.followers import forces
+from centrode.cams.followers.forces import Burden, greatest, least
 
 EPS = np.finfo(float).eps
 FLAT = 1e-6
@@ -61,18 +60,18 @@ INSET = 64 * EPS
 
 def test_least_force_of_harmonic_motion():
     # With c = cos(pi phi/beta) the force is linear in c, so that it is least at an end: at the top, c = -1.
-    found = keeping.least_push(MOTION, BURDEN, SPEED)
+    found = forces.least_push(MOTION, BURDEN, SPEED)
     expected = 36.0 + 4e3 * HIGH - 0.6 * SPEED**2 * BOW
     assert abs(found.value - expected) <= INSET * 0.6 * SPEED**2 * BOW
     assert abs(found.angle - MOTION.edges[2]) <= INSET
 
 
 def test_jump_speed_of_harmonic_motion():
-    found = keeping.jump_speed(MOTION, BURDEN)
+    found = forces.jump_speed(MOTION, BURDEN)
     expected = math.sqrt((36.0 + 4e3 * HIGH) / (0.6 * BOW))
     assert abs(found.value - expected) <= INSET * expected
     below, above = (
-        keeping.least_push(MOTION, BURDEN, found.value * (1 + part)).value for part in (-1e-9, 1e-9)
+        forces.least_push(MOTION, BURDEN, found.value * (1 + part)).value for part in (-1e-9, 1e-9)
     )
     assert below > 0 > above
 
@@ -80,9 +79,9 @@ def test_jump_speed_of_harmonic_motion():
 def test_springs_of_harmonic_motion():
     # Stiffness: the force is linear in the lift as well, the worst is the top again.
     accelerating = 0.6 * SPEED**2 * BOW
-    stiffness = keeping.stiffness_needed(MOTION, BURDEN, SPEED, push=5.0)
+    stiffness = forces.stiffness_needed(MOTION, BURDEN, SPEED, push=5.0)
     assert abs(stiffness.value - (accelerating + 5.0 - 36.0) / HIGH) <= INSET * accelerating / HIGH
-    preload = keeping.preload_needed(MOTION, BURDEN, SPEED, push=5.0)
+    preload = forces.preload_needed(MOTION, BURDEN, SPEED, push=5.0)
     assert abs(preload.value - (accelerating + 5.0 - 6.0 - 4e3 * HIGH)) <= INSET * accelerating
 
 
@@ -96,26 +95,26 @@ def test_springs_leave_what_was_asked(seed):
     burden = Burden(draw.uniform(0.1, 2), draw.uniform(0, 3e3), draw.uniform(60, 200), draw.uniform(-10, 10))
     scale = max(abs(burden.needed(motion.lift(np.array(motion.edges), 2), speed)))
     for name, found in (
-        ("preload", keeping.preload_needed(motion, burden, speed, push)),
-        ("stiffness", keeping.stiffness_needed(motion, burden, speed, push)),
+        ("preload", forces.preload_needed(motion, burden, speed, push)),
+        ("stiffness", forces.stiffness_needed(motion, burden, speed, push)),
     ):
         if name == "stiffness" and found.value == 0.0:
-            assert keeping.least_push(motion, replace(burden, stiffness=0.0), speed).value >= push
+            assert forces.least_push(motion, replace(burden, stiffness=0.0), speed).value >= push
             continue
-        left = keeping.least_push(motion, replace(burden, **{name: found.value}), speed)
+        left = forces.least_push(motion, replace(burden, **{name: found.value}), speed)
         assert abs(left.value - push) <= INSET * scale
 
 
 def test_what_no_spring_can_do():
     straight = Straight(HIGH, 1.0, 1.0, 1.0)
-    assert keeping.jump_speed(straight, BURDEN).value == 0.0
-    assert keeping.jump_speed(straight, replace(BURDEN, inertia=0.0)).value == math.inf
-    assert keeping.preload_needed(straight, BURDEN, SPEED).value == math.inf
-    assert keeping.stiffness_needed(straight, BURDEN, SPEED).value == math.inf
+    assert forces.jump_speed(straight, BURDEN).value == 0.0
+    assert forces.jump_speed(straight, replace(BURDEN, inertia=0.0)).value == math.inf
+    assert forces.preload_needed(straight, BURDEN, SPEED).value == math.inf
+    assert forces.stiffness_needed(straight, BURDEN, SPEED).value == math.inf
     # Pulled off already at rest; and too little while the follower is down, where a stiffness does nothing.
     pulled = Burden(inertia=0.6, stiffness=4e3, preload=0.0, load=-1.0)
-    assert keeping.jump_speed(MOTION, pulled).value == 0.0
-    assert keeping.stiffness_needed(MOTION, pulled, SPEED).value == math.inf
+    assert forces.jump_speed(MOTION, pulled).value == 0.0
+    assert forces.stiffness_needed(MOTION, pulled, SPEED).value == math.inf
 
 
 def test_extremes_count_both_sides_of_joints():
@@ -127,7 +126,7 @@ def test_extremes_count_both_sides_of_joints():
     steep = greatest(MOTION, lambda rows: rows[1])
     assert abs(steep.value - 0.5 * HIGH * math.pi / RISE) <= 4 * EPS * HIGH
     assert abs(steep.angle - RISE / 2) <= FLAT
-    assert not keeping.slope_drops(MOTION)
+    assert not forces.slope_drops(MOTION)
 
 
 PHI = np.concatenate([np.linspace(a, b, 23, endpoint=False) + 1e-3 for a, b in pairwise(MOTION.edges)])
@@ -139,12 +138,12 @@ MEETINGS = {
     f"{name}{sense:+.0f}": (met, rows)
     for sense in (1.0, -1.0)
     for name, met, rows in (
-        ("roller", meeting.on_centre(ROWS, 0.008, 0.05, sense, rolling=True), ROWS),
-        ("edge", meeting.on_centre(ROWS, -0.008, 0.05, sense, rolling=False), ROWS),
-        ("face", meeting.on_face(ROWS, 0.05, sense), ROWS),
-        ("arm", meeting.on_arm(ANGLES, ARM, DISTANCE, START, sense, rolling=True), ANGLES),
-        ("arm-edge", meeting.on_arm(ANGLES, ARM, DISTANCE, START, sense, rolling=False), ANGLES),
-        ("turning-face", meeting.on_turning_face(ANGLES, DISTANCE, 0.45, 0.006, sense), ANGLES),
+        ("roller", forces.on_centre(ROWS, 0.008, 0.05, sense, rolling=True), ROWS),
+        ("edge", forces.on_centre(ROWS, -0.008, 0.05, sense, rolling=False), ROWS),
+        ("face", forces.on_face(ROWS, 0.05, sense), ROWS),
+        ("arm", forces.on_arm(ANGLES, ARM, DISTANCE, START, sense, rolling=True), ANGLES),
+        ("arm-edge", forces.on_arm(ANGLES, ARM, DISTANCE, START, sense, rolling=False), ANGLES),
+        ("turning-face", forces.on_turning_face(ANGLES, DISTANCE, 0.45, 0.006, sense), ANGLES),
     )
 }
 
@@ -197,7 +196,7 @@ def test_normal_force_by_the_pressure_angle():
 def test_friction_that_locks():
     # An edge on a slope steeper than the angle of friction leaves: tan alpha = 1/mu.
     rows = np.array([[0.0, 0.0], [0.0, 0.2], [0.0, 0.0]])
-    met = meeting.on_centre(rows, 0.0, 0.05, 1.0, rolling=False)
+    met = forces.on_centre(rows, 0.0, 0.05, 1.0, rolling=False)
     assert np.isfinite(met.normal_force(np.array([1.0, 1.0]), 0.2499)).all()
     assert np.isinf(met.normal_force(np.array([1.0, 1.0]), 0.2501)).tolist() == [False, True]
 

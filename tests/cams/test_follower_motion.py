@@ -10,9 +10,14 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.cams.followers.comparing import compare_laws, peaks_of
-from centrode.cams.followers.joints import first_jump, joints_of
-from centrode.cams.followers.motion import FollowerMotion, follower_motion
+from centrode.cams.followers.motion import (
+    FollowerMotion,
+    compare_laws,
+    first_jump,
+    follower_motion,
+    joints_of,
+    peaks_of,
+)
 from centrode.errors import InputError
 from centrode.laws import CURVES, Segment, SegmentedLaw
 

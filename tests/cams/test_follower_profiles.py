@@ -10,10 +10,11 @@ import pytest
 
 from cam_shapes import three_point_curvature
 from centrode.algebra.jets import Jet
-from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.contact import Face, Point
-from centrode.cams.followers.guidance import (
+from centrode.cams.followers.geometry import (
+    Face,
+    FollowerCam,
     Oscillating,
+    Point,
     Translating,
     oscillating,
     oscillating_face,

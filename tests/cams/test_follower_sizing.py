@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from centrode.cams.followers.contact import Face, Point
-from centrode.cams.followers.layouts import Layout
-from centrode.cams.followers.margins import Admissible, exact_margin
-from centrode.cams.followers.sizing import best_offset, least_base_radius
+from centrode.cams.followers.geometry import Face, Point
+from centrode.cams.followers.sizing import (
+    Admissible,
+    FollowerLayout,
+    best_offset,
+    exact_margin,
+    least_base_radius,
+)
 from centrode.errors import InputError, MotionError
 from follower_motions import lift_of, rise_dwell_fall_dwell
 
@@ -25,12 +29,12 @@ MOTION = lift_of((100, 0.02, "cycloidal"), (60, None, "dwell"), (80, 0.0, "3-4-5
 def test_the_worked_flat_face() -> None:
     """Base radius 1.893 for a least radius of curvature of 0.25: 0.25 less the least of s + s''."""
     motion = rise_dwell_fall_dwell(1.0)
-    found = least_base_radius(Layout("translating", Face()), motion, Admissible(bend=0.25))
+    found = least_base_radius(FollowerLayout("translating", Face()), motion, Admissible(bend=0.25))
     assert round(found.base_radius, 3) == 1.893
     s, _v, a = motion.lift(MANY, 2)
     step = float(np.abs(np.diff(s + a, 2)).max())  # what a greatest value may lose between two places
     assert 0 <= found.base_radius - (0.25 - (s + a).min()) < step
-    cam = Layout("translating", Face()).cam(motion, found.base_radius)
+    cam = FollowerLayout("translating", Face()).cam(motion, found.base_radius)
     assert cam.bends.least == pytest.approx(0.25, rel=32 * EPS * 1.893 / 0.25)
     assert found.by == "curvature"
 
@@ -39,7 +43,7 @@ def test_the_worked_flat_face() -> None:
 @pytest.mark.parametrize("offset", [0.0, 0.006, -0.004])
 def test_the_pressure_angle_decides_as_in_the_textbook(offset: float, sense: float) -> None:
     """tan(alpha) = (s' - e)/(y0 + s) asks for a height at every angle; the greatest of them counts."""
-    layout = Layout("translating", Point(0.008), offset, sense=sense)
+    layout = FollowerLayout("translating", Point(0.008), offset, sense=sense)
     found = least_base_radius(layout, MOTION, Admissible(RISE, FALL))
     s, v = MOTION.lift(MANY, 1)
     across = np.abs(v - sense * offset)
@@ -55,7 +59,7 @@ def test_the_pressure_angle_decides_as_in_the_textbook(offset: float, sense: flo
 
 
 def test_a_radius_of_curvature_decides() -> None:
-    layout = Layout("translating", Point(0.008), 0.003)
+    layout = FollowerLayout("translating", Point(0.008), 0.003)
     found = least_base_radius(layout, MOTION, Admissible(RISE, FALL, 0.02))
     cam = layout.cam(MOTION, found.base_radius)
     bend, at = cam.least_bend
@@ -67,7 +71,7 @@ def test_a_radius_of_curvature_decides() -> None:
 
 
 def test_without_bounds_the_least_cam_is_just_not_undercut() -> None:
-    layout = Layout("translating", Point(0.03))
+    layout = FollowerLayout("translating", Point(0.03))
     motion = rise_dwell_fall_dwell(0.03)
     found = least_base_radius(layout, motion, Admissible())
     assert not layout.cam(motion, found.base_radius * (1 + 1e-9)).undercuts
@@ -80,7 +84,7 @@ def test_the_best_offset_by_straight_lines(sense: float) -> None:
 
     The corner of that cone is a linear programme; no point of it, found by force, is nearer to the start.
     """
-    layout = Layout("translating", Point(0.008), sense=sense)
+    layout = FollowerLayout("translating", Point(0.008), sense=sense)
     found = best_offset(layout, MOTION, Admissible(RISE, FALL))
     s, v = MOTION.lift(MANY[::400], 1)
     rows, rights = [], []
@@ -103,19 +107,19 @@ def test_the_best_offset_by_straight_lines(sense: float) -> None:
 
 
 def test_the_best_offset_with_both_bounds_by_force() -> None:
-    layout, kept = Layout("translating", Point(0.008)), Admissible(RISE, FALL, 0.006)
+    layout, kept = FollowerLayout("translating", Point(0.008)), Admissible(RISE, FALL, 0.006)
     found = best_offset(layout, MOTION, kept)
     tried = [
-        least_base_radius(Layout("translating", Point(0.008), e), MOTION, kept).base_radius
+        least_base_radius(FollowerLayout("translating", Point(0.008), e), MOTION, kept).base_radius
         for e in np.linspace(found.offset - 0.002, found.offset + 0.002, 5)
     ]
     assert found.base_radius <= min(tried) * (1 + 1e-9)
 
 
 def test_the_best_offset_of_a_flat_face_is_the_middle_of_its_contact() -> None:
-    layout = Layout("translating", Face(), 0.001, sense=-1.0)
+    layout = FollowerLayout("translating", Face(), 0.001, sense=-1.0)
     found = best_offset(layout, MOTION, Admissible(bend=0.004))
-    cam = Layout("translating", Face(), found.offset, sense=-1.0).cam(MOTION, found.base_radius)
+    cam = FollowerLayout("translating", Face(), found.offset, sense=-1.0).cam(MOTION, found.base_radius)
     assert cam.face.greatest == pytest.approx(-cam.face.least, rel=64 * EPS)
     _s, v = MOTION.lift(MANY, 1)
     assert cam.face.greatest - cam.face.least == pytest.approx(v.max() - v.min(), rel=1e-9)
@@ -125,9 +129,12 @@ def test_the_best_offset_of_a_flat_face_is_the_middle_of_its_contact() -> None:
 def test_oscillating_followers(sense: float) -> None:
     motion = rise_dwell_fall_dwell(math.radians(8))
     for layout, kept in (
-        (Layout("oscillating", Point(0.008), arm=0.08, distance=0.09, sense=sense), Admissible(0.6, 0.6)),
         (
-            Layout("oscillating", Face(), distance=0.15, face_offset=0.003, sense=sense),
+            FollowerLayout("oscillating", Point(0.008), arm=0.08, distance=0.09, sense=sense),
+            Admissible(0.6, 0.6),
+        ),
+        (
+            FollowerLayout("oscillating", Face(), distance=0.15, face_offset=0.003, sense=sense),
             Admissible(bend=0.004),
         ),
     ):
@@ -148,15 +155,15 @@ def test_oscillating_followers(sense: float) -> None:
 
 def test_what_no_cam_can_keep_is_told() -> None:
     motion = rise_dwell_fall_dwell(math.radians(25))
-    layout = Layout("oscillating", Point(0.008), arm=0.08, distance=0.09)
+    layout = FollowerLayout("oscillating", Point(0.008), arm=0.08, distance=0.09)
     with pytest.raises(MotionError, match=r"the pressure angle is broken at .* deg at least"):
         least_base_radius(layout, motion, Admissible(0.1, 0.1))
     uniform = lift_of((90, 0.01, "uniform"), (90, None, "dwell"), (90, 0.0, "uniform"), (90, None, "dwell"))
     with pytest.raises(
         MotionError, match="at 90 deg the speed of the lift jumps: every radius leaves a sharp"
     ):
-        least_base_radius(Layout("translating", Point(0.008)), uniform, Admissible())
-    edge = Layout("translating", Point(0.0))
+        least_base_radius(FollowerLayout("translating", Point(0.008)), uniform, Admissible())
+    edge = FollowerLayout("translating", Point(0.0))
     assert least_base_radius(edge, uniform, Admissible(0.5, 0.5)).by == "pressure angle"
     with pytest.raises(MotionError, match="sharp corner"):
         least_base_radius(edge, uniform, Admissible(0.5, 0.5, 0.001))
@@ -164,11 +171,11 @@ def test_what_no_cam_can_keep_is_told() -> None:
         best_offset(layout, motion, Admissible())
     with pytest.raises(InputError, match="turn faster than the cam"):
         quick = lift_of((20, 0.5, "cycloidal"), (320, 0.0, "cycloidal"), (20, None, "dwell"))
-        Layout("oscillating", Face(), distance=0.2, sense=-1.0).cam(quick, 0.03)
+        FollowerLayout("oscillating", Face(), distance=0.2, sense=-1.0).cam(quick, 0.03)
 
 
 def test_a_knife_edge_is_bound_by_curvature_only_where_asked() -> None:
-    layout = Layout("translating", Point(0.0))
+    layout = FollowerLayout("translating", Point(0.0))
     free = least_base_radius(layout, MOTION, Admissible(RISE, FALL))
     bent = least_base_radius(layout, MOTION, Admissible(RISE, FALL, 0.03))
     assert free.by == "pressure angle" and bent.by == "curvature"
@@ -182,11 +189,13 @@ SLOW = lift_of((180, 0.2, "harmonic"), (180, 0.0, "harmonic"))
 def test_bounds_that_decide_nothing_are_told() -> None:
     """s + s'' of a slow harmonic lift h (1 - cos phi)/2 is h/2 everywhere: a flat face needs no base circle at all."""
     slow = lift_of((180, 0.02, "harmonic"), (180, 0.0, "harmonic"))
-    assert least_base_radius(Layout("translating", Face()), slow, Admissible(1.0, 1.0)).by == "nothing"
-    bent = least_base_radius(Layout("translating", Face()), slow, Admissible(bend=0.03))
+    assert (
+        least_base_radius(FollowerLayout("translating", Face()), slow, Admissible(1.0, 1.0)).by == "nothing"
+    )
+    bent = least_base_radius(FollowerLayout("translating", Face()), slow, Admissible(bend=0.03))
     assert bent.by == "curvature" and bent.base_radius == pytest.approx(0.02, rel=64 * EPS)
     # The end of an arm stays on one side of the pivot: base and roller are more than |d - l|, whatever is asked.
-    arm = Layout("oscillating", Point(0.01), arm=0.1, distance=0.12)
+    arm = FollowerLayout("oscillating", Point(0.01), arm=0.1, distance=0.12)
     free = least_base_radius(arm, SLOW, Admissible(bend=0.001))
     assert free.by == "nothing" and 0 < free.base_radius - 0.01 < 1e-10
 
@@ -194,7 +203,7 @@ def test_bounds_that_decide_nothing_are_told() -> None:
 @pytest.mark.parametrize("most", [1.1, 1.3, 1.5])
 def test_the_least_cam_of_an_arm_that_hardly_reaches(most: float) -> None:
     """Below the least radius the pressure angle is broken, however near that is to the one the arm reaches."""
-    arm = Layout("oscillating", Point(0.01), arm=0.1, distance=0.12)
+    arm = FollowerLayout("oscillating", Point(0.01), arm=0.1, distance=0.12)
     found = least_base_radius(arm, SLOW, Admissible(most, most))
     assert found.by == "pressure angle"
 

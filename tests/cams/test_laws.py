@@ -14,12 +14,12 @@ from centrode.cams.curvature_laws import (
     ExponentialCurvature,
     LinearCurvature,
     SplineCurvature,
+    TextCurvature,
+    check_span,
     derivatives,
+    unlawful_place,
 )
-from centrode.cams.expanded import expanded_path
-from centrode.cams.lawful import check_span, unlawful_place
-from centrode.cams.series import series_path
-from centrode.cams.text_curvature import TextCurvature
+from centrode.cams.path_series import expanded_path, series_path
 from centrode.errors import InputError
 
 EPS = float(np.finfo(np.float64).eps)

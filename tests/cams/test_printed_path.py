@@ -14,7 +14,7 @@ from tools.validation.rows import Row
 
 import centrode as ct
 from centrode.cams.curvature_laws import ExponentialCurvature
-from centrode.cams.series import SeriesPath, series_path
+from centrode.cams.path_series import SeriesPath, series_path
 
 from .conftest import exponential_path
 

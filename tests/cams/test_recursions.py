@@ -8,7 +8,7 @@ from fractions import Fraction
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from centrode.cams.recursions import arc_series, exponential_series, next_cosine, system_series
+from centrode.cams.roller_path import arc_series, exponential_series, next_cosine, system_series
 
 TERMS = 12
 # right-angled triangles: sine and cosine of the pressure angle as fractions

@@ -10,12 +10,17 @@ import pytest
 
 import centrode as ct
 from cam_shapes import EPS, exchanged, paper_path
-from centrode.cams.closed.arcs import ClosedPath, mirrored, working_arc
-from centrode.cams.closed.bounds import Bounds
-from centrode.cams.closed.curves import Ends, ReturnCurve, derivatives
-from centrode.cams.closed.designing import designed
-from centrode.cams.frames import frames
-from centrode.cams.path import SymmetricPath
+from centrode.cams.return_arc import (
+    ArcBounds,
+    ClosedPath,
+    Ends,
+    ReturnCurve,
+    derivatives,
+    designed,
+    mirrored,
+    working_arc,
+)
+from centrode.cams.roller_path import SymmetricPath, frames
 from centrode.errors import InputError, MotionError
 from circle_path import CirclePath
 
@@ -43,7 +48,7 @@ def test_a_designed_arc_joins_in_value_slope_and_curvature(legs: int, contact: i
 
 def test_an_arc_that_is_not_symmetric_joins_as_well() -> None:
     path = paper_path().half
-    found = designed(working_arc(path), Bounds(convex=True))
+    found = designed(working_arc(path), ArcBounds(convex=True))
     assert found.closed.arcs[0].start == 0.0
     assert_joined(found.closed, 2)
     assert found.curvature.least >= 0.0
@@ -83,15 +88,15 @@ def test_what_is_added_vanishes_at_the_ends() -> None:
 
 
 BOUNDS = [
-    Bounds(greatest_radius=0.070),
-    Bounds(greatest_radius=0.066, least_bend=0.053),
-    Bounds(greatest_radius=0.062),
-    Bounds(least_radius=0.052, greatest_radius=0.060, convex=False, least_bend=0.02, least_hollow=0.05),
+    ArcBounds(greatest_radius=0.070),
+    ArcBounds(greatest_radius=0.066, least_bend=0.053),
+    ArcBounds(greatest_radius=0.062),
+    ArcBounds(least_radius=0.052, greatest_radius=0.060, convex=False, least_bend=0.02, least_hollow=0.05),
 ]
 
 
 @pytest.mark.parametrize("bounds", BOUNDS)
-def test_bounds_are_kept_over_the_whole_arc(bounds: Bounds) -> None:
+def test_bounds_are_kept_over_the_whole_arc(bounds: ArcBounds) -> None:
     found = designed(working_arc(paper_path(), legs=4), bounds)
     assert found.additions > 0 and found.roughness > 0.0
     assert_joined(found.closed, 2)
@@ -108,7 +113,7 @@ def test_bounds_are_kept_over_the_whole_arc(bounds: Bounds) -> None:
 
 
 def test_the_pressure_angle_is_kept() -> None:
-    bounds = Bounds(pressure_angle=0.25)
+    bounds = ArcBounds(pressure_angle=0.25)
     found = designed(working_arc(paper_path().half), bounds)
     phi = np.linspace(found.curve.ends.start, found.curve.ends.stop, 30001)
     rho, slope = found.curve.radius(phi, 1)
@@ -118,14 +123,16 @@ def test_the_pressure_angle_is_kept() -> None:
 
 def test_tighter_bounds_cost_roughness() -> None:
     working = working_arc(paper_path(), legs=4)
-    costs = [designed(working, Bounds(greatest_radius=one)).roughness for one in (0.075, 0.072, 0.068, 0.064)]
+    costs = [
+        designed(working, ArcBounds(greatest_radius=one)).roughness for one in (0.075, 0.072, 0.068, 0.064)
+    ]
     assert costs[0] == 0.0
     assert costs == sorted(costs)
     assert len(set(costs)) == 4
 
 
 def test_what_is_impossible_is_told_with_numbers() -> None:
-    bounds = Bounds(greatest_radius=0.066, least_bend=0.0545)
+    bounds = ArcBounds(greatest_radius=0.066, least_bend=0.0545)
     with pytest.raises(MotionError) as refusal:
         designed(working_arc(paper_path(), legs=4), bounds)
     numbers = [float(one) for one in re.findall(r"[\d.]+(?= mm)", str(refusal.value))]
@@ -133,7 +140,7 @@ def test_what_is_impossible_is_told_with_numbers() -> None:
     assert (radius_bound, bend_bound) == (66.0, 54.5)
     assert radius > 66.0 and bend < 54.5
     # by so much the best arc misses: it exists within bounds widened to that
-    wider = Bounds(greatest_radius=1.001e-3 * radius, least_bend=0.999e-3 * bend)
+    wider = ArcBounds(greatest_radius=1.001e-3 * radius, least_bend=0.999e-3 * bend)
     assert designed(working_arc(paper_path(), legs=4), wider).additions > 0
 
 
@@ -141,7 +148,7 @@ def test_a_bound_that_the_joint_breaks_is_told_there() -> None:
     with pytest.raises(
         InputError, match=r"at 45 deg: the polar radius grows to 56\.0051 mm, the bound is 55 mm"
     ):
-        designed(working_arc(paper_path(), legs=4), Bounds(greatest_radius=0.055))
+        designed(working_arc(paper_path(), legs=4), ArcBounds(greatest_radius=0.055))
 
 
 @pytest.mark.parametrize(
@@ -150,7 +157,7 @@ def test_a_bound_that_the_joint_breaks_is_told_there() -> None:
 )
 def test_bounds_make_sense(bounds: dict[str, float]) -> None:
     with pytest.raises(InputError):
-        Bounds(**bounds)  # type: ignore[arg-type]
+        ArcBounds(**bounds)  # type: ignore[arg-type]
 
 
 def test_mirror_images_have_the_kink_of_the_paper() -> None:

@@ -17,12 +17,12 @@ from centrode.cams.curvature_laws import (
     ExponentialCurvature,
     LinearCurvature,
     SplineCurvature,
+    TextCurvature,
+    drawn_curvature,
 )
-from centrode.cams.drawn import drawn_curvature
-from centrode.cams.expanded import TOLERANCE, ExpandedPath, expanded_path
-from centrode.cams.integrated import integrated_path
-from centrode.cams.path import SymmetricPath
-from centrode.cams.text_curvature import TextCurvature
+from centrode.cams.path_integration import integrated_path
+from centrode.cams.path_series import TOLERANCE, ExpandedPath, expanded_path
+from centrode.cams.roller_path import SymmetricPath
 from circle_path import CirclePath
 
 from .conftest import exponential_path

@@ -9,11 +9,10 @@ import pytest
 from scipy.optimize import brentq
 
 from cam_families import CONTACT, STEEL
-from centrode.cams.contacts.along import greatest_along, stress_along
-from centrode.cams.contacts.labelled import cam_contact
-from centrode.cams.contacts.line import Contact, pressed
+from centrode.cams.contact_stress import LineContact, greatest_along, pressed, stress_along
 from centrode.cams.curvature_laws import ExponentialCurvature, LinearCurvature
-from centrode.cams.expanded import expanded_path
+from centrode.cams.path_series import expanded_path
+from centrode.cams.results import cam_contact
 from centrode.errors import InputError
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import parse_cam
@@ -98,7 +97,7 @@ def test_the_highest_of_several_tops() -> None:
 
 def test_an_undercut_cam_has_no_stress() -> None:
     path = expanded_path(ExponentialCurvature(40.0, 2.0), 0.025, 0.0, 0.0, 0.5)
-    contact = Contact(3000.0, 0.03, 0.02, STEEL, STEEL)
+    contact = LineContact(3000.0, 0.03, 0.02, STEEL, STEEL)
     found = stress_along(path, contact, np.array([0.0, 0.1, 0.2]))
     assert np.isfinite(found.strip.pressure[0])
     assert np.isnan(found.strip.pressure[2])  # 40 exp(0.4) * 0.02 is beyond 1

@@ -12,13 +12,11 @@ from scipy.integrate import quad
 
 import centrode as ct
 from cam_shapes import EPS, exchanged, paper_path, three_point_curvature
-from centrode.cams.closed.arcs import working_arc
 from centrode.cams.curvature_laws import ExponentialCurvature
-from centrode.cams.expanded import expanded_path
-from centrode.cams.path import SymmetricPath
-from centrode.cams.wheel.rolling import profile_by_parts, rolling
-from centrode.cams.wheel.shoe import Shoe, shoe
-from centrode.cams.wheel.walking import Mover
+from centrode.cams.path_series import expanded_path
+from centrode.cams.return_arc import working_arc
+from centrode.cams.roller_path import SymmetricPath
+from centrode.cams.walking_wheel import Shoe, WheelMover, profile_by_parts, rolling, shoe
 from centrode.errors import InputError, MotionError
 from circle_path import CirclePath
 
@@ -26,23 +24,23 @@ HEIGHT = 0.17
 
 
 @pytest.fixture(scope="module")
-def four() -> Mover:
+def four() -> WheelMover:
     return ct.walking_wheel(exchanged())
 
 
 @pytest.fixture(scope="module")
-def three() -> Mover:
+def three() -> WheelMover:
     return ct.walking_wheel(exchanged(("legs = 4", "legs = 3")))
 
 
-def test_support_function_and_the_papers_formulas_give_one_shoe(four: Mover) -> None:
+def test_support_function_and_the_papers_formulas_give_one_shoe(four: WheelMover) -> None:
     phi = np.linspace(-four.half, four.half, 301)
     apart = four.shoe.place(phi) - profile_by_parts(four, phi)
     # H'/sin phi is divided down to 0.03 rad: a rounding of H' there is 33 roundings of H
     assert np.abs(apart).max() < 64 * EPS * HEIGHT
 
 
-def test_at_phi_zero_the_limits_are_those_of_the_second_derivative(four: Mover) -> None:
+def test_at_phi_zero_the_limits_are_those_of_the_second_derivative(four: WheelMover) -> None:
     radius, _slope, second = four.shoe.arc.curve.radius(np.zeros(1), 2)[:, 0]
     first, upright = four.shoe.parts(np.array([0.0, -0.0]))
     np.testing.assert_allclose(first, second - radius, rtol=4 * EPS)
@@ -64,7 +62,7 @@ def test_near_phi_zero_parts_are_exact_to_rounding() -> None:
     np.testing.assert_allclose(upright, HEIGHT - share * np.cos(phi) ** 2, rtol=0.0, atol=400 * EPS * 0.05)
 
 
-def test_polar_form_is_the_place(four: Mover) -> None:
+def test_polar_form_is_the_place(four: WheelMover) -> None:
     phi = np.linspace(-four.half, four.half, 51)
     alpha, radius = four.shoe.polar(phi)
     x, y = four.shoe.place(phi).T
@@ -74,7 +72,7 @@ def test_polar_form_is_the_place(four: Mover) -> None:
     np.testing.assert_allclose(alpha, -alpha[::-1], atol=8 * EPS)
 
 
-def test_curvature_of_the_shoe_by_three_points(three: Mover) -> None:
+def test_curvature_of_the_shoe_by_three_points(three: WheelMover) -> None:
     errors = []
     for count in (100, 200, 400):
         phi = np.linspace(0.01, three.half, count + 1)
@@ -93,7 +91,7 @@ def test_a_cam_round_about_the_hub_makes_an_ordinary_wheel() -> None:
     np.testing.assert_allclose(np.hypot(*outline.T), HEIGHT, rtol=64 * EPS)
 
 
-def test_travel_is_the_papers_integral(four: Mover) -> None:
+def test_travel_is_the_papers_integral(four: WheelMover) -> None:
     path = paper_path()
 
     def rate(phi: float) -> float:
@@ -111,7 +109,7 @@ def test_travel_is_the_papers_integral(four: Mover) -> None:
     np.testing.assert_allclose((height + first) * np.sin(ends), -four.touch(ends), atol=64 * EPS)
 
 
-def test_the_hub_is_level_and_the_shoe_does_not_slip(four: Mover, three: Mover) -> None:
+def test_the_hub_is_level_and_the_shoe_does_not_slip(four: WheelMover, three: WheelMover) -> None:
     for wheel in (four, three):
         found = rolling(wheel)
         # places of some ten roundings; H'/sin phi multiplies by 33 near phi = 0
@@ -125,7 +123,7 @@ def test_the_hub_is_level_and_the_shoe_does_not_slip(four: Mover, three: Mover) 
         assert wheel.step == pytest.approx(wheel.print_length + wheel.print_gap, rel=16 * EPS)
 
 
-def test_the_proof_notices_a_shoe_of_another_cam(four: Mover) -> None:
+def test_the_proof_notices_a_shoe_of_another_cam(four: WheelMover) -> None:
     other = SymmetricPath(expanded_path(ExponentialCurvature(10.0, 0.76), 0.05, 0.0, 0.0, 1.5))
 
     class Wrong(Shoe):
@@ -156,7 +154,7 @@ def test_the_proof_notices_a_shoe_that_digs_in() -> None:
     assert digging.clearance < -0.05 and abs(digging.clearance_at) > 0.9
 
 
-def test_a_point_of_the_shoe_rests_on_the_ground_while_it_is_the_contact(four: Mover) -> None:
+def test_a_point_of_the_shoe_rests_on_the_ground_while_it_is_the_contact(four: WheelMover) -> None:
     """The material point of the contact at 0.2 rad, followed over a small turn: its velocity is zero there."""
     point = four.shoe.place(np.array([0.2]))
     h = 1e-4
@@ -167,7 +165,7 @@ def test_a_point_of_the_shoe_rests_on_the_ground_while_it_is_the_contact(four: M
     assert 0.0 < after[1] < HEIGHT * h**2
 
 
-def test_poses_go_on_from_leg_to_leg(four: Mover) -> None:
+def test_poses_go_on_from_leg_to_leg(four: WheelMover) -> None:
     pitch = math.tau / 4
     one, next_leg = four.pose(0.3), four.pose(0.3 + pitch)
     assert (one.supporting, next_leg.supporting) == (0, 1)
@@ -181,7 +179,7 @@ def test_poses_go_on_from_leg_to_leg(four: Mover) -> None:
     assert four.pose(-3.0).hub[0] < four.pose(-2.9).hub[0] < four.pose(12.0).hub[0]
 
 
-def test_rollers_stay_on_the_cam(four: Mover) -> None:
+def test_rollers_stay_on_the_cam(four: WheelMover) -> None:
     phi = np.linspace(0.0, math.tau, 4001)
     profile = ct.cam_body(exchanged()).profile(phi).place
     for turned in (0.0, 0.4, 1.0, 2.5):
@@ -193,7 +191,7 @@ def test_rollers_stay_on_the_cam(four: Mover) -> None:
             assert -64 * EPS < nearest - four.roller < (0.09 * math.tau / 4000) ** 2 / four.roller
 
 
-def test_unevenness_is_that_of_a_fine_mesh(three: Mover) -> None:
+def test_unevenness_is_that_of_a_fine_mesh(three: WheelMover) -> None:
     rates = three.rate(np.linspace(-three.half, three.half, 20001))
     assert three.rates.greatest == pytest.approx(rates.max(), rel=1e-8)
     assert three.rates.greatest >= rates.max() and three.rates.least <= rates.min()

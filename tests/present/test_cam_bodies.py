@@ -12,12 +12,12 @@ from matplotlib.patches import Circle
 
 import centrode as ct
 from cam_shapes import exchanged
-from centrode.cams.wheel.walking import Mover
+from centrode.cams.walking_wheel import WheelMover
 from centrode.present.cams.walking_drawing import draw_wheel
 
 
 @pytest.fixture(scope="module")
-def wheel() -> Mover:
+def wheel() -> WheelMover:
     return ct.walking_wheel(exchanged())
 
 
@@ -57,7 +57,7 @@ def test_an_open_profile_is_drawn() -> None:
     assert "profile, return arc" not in entries(ct.profile_figure(body))
 
 
-def test_the_wheel_stands_on_the_ground(wheel: Mover) -> None:
+def test_the_wheel_stands_on_the_ground(wheel: WheelMover) -> None:
     axes = Figure().subplots()
     for turned in (-0.7, 0.0, 0.5):
         drawn = draw_wheel(axes, wheel, wheel.pose(turned), 1e3)
@@ -75,7 +75,7 @@ def test_the_wheel_stands_on_the_ground(wheel: Mover) -> None:
         assert not axes.get_lines()
 
 
-def test_each_instant_has_its_panel(wheel: Mover, tmp_path: Path) -> None:
+def test_each_instant_has_its_panel(wheel: WheelMover, tmp_path: Path) -> None:
     figure = ct.walking_figure(wheel, [-0.1, 0.0, 0.2, 0.3], "Title")
     shown = [axes for axes in figure.axes if axes.get_visible()]
     assert [axes.get_title() for axes in shown] == ["−5.73°", "0°", "11.46°", "17.19°"]

@@ -8,8 +8,8 @@ import numpy as np
 
 import centrode as ct
 from centrode.cams.curvature_laws import ExponentialCurvature
-from centrode.cams.followers.comparing import peaks_of
-from centrode.cams.series import series_path
+from centrode.cams.followers.motion import peaks_of
+from centrode.cams.path_series import series_path
 from centrode.laws import Segment, SegmentedLaw
 from tools.validation.rows import Column, Row, Source, column, printed
 

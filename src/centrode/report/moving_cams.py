@@ -22,7 +22,7 @@ from centrode.render.document.numbers import Numbers
 from centrode.report.circles import AT_REST, LIFT, Array, Samples, circle, hatched
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.present.cams.driving_cam import DrivingCam
 
 TURN = 180

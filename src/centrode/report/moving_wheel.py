@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from centrode.cams.frames import frames
+from centrode.cams.roller_path import frames
 from centrode.locale import _
 from centrode.model.asked import Display
 from centrode.present.cams.walking_drawing import (
@@ -30,7 +30,7 @@ from centrode.render.document.numbers import Numbers
 from centrode.report.circles import LIFT, Array, circle, hatched
 
 if TYPE_CHECKING:
-    from centrode.cams.wheel.walking import Mover, Pose
+    from centrode.cams.walking_wheel import WheelMover, WheelPose
 
 STEP = 45
 """Pictures of a step."""
@@ -39,12 +39,12 @@ INCHES = 5.2
 DIGITS = 4
 
 
-def moving_wheel(wheel: Mover, title: str = "") -> Moving:
+def moving_wheel(wheel: WheelMover, title: str = "") -> Moving:
     """A walking wheel to be played; its rollers can be dragged around the cam.
 
     Parameters
     ----------
-    wheel : Mover
+    wheel : WheelMover
         Of `walking_wheel`.
     title : str
         Of the cam, as its user wrote it.
@@ -79,7 +79,7 @@ def moving_wheel(wheel: Mover, title: str = "") -> Moving:
     )
 
 
-def _shapes(wheel: Mover, poses: list[Pose], rollers: dict[str, Array]) -> Iterator[Outline]:
+def _shapes(wheel: WheelMover, poses: list[WheelPose], rollers: dict[str, Array]) -> Iterator[Outline]:
     """Ground, footprints, cam, carrier, legs: those below first."""
     still = np.array([[0.0, wheel.height, 0.0]])
     yield from _ground(wheel, poses)
@@ -110,7 +110,7 @@ def _shapes(wheel: Mover, poses: list[Pose], rollers: dict[str, Array]) -> Itera
     yield Outline(dot, np.column_stack([contact, np.zeros(len(contact))]), PRINT, white=True, behind=False)
 
 
-def _ground(wheel: Mover, poses: list[Pose]) -> Iterator[Outline]:
+def _ground(wheel: WheelMover, poses: list[WheelPose]) -> Iterator[Outline]:
     """The hatched ground and the footprints, which pass by under the hub."""
     far = 1.04 * reach(wheel)
     hubs = np.array([pose.hub[0] for pose in poses])
@@ -128,7 +128,7 @@ def _ground(wheel: Mover, poses: list[Pose]) -> Iterator[Outline]:
     yield Outline(np.concatenate([np.concatenate([one, LIFT]) for one in prints]), passing, PRINT)
 
 
-def _still(wheel: Mover) -> Figure:
+def _still(wheel: WheelMover) -> Figure:
     """The wheel where its first leg stands straight down."""
     with house_style():
         figure = Figure(figsize=(INCHES, INCHES))

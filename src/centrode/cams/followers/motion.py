@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
+from math import isclose
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.errors import InputError
-from centrode.laws import SegmentedLaw
-from centrode.locale import _
-from centrode.model.cams.files import AnyCam, with_follower
+from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
+from centrode.cams.nodes import mesh
+from centrode.errors import InputError, Status
+from centrode.kinematics.dataset import Variable, labels_of, named
+from centrode.laws import CURVES, Segment, SegmentedLaw
+from centrode.locale import _, mark
+from centrode.model.cams.files import AnyCam, cam_text, with_follower
+from centrode.model.cams.plate import PlateCam
+from centrode.model.problems import nearest, shown
+from centrode.numerics.search import Extremes, extremes
+from centrode.quantities import QUANTITIES
+from centrode.version import __version__
 
 Array = npt.NDArray[np.float64]
 JETS = JetFunctions(ARRAYS)
@@ -98,3 +112,390 @@ def follower_motion(cam: AnyCam) -> FollowerMotion:
     """
     plate = with_follower(cam)
     return FollowerMotion(plate.lift_law, plate.swings, plate.body.speed)
+
+
+# What derivatives of the lift do where segments meet.
+
+ORDER = 4
+"""Highest derivative that is looked at."""
+_BOUNDED = JetFunctions(ROUNDED)
+
+
+@dataclass(frozen=True)
+class LawJoint:
+    """Where one segment ends and the next begins.
+
+    Attributes
+    ----------
+    number : int
+        Of the segment that ends, counted from 0.
+    angle : float [rad]
+        Of the cam; a turn for the end of the last segment, where the first one begins.
+    before, after : tuple of float [m/rad^k or rad/rad^k]
+        Lift and derivatives from both sides.
+    jumps : tuple of float
+        What they change by; exactly 0 where rounding explains the difference.
+    """
+
+    number: int
+    angle: float
+    before: tuple[float, ...]
+    after: tuple[float, ...]
+    jumps: tuple[float, ...]
+
+    @property
+    def first_jump(self) -> int | None:
+        """The lowest derivative that jumps; None if all that were looked at are continuous."""
+        return next((order for order, jump in enumerate(self.jumps) if jump), None)
+
+
+def joints_of(motion: FollowerMotion, order: int = ORDER) -> tuple[LawJoint, ...]:
+    """All joints of a turn, that of the last segment with the first at its end.
+
+    Notes
+    -----
+    Both sides are computed with a bound of their rounding error, numbers of the description counting as rounded
+    ones; what these bounds explain is no jump.
+    """
+    return tuple(_joint(motion, number, order) for number in range(len(motion.law.ends)))
+
+
+def _joint(motion: FollowerMotion, number: int, order: int) -> LawJoint:
+    angle = motion.law.ends[number]
+    place = Jet.variable(Rounded.of(np.float64(angle)), order)
+    sides = motion.law.at_joint(number, _BOUNDED, place)
+    before, after = ([Rounded.of(side.derivative(k)) for k in range(order + 1)] for side in sides)
+    return LawJoint(
+        number,
+        angle,
+        tuple(float(one.value) for one in before),
+        tuple(float(one.value) for one in after),
+        tuple(_jump(one, other) for one, other in zip(before, after, strict=True)),
+    )
+
+
+def _jump(before: Rounded, after: Rounded) -> float:
+    jump = float(after.value) - float(before.value)
+    return jump if abs(jump) > SAFETY * float(before.bound + after.bound) else 0.0
+
+
+def first_jump(motion: FollowerMotion) -> int | None:
+    """The lowest derivative, up to the fourth, that jumps anywhere in the turn; None if none does."""
+    inside = [segment.inner_jump for segment in motion.law.segments]
+    found = [joint.first_jump for joint in joints_of(motion)]
+    known = [order for order in (*inside, *found) if order is not None and order <= ORDER]
+    return min(known, default=None)
+
+
+# The lift between breaks: one analytic formula on each closed stretch, and extremes of what is made of it.
+
+SAME = 1e-12
+"""Sizes that part by a smaller share are equal but for rounding."""
+Made = Callable[[Array], tuple[Array, Array]]
+"""A value and its slope from the derivatives (order + 1, n) of the lift."""
+
+
+@dataclass(frozen=True)
+class LiftStretch:
+    """A part of the lift with one formula, at both ends its own."""
+
+    law: SegmentedLaw
+    number: int
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """First and last angle [rad]."""
+        first, last = self.law.whole.breaks[self.number : self.number + 2]
+        return first, last
+
+    def derivatives(self, phi: Array, order: int) -> Array:
+        """Lift and derivatives (order + 1, n)."""
+        jet = self.law.whole.at_row(self.number + 1, JETS, Jet.variable(phi, order))
+        return np.stack([np.broadcast_to(jet.derivative(k), phi.shape) for k in range(order + 1)])
+
+    def extremes(self, order: int, made: Made) -> Extremes:
+        """Extremes of what is made of derivatives up to an order."""
+        return extremes(
+            lambda phi: made(self.derivatives(phi, order))[0],
+            lambda phi: made(self.derivatives(phi, order))[1],
+            mesh(*self.ends),
+        )
+
+
+def stretches(law: SegmentedLaw, segment: int | None = None) -> list[LiftStretch]:
+    """The stretches of one segment, counted from 0, or of all."""
+    edges = law.whole.breaks
+    first, last = 0.0, edges[-1]
+    if segment is not None:
+        first, last = (0.0, *law.ends)[segment : segment + 2]
+    return [
+        LiftStretch(law, k) for k, (low, high) in enumerate(pairwise(edges)) if first <= low and high <= last
+    ]
+
+
+def extremes_of(law: SegmentedLaw, order: int, made: Made, segment: int | None = None) -> Extremes:
+    """Extremes over a segment or the whole, limits from both sides of each break included.
+
+    Of what is taken more than once the first place counts.
+    """
+    found = [stretch.extremes(order, made) for stretch in stretches(law, segment)]
+    low = min(found, key=lambda one: (one.least, one.at_least))
+    high = max(found, key=lambda one: (one.greatest, -one.at_greatest))
+    return Extremes(low.least, low.at_least, high.greatest, high.at_greatest)
+
+
+def derivative(order: int) -> Made:
+    """The derivative of an order of the lift; ask for derivatives up to one more."""
+    return lambda found: (found[order], found[order + 1])
+
+
+def power(found: Array) -> tuple[Array, Array]:
+    """First times second derivative: a mass's share in the torque of the camshaft; ask for derivatives up to 3."""
+    return found[1] * found[2], found[2] ** 2 + found[1] * found[3]
+
+
+def greatest_size(one: Extremes) -> tuple[float, float]:
+    """The greatest size with its sign, and its place; of equal sizes the one that comes first."""
+    up, down = (one.greatest, one.at_greatest), (one.least, one.at_least)
+    if isclose(up[0], -down[0], rel_tol=SAME):
+        return min(up, down, key=lambda size: size[1])
+    return up if up[0] > -down[0] else down
+
+
+# Laws of motion beside each other, for one rise: peaks, and the derivatives over the rise.
+
+ORDERS = (1, 2, 3)
+SAMPLES = 361
+ITS_OWN = mark("its own")
+"""Name of the description's own law beside the others, where it is none of them."""
+NOTHING = 1e-9
+"""A derivative that is a smaller share of rise over angle to its order is one of rounding."""
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """Coefficients of a rise h over an angle beta, none of which depends on h and beta.
+
+    Attributes
+    ----------
+    coefficients : three floats
+        Greatest sizes of s' beta/h, s'' beta^2/h, s''' beta^3/h, between the ends.
+    torque : float
+        Greatest size of s' s'' beta^3/h^2: what a mass asks of the camshaft.
+    first_jump : int or None
+        The lowest derivative that jumps inside, or at an end where a dwell follows; None if up to the fourth none does.
+    """
+
+    coefficients: tuple[float, float, float]
+    torque: float
+    first_jump: int | None
+
+
+def peaks_of(law: SegmentedLaw, number: int = 0) -> Peaks:
+    """Peaks of a segment of a law, counted from 0; of a dwell all are 0."""
+    parts, segment = stretches(law, number), law.segments[number]
+    (start, _end), (_start, end) = parts[0].ends, parts[-1].ends
+    before = parts[0].derivatives(np.array([start]), ORDER)[:, 0]
+    after = parts[-1].derivatives(np.array([end]), ORDER)[:, 0]
+    rise, angle = float(after[0] - before[0]), end - start
+    if segment.to is None or rise == 0:
+        return Peaks((0.0, 0.0, 0.0), 0.0, segment.inner_jump)
+    first, second, third = (
+        abs(greatest_size(extremes_of(law, k + 1, derivative(k), number))[0] * angle**k / rise)
+        for k in ORDERS
+    )
+    torque = abs(greatest_size(extremes_of(law, 3, power, number))[0]) * angle**3 / rise**2
+    sizes = np.abs(np.stack([before, after])) * angle ** np.arange(ORDER + 1) / abs(rise)
+    jumps = [order for order in range(1, ORDER + 1) if (sizes[:, order] > NOTHING).any()]
+    jumps += [] if segment.inner_jump is None else [segment.inner_jump]
+    least = min(jumps, default=ORDER + 1)
+    return Peaks((first, second, third), torque, least if least <= ORDER else None)
+
+
+def compare_laws(
+    rise: float = 1.0,
+    angle: float = 1.0,
+    speed: float | None = None,
+    curves: Sequence[str] = tuple(CURVES),
+    own: Segment | None = None,
+    samples: int = SAMPLES,
+) -> xr.Dataset:
+    """Laws of motion beside each other, for one rise.
+
+    Parameters
+    ----------
+    rise : float [m or rad], not 0
+    angle : float [rad], positive
+        Of the cam meanwhile.
+    speed : float [rad/s]
+        Of the cam; with it the peaks are also told in time.
+    curves : names of curves
+    own : Segment
+        A further law, from 0 to `rise` over `angle`.
+    samples : int
+        Of each curve.
+
+    Returns
+    -------
+    Dataset
+        Along `law`: `peak_coefficient` (order 1 to 3: velocity, acceleration, jerk; sizes, between the ends),
+        `torque_coefficient`, `first_jump` (order of the lowest derivative that jumps, against dwells at the ends; 0
+        if up to the fourth none does); along `sample` over `share` of the angle: `rise_share`, with derivatives along
+        `derivative` (0 to 3), in shares of the rise. Attributes: rise, angle, speed.
+
+    Raises
+    ------
+    InputError
+        An unknown curve, or numbers that make no rise.
+    """
+    names = [*curves]
+    for name in names:
+        if name not in CURVES:
+            raise InputError(
+                "curves", _("there is no curve {name}").format(name=shown(name)), nearest(name, CURVES)
+            )
+    if not (math.isfinite(rise) and rise and math.isfinite(angle) and angle > 0):
+        raise InputError("", _("a rise needs a height that is not 0 and a positive angle"), _("correct them"))
+    laws = {name: SegmentedLaw((Segment(1.0, 1.0, name),)) for name in names}
+    if own is not None:
+        laws[ITS_OWN] = SegmentedLaw((own,))
+    return _labelled(laws, rise, angle, speed, samples)
+
+
+def _labelled(
+    laws: Mapping[str, SegmentedLaw], rise: float, angle: float, speed: float | None, samples: int
+) -> xr.Dataset:
+    if not laws:
+        raise InputError("curves", _("no law is given"), _("name one or more"))
+    share = np.linspace(0.0, 1.0, samples)
+    peaks = [peaks_of(law) for law in laws.values()]
+    curves = [_over(law, share, rise if name == ITS_OWN else 1.0) for name, law in laws.items()]
+    data = {
+        "peak_coefficient": named(
+            "peak_coefficient", ("law", "derivative"), [[np.nan, *one.coefficients] for one in peaks]
+        ),
+        "torque_coefficient": named("torque_coefficient", ("law",), [one.torque for one in peaks]),
+        "first_jump": named("first_jump", ("law",), [one.first_jump or 0 for one in peaks]),
+        "rise_share": named("rise_share", ("law", "derivative", "sample"), np.stack(curves)),
+    }
+    coordinates = {
+        "law": labels_of(tuple(laws)),
+        "derivative": [0, *ORDERS],
+        "share": named("share", ("sample",), share),
+    }
+    facts = {"rise": rise, "angle": angle, "version": __version__}
+    return xr.Dataset(data, coords=coordinates, attrs=facts | ({} if speed is None else {"speed": speed}))
+
+
+def _over(law: SegmentedLaw, share: Array, rise: float) -> Array:
+    """Shares of the rise with three derivatives by the share of the angle."""
+    angle = law.period
+    jet = law.jet(JETS, Jet.variable(share * angle, ORDERS[-1]))
+    found = [np.broadcast_to(jet.derivative(k), share.shape) * angle**k / rise for k in (0, *ORDERS)]
+    return np.stack(found)
+
+
+def first_rise(cam: AnyCam) -> int:
+    """The first segment of a cam that moves its follower, counted from 0."""
+    before = 0.0
+    for number, segment in enumerate(with_follower(cam).segments):
+        if segment.to is not None and segment.to != before:
+            return number
+        before = before if segment.to is None else segment.to
+    what = _("no segment ends at another lift than it begins at: there is no rise to compare laws for")
+    raise InputError("[[segments]]", what, _("leave --laws out, or use ct.compare_laws"))
+
+
+def cam_laws(cam: AnyCam, samples: int = SAMPLES) -> xr.Dataset:
+    """Laws of motion beside each other for the first rise of a cam, with its own if it is none of them.
+
+    Parameters
+    ----------
+    cam : PlateCam
+    samples : int
+        Of each curve.
+
+    Raises
+    ------
+    InputError
+        A cam that is given by a curvature law.
+    """
+    plate = with_follower(cam)
+    segment = plate.segments[first_rise(plate)]
+    own = None if segment.curve in CURVES else segment.law
+    found = compare_laws(segment.to or 0.0, segment.angle, plate.body.speed, own=own, samples=samples)
+    return found.assign_attrs(title=plate.title, segment=first_rise(plate), curve=segment.curve)
+
+
+# The motion of a follower as a labelled result.
+
+BY_ANGLE = ("", "_slope", "_second", "_third", "_fourth")
+IN_TIME = ("_velocity", "_acceleration", "_jerk")
+WIDTH, LEAST_PLACES = math.radians(1.0), 9
+"""A drawn curve has a place at least every degree, and so many in each stretch."""
+
+
+def motion_names(swings: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names of the lift with its derivatives by the cam's angle, and of those by time."""
+    front = "swing" if swings else "lift"
+    return tuple(front + end for end in BY_ANGLE), tuple(front + end for end in IN_TIME)
+
+
+def dataset_of_motion(cam: PlateCam, motion: FollowerMotion, phi: Array) -> xr.Dataset:
+    """The labelled motion of a follower at angles of its cam [rad].
+
+    Along `sample`, over `cam_angle`: the lift with four derivatives by the cam's angle; with a speed of the cam also
+    velocity, acceleration and jerk in time. Along `joint`, at `joint_angle`: lift and derivatives before and after it.
+    """
+    by_angle, in_time = motion_names(motion.swings)
+    values = motion.lift(phi, len(by_angle) - 1)
+    data: dict[str, Variable] = {
+        name: named(name, ("sample",), one) for name, one in zip(by_angle, values, strict=True)
+    }
+    if motion.speed is not None:
+        for order, name in enumerate(in_time, 1):
+            data[name] = named(name, ("sample",), values[order] * motion.speed**order)
+    data["status"] = _all_right(len(phi))
+    coordinates = {"cam_angle": named("cam_angle", ("sample",), phi), "derivative": list(range(ORDER + 1))}
+    return xr.Dataset(data | _joints(motion) | _curve(motion), coords=coordinates, attrs=_facts(cam, motion))
+
+
+def _joints(motion: FollowerMotion) -> dict[str, Variable]:
+    """Both sides of every joint, those of 0 deg at the end of the turn; each derivative in its own unit."""
+    joints = joints_of(motion)
+    units = {"units": ", ".join(QUANTITIES[name].unit for name in motion_names(motion.swings)[0])}
+    sides = {"joint_before": [one.before for one in joints], "joint_after": [one.after for one in joints]}
+    data = {
+        name: (("joint", "derivative"), np.array(values), {**named(name, (), None)[2], **units})
+        for name, values in sides.items()
+    }
+    return {"joint_angle": named("joint_angle", ("joint",), [one.angle for one in joints]), **data}
+
+
+def _curve(motion: FollowerMotion) -> dict[str, Variable]:
+    """The motion as it is drawn whatever the samples: each stretch by its own formula, with both its ends."""
+    angles, values = [], []
+    for stretch in stretches(motion.law):
+        low, high = stretch.ends
+        phi = np.linspace(low, high, max(LEAST_PLACES, 1 + math.ceil((high - low) / WIDTH)))
+        angles.append(phi)
+        values.append(stretch.derivatives(phi, ORDER))
+    units = {"units": ", ".join(QUANTITIES[name].unit for name in motion_names(motion.swings)[0])}
+    drawn = np.concatenate(values, axis=1).T
+    return {
+        "drawn_angle": named("drawn_angle", ("place",), np.concatenate(angles)),
+        "drawn_motion": (("place", "derivative"), drawn, {**named("drawn_motion", (), None)[2], **units}),
+    }
+
+
+def _all_right(count: int) -> Variable:
+    dimensions, values, attributes = named("status", ("sample",), np.full(count, Status.OK, dtype=np.int8))
+    attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
+    return dimensions, values, attributes
+
+
+def _facts(cam: PlateCam, motion: FollowerMotion) -> dict[str, Any]:
+    facts = {"title": cam.title, "cam": cam_text(cam), "version": __version__}
+    curves = {"curves": ", ".join(segment.curve for segment in cam.segments)}
+    return facts | curves | ({} if motion.speed is None else {"speed": motion.speed})

@@ -1,20 +1,342 @@
-"""The least cam that keeps a pressure angle and a radius of curvature, and the offset that makes it least."""
+"""From a description with a follower to its cam."""
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
 
+import numpy as np
 from scipy.optimize import minimize_scalar
 
-from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.contact import Motion
-from centrode.cams.followers.growing import BACK, NEAR, UNDECIDED, Tried, looked_at
-from centrode.cams.followers.layouts import Layout
-from centrode.cams.followers.margins import Admissible, breaks, exact_margin
+from centrode.cams.followers.geometry import (
+    ORDER,
+    Array,
+    ContactMotion,
+    ContactPoint,
+    Corner,
+    Face,
+    FollowerCam,
+    FollowerContact,
+    Guidance,
+    Point,
+    Translating,
+    oscillating,
+    oscillating_face,
+    translating,
+)
+from centrode.cams.followers.motion import follower_motion
+from centrode.cams.nodes import nodes_of
+from centrode.cams.profiles import Undercut
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.numerics.search import root
+from centrode.model.cams.files import AnyCam, with_follower
+from centrode.model.cams.plate import PlateCam
+from centrode.numerics.search import root, roots
+
+# What a follower is and how it stands to its cam, before the size of the cam is chosen.
+
+Kind: TypeAlias = Literal["translating", "oscillating"]
+
+
+@dataclass(frozen=True)
+class FollowerLayout:
+    """A follower and the sense in which its cam turns.
+
+    Attributes
+    ----------
+    kind : "translating" or "oscillating"
+    touch : Point or Face
+    offset : float [m]
+        x of the axis of a translating follower.
+    arm, distance, face_offset : float [m]
+        Of an oscillating follower: of the roller's centre from the pivot; of the pivot from the cam's centre; by how
+        much the line of a flat face passes the pivot on the cam's side.
+    sense : +1 or -1
+        Whether the cam turns counter-clockwise or clockwise.
+    """
+
+    kind: Kind
+    touch: ContactPoint
+    offset: float = 0.0
+    arm: float = 0.0
+    distance: float = 0.0
+    face_offset: float = 0.0
+    sense: float = 1.0
+
+    @property
+    def flat(self) -> bool:
+        return isinstance(self.touch, Face)
+
+    def guide(self, base_radius: float) -> Guidance:
+        """How the follower is led on a cam of this base radius [m]; raises InputError where it does not reach it."""
+        if self.kind == "translating":
+            if self.flat:
+                return Translating(base_radius, self.offset)
+            return translating(base_radius + self.touch.roller, self.offset)
+        if self.flat:
+            return oscillating_face(base_radius, self.distance, self.face_offset)
+        return oscillating(base_radius + self.touch.roller, self.arm, self.distance)
+
+    def cam(self, motion: ContactMotion, base_radius: float) -> FollowerCam:
+        """The cam of this base radius [m] for a motion.
+
+        Raises
+        ------
+        InputError
+            A follower that does not reach the base circle; one that the cam cannot lead all the way: it would have to
+            go through the cam's centre or its pivot's line, or turn its face faster than the cam turns.
+        """
+        cam = FollowerCam(motion, self.guide(base_radius), self.touch, base_radius, self.sense)
+        _check_led(cam)
+        return cam
+
+
+def _check_led(cam: FollowerCam) -> None:
+    """Raise InputError at the first angle at which the follower cannot be led."""
+    phi = nodes_of(cam.edges)
+    found = cam.contact(phi)
+    turning = found.pace
+    bad = np.flatnonzero(~((np.cos(found.pressure_angle) > 0.0) & (turning > 0.0)))
+    if not bad.size:
+        return
+    what = _("the follower cannot be led through {angle:.6g} deg: its pressure angle reaches 90 deg there")
+    if not turning[bad[0]] > 0.0:
+        what = _("at {angle:.6g} deg the flat face would have to turn faster than the cam")
+    told = what.format(angle=math.degrees(phi[bad[0]]))
+    raise InputError("[follower]", told, _("take a smaller lift, a longer segment or a greater base radius"))
+
+
+def layout_of(cam: PlateCam) -> FollowerLayout:
+    """The layout of a description."""
+    given = cam.follower
+    touch = Face() if given.contact == "flat" else Point(given.roller_radius or 0.0)
+    return FollowerLayout(
+        given.kind,
+        touch,
+        given.offset,
+        given.arm or 0.0,
+        given.pivot_distance or 0.0,
+        given.face_offset,
+        1.0 if cam.body.turn == "counter-clockwise" else -1.0,
+    )
+
+
+# What is admissible of a cam, and by how much it is kept.
+
+STILL = 1e-12
+"""Slopes of the lift below this share of the greatest are those of a dwell."""
+
+
+@dataclass(frozen=True)
+class Admissible:
+    """What a cam has to keep.
+
+    Attributes
+    ----------
+    pressure_angle, return_angle : float [rad]
+        Greatest pressure angles where the follower rises, where it falls; where it dwells both.
+    bend : float [m]
+        Least radius of curvature of the profile where it bulges; at 0 it must not be undercut.
+    """
+
+    pressure_angle: float = math.pi / 2
+    return_angle: float = math.pi / 2
+    bend: float = 0.0
+
+
+@dataclass(frozen=True)
+class Margin:
+    """By how much bounds are kept at worst, where, and which; negative where they are not."""
+
+    least: float
+    at: float
+    by: str
+
+
+def margin(contact: FollowerContact, slope: Array, layout: FollowerLayout, kept: Admissible) -> Margin:
+    """What is left at the worst of some contacts, `slope` (n) the lift's there.
+
+    Of pressure angles in radians; of curvature 1 - (r + bend) K of a roller, (R - bend)/r0 of a flat face.
+    """
+    still = STILL * float(np.abs(slope).max())
+    steepness = np.abs(contact.pressure_angle)
+    pressure = np.minimum(
+        np.where(slope >= -still, kept.pressure_angle - steepness, math.inf),
+        np.where(slope <= still, kept.return_angle - steepness, math.inf),
+    )
+    if layout.flat:
+        size = float(np.abs(contact.place).max())
+        bent = np.where(contact.pace > 0.0, (contact.bend - kept.bend) / size, -math.inf)
+    else:
+        bent = 1.0 - (layout.touch.roller + kept.bend) * contact.path_curvature
+    bent = np.where(np.isfinite(bent), bent, -math.inf)
+    first, second = int(np.argmin(pressure)), int(np.argmin(bent))
+    if pressure[first] <= bent[second]:
+        return Margin(float(pressure[first]), float(contact.phi[first]), "pressure angle")
+    return Margin(float(bent[second]), float(contact.phi[second]), "curvature")
+
+
+def exact_margin(cam: FollowerCam, layout: FollowerLayout, kept: Admissible) -> Margin:
+    """`margin` over the whole turn, extremes found to rounding."""
+    names = ("pressure", "stretch" if layout.flat else "path_curvature")
+    phi = np.concatenate([nodes_of(cam.edges), *(cam.turns(name) for name in names)])
+    found = margin(cam.contact(phi), cam.motion.lift(phi, 1)[1], layout, kept)
+    sharp = [one.at for one in cam.corners if breaks(one, layout, kept)]
+    return Margin(-math.inf, sharp[0], "curvature") if sharp else found
+
+
+def breaks(corner: Corner, layout: FollowerLayout, kept: Admissible) -> bool:
+    """Whether a corner leaves the profile undercut, or with a sharp edge where a radius of curvature is asked for."""
+    return corner.undercuts(layout.touch.roller) or (corner.turn > 0.0 and kept.bend > 0.0)
+
+
+# A cam made larger until it keeps what is asked of it: the least base circle of one offset.
+
+SMALLEST, GREATEST = 1e-4, 1e4
+"""Ends of the search over the size of the lift."""
+STEP = 1.05
+"""Neighbouring base radii among which the first that keeps the bounds is looked for."""
+NEAR = 1e-3
+"""By how much of itself a radius found on the mesh may differ from the exact one."""
+STEEPEST = 1e6
+"""Tangents of pressure angles from which on a bound is none."""
+BACK = 0.8
+"""Share of the least radius for one offset from which on that for the next is looked for."""
+UNDECIDED = 1e-6
+"""A margin of the least cam that is greater is none of rounding: no bound decides that radius."""
+REACHED = 1e-9
+"""From which share of the least radius that a follower reaches on a cam is tried."""
+
+
+@dataclass(frozen=True)
+class Nodes:
+    """Angles (n) [rad] at which bounds are looked at, and the lift with its derivatives there."""
+
+    phi: Array
+    lift: Array
+
+
+def looked_at(layout: FollowerLayout, motion: ContactMotion, kept: Admissible) -> Nodes:
+    """The mesh of a lift, and the angles at which a bound may decide."""
+    phi = np.append(nodes_of(motion.edges), _decisive(layout, motion, kept))
+    return Nodes(phi, motion.lift(phi, ORDER))
+
+
+def _decisive(layout: FollowerLayout, motion: ContactMotion, kept: Admissible) -> list[float]:
+    """Angles at which a bound of the pressure angle may decide, whatever the offset and the radius.
+
+    A straight line of the slope tan(bound) touches the curve of s over s' there.
+    """
+    if layout.kind == "oscillating" or layout.flat:
+        return []
+    bounds = {math.tan(one) for one in (kept.pressure_angle, kept.return_angle)}
+    found: list[float] = []
+    for steep in (sign * one for one in bounds if one < STEEPEST for sign in (1.0, -1.0)):
+
+        def touches(phi: Array, steep: float = steep) -> Array:
+            _lift, slope, second = motion.lift(phi, 2)
+            return np.asarray(second - steep * slope)
+
+        found += roots(touches, nodes_of(motion.edges)).tolist()
+    return found
+
+
+class BaseCircleTrial:
+    """Cams of several base radii on the same nodes."""
+
+    def __init__(
+        self, layout: FollowerLayout, motion: ContactMotion, kept: Admissible, nodes: Nodes | None = None
+    ) -> None:
+        self.layout, self.motion, self.kept = layout, motion, kept
+        nodes = nodes or looked_at(layout, motion, kept)
+        self.phi, self.lift = nodes.phi, nodes.lift
+        self.size = float(np.abs(self.lift[0]).max())
+        if layout.kind == "oscillating":
+            self.size *= layout.distance
+
+    def cam(self, base: float) -> FollowerCam:
+        return FollowerCam(self.motion, self.layout.guide(base), self.layout.touch, base, self.layout.sense)
+
+    def margin(self, base: float) -> Margin:
+        try:
+            guide = self.layout.guide(base)
+        except InputError:
+            return Margin(-math.inf, 0.0, "reach")
+        with np.errstate(divide="ignore", invalid="ignore"):
+            contact = self.layout.touch.contact(guide, self.phi, self.lift, self.layout.sense)
+        return margin(contact, self.lift[1], self.layout, self.kept)
+
+    def reaches(self, base: float) -> bool:
+        return self.margin(base).least > -math.inf
+
+    def first(self, near: float = 0.0) -> float:
+        """The first base radius, from below, that keeps the bounds on the mesh; from `near` on if that breaks them."""
+        best, before, lowest = Margin(-math.inf, 0.0, "reach"), 0.0, self._lowest()
+        for base in self._radii(near if near > lowest and self.margin(near).least < 0.0 else lowest):
+            found = self.margin(base)
+            if found.least >= 0.0:
+                return self._between(before, float(base))
+            best = max(best, found, key=lambda one: one.least)
+            before = base if found.least > -math.inf else 0.0
+        raise self._none(best)
+
+    def _between(self, broken: float, kept: float) -> float:
+        """The least radius that keeps the bounds, from one that breaks them, or 0, to one that keeps them."""
+        if not broken:
+            broken = max(self._reached(), kept / STEP) * (1.0 + REACHED)
+        least = self.margin(broken).least
+        if not broken < kept or least >= 0.0:
+            return min(broken, kept)
+        if least == -math.inf:
+            return kept
+        return root(lambda one: self.margin(one).least, broken, kept)
+
+    def _reached(self) -> float:
+        """The least base radius that the follower reaches; 0 of a flat face."""
+        layout = self.layout
+        if layout.flat:
+            return 0.0
+        apart = layout.offset if layout.kind == "translating" else layout.distance - layout.arm
+        return max(abs(apart) - layout.touch.roller, 0.0)
+
+    def _radii(self, least: float) -> Array:
+        count = 2 + int(math.log(max(GREATEST * self.size / least, STEP)) / math.log(STEP))
+        return np.asarray(least * STEP ** np.arange(count), dtype=np.float64)
+
+    def _lowest(self) -> float:
+        """A radius below which none keeps the bounds."""
+        layout, small = self.layout, SMALLEST * self.size
+        if layout.kind == "oscillating":
+            return max(small, self._reached())
+        if layout.flat:
+            return small
+        heights = self._heights()
+        return max(small, math.hypot(heights, layout.offset) * (1.0 - 1e-12) - layout.touch.roller)
+
+    def _heights(self) -> float:
+        """The least height of the roller's centre at lift 0 that keeps the pressure angles at every sample."""
+        lift, slope = self.lift[:2]
+        across = np.abs(slope - self.layout.sense * self.layout.offset)
+        rise, fall = (
+            np.max(across[here] / math.tan(most) - lift[here], initial=0.0)
+            for here, most in ((slope >= 0, self.kept.pressure_angle), (slope <= 0, self.kept.return_angle))
+        )
+        return float(max(rise, fall))
+
+    def _none(self, best: Margin) -> MotionError:
+        what = _("no base radius keeps the bounds: {bound} is broken at {angle:.6g} deg at least")
+        bounds = {
+            "pressure angle": _("the pressure angle"),
+            "curvature": _("the radius of curvature"),
+            "reach": _("the follower's reach"),
+        }
+        told = what.format(bound=bounds[best.by], angle=math.degrees(best.at))
+        return MotionError("[bounds]", told, _("admit more, or change the follower"))
+
+
+# The least cam that keeps a pressure angle and a radius of curvature, and the offset that makes it least.
 
 OFFSET = 1e-9
 """A best offset is looked for to this share of the speed of the lift."""
@@ -42,7 +364,7 @@ class Least:
     offset: float = 0.0
 
 
-def _check_corners(cam: FollowerCam, layout: Layout, kept: Admissible) -> None:
+def _check_corners(cam: FollowerCam, layout: FollowerLayout, kept: Admissible) -> None:
     """Raise MotionError where the speed of the lift jumps so that every cam has a sharp corner."""
     for corner in cam.corners:
         if breaks(corner, layout, kept):
@@ -51,7 +373,7 @@ def _check_corners(cam: FollowerCam, layout: Layout, kept: Admissible) -> None:
             raise MotionError("[[segments]]", told, _("join the segments there with equal slopes"))
 
 
-def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least:
+def least_base_radius(layout: FollowerLayout, motion: ContactMotion, kept: Admissible) -> Least:
     """The least base radius [m] with which a cam keeps what is admissible.
 
     Radii are tried upwards, each a twentieth greater, the first that keeps the bounds is refined to rounding.
@@ -61,7 +383,7 @@ def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least
     MotionError
         None does; what comes nearest is told.
     """
-    tried = Tried(layout, motion, kept)
+    tried = BaseCircleTrial(layout, motion, kept)
     found = tried.first()
     _check_corners(tried.cam(found), layout, kept)
 
@@ -75,7 +397,7 @@ def least_base_radius(layout: Layout, motion: Motion, kept: Admissible) -> Least
     return Least(found, at.at, at.by if at.least < UNDECIDED else "nothing", layout.offset)
 
 
-def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
+def best_offset(layout: FollowerLayout, motion: ContactMotion, kept: Admissible) -> Least:
     """The offset [m] of a translating follower with which the base radius may be least.
 
     Of a flat face, whose offset moves nothing but the place of contact, that with which the face has to be least
@@ -100,7 +422,7 @@ def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
 
     def radius(offset: float) -> float:
         nonlocal before
-        before = Tried(replace(layout, offset=offset), motion, kept, nodes).first(BACK * before)
+        before = BaseCircleTrial(replace(layout, offset=offset), motion, kept, nodes).first(BACK * before)
         return before + layout.touch.roller
 
     speeds = float(nodes.lift[1].min()), float(nodes.lift[1].max())
@@ -113,3 +435,104 @@ def best_offset(layout: Layout, motion: Motion, kept: Admissible) -> Least:
         options={"xatol": OFFSET * (sides[1] - sides[0])},
     )
     return least_base_radius(replace(layout, offset=float(found.x)), motion, kept)
+
+
+def follower_cam(cam: AnyCam) -> FollowerCam:
+    """The cam of a description with a follower.
+
+    Where `[cam] base_radius` is left out it is the least that `[bounds]` admits.
+
+    Raises
+    ------
+    InputError
+        A cam that is given by a curvature law; neither a base radius nor bounds that decide one; a follower that
+        cannot be led; a profile that is undercut, unless `[study] show_undercut` is set: the least radius that is not
+        is told.
+    MotionError
+        No base radius keeps the bounds.
+    """
+    plate = with_follower(cam)
+    body = _body(plate)
+    if body.undercuts and not plate.study.show_undercut:
+        raise _undercut(plate, body)
+    return body
+
+
+@functools.lru_cache(maxsize=16)
+def _body(cam: PlateCam) -> FollowerCam:
+    layout, motion, base = layout_of(cam), follower_motion(cam), cam.body.base_radius
+    if base is None:
+        if not bounded(cam):
+            what = _("a profile needs the cam's base radius")
+            raise InputError("[cam] base_radius", what, _("give it, or write [bounds] that it is to keep"))
+        least = least_base_radius(layout, motion, admissible_of(cam))
+        if least.by == "nothing":
+            what = _("no bound decides the base radius: a cam as small as one likes keeps them all")
+            raise InputError("[cam] base_radius", what, _("give it, or bound the radius of curvature"))
+        base = least.base_radius
+    return layout.cam(motion, base)
+
+
+def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:
+    """The least cam that keeps `[bounds]`: its base radius, what decides it and where.
+
+    Parameters
+    ----------
+    offset : bool
+        Choose the offset of a translating follower too, so that the base radius is least; of a flat face so that it is
+        touched as far on both sides. Without bounds the profile is only kept from being undercut.
+
+    Raises
+    ------
+    InputError
+        A cam that is given by a curvature law; an oscillating follower has no offset.
+    MotionError
+        No base radius keeps the bounds.
+    """
+    plate = with_follower(cam)
+    find = best_offset if offset else least_base_radius
+    return find(layout_of(plate), follower_motion(plate), admissible_of(plate))
+
+
+def bounded(cam: PlateCam) -> bool:
+    """Whether the description says what is admissible of the profile."""
+    given = (cam.bounds.pressure_angle, cam.bounds.return_pressure_angle, cam.bounds.curvature_radius)
+    return any(one is not None for one in given)
+
+
+def admissible_of(cam: PlateCam) -> Admissible:
+    """What a description admits; what it leaves out is not bound, except that the profile is not undercut."""
+    steep = cam.bounds.pressure_angle or math.pi / 2
+    return Admissible(steep, cam.bounds.return_pressure_angle or steep, cam.bounds.curvature_radius or 0.0)
+
+
+def stretches_text(undercuts: list[Undercut]) -> str:
+    """Stretches and corners in degrees, in words."""
+    texts = []
+    for one in undercuts:
+        start, stop = math.degrees(one.start), math.degrees(one.stop)
+        text = _("{first:.6g} to {last:.6g}").format(first=start, last=stop)
+        texts.append(f"{start:.6g}" if start == stop else text)
+    return ", ".join(texts)
+
+
+def _undercut(cam: PlateCam, body: FollowerCam) -> InputError:
+    """What is said of a profile that its follower cuts away: where, and what would not."""
+    what = _("the follower undercuts the profile at {stretches} deg").format(
+        stretches=stretches_text(body.undercuts)
+    )
+    show = _("[study] show_undercut = true shows it")
+    if any(corner.undercuts(body.touch.roller) for corner in body.corners):
+        join = _("join the segments with equal slopes there")
+        return InputError("[[segments]]", what, f"{join}; {show}")
+    ways: list[str] = []
+    try:
+        least = least_base_radius(layout_of(cam), body.motion, Admissible()).base_radius
+        ways.append(_("take a base radius above {least:.6g} mm").format(least=1e3 * least))
+    except MotionError:
+        ways.append(_("take a smaller lift or longer segments"))
+    most, _at = body.greatest_roller
+    if 0.0 < most < body.touch.roller < math.inf:
+        roller = _("a roller below {most:.6g} mm on the same path of its centre")
+        ways.append(roller.format(most=1e3 * most))
+    return InputError("[cam] base_radius", what, "; ".join([_(" or ").join(ways), show]))

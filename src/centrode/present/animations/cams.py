@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
-from centrode.cams.frames import frames as frames_along
+from centrode.cams.roller_path import frames as frames_along
 from centrode.locale import _
 from centrode.present import signs
 from centrode.present.animations.captions import turned_caption
@@ -25,8 +25,8 @@ from centrode.present.style import GROUND, INK, MUTED, PALETTE
 from centrode.study.moving.films import frame_ways
 
 if TYPE_CHECKING:
-    from centrode.cams.profiles.bodies import CamBody
-    from centrode.cams.wheel.walking import Mover
+    from centrode.cams.profiles import ProfileBody
+    from centrode.cams.walking_wheel import WheelMover
     from centrode.model.asked import Display
     from centrode.study.moving.courses import Loop
 
@@ -38,7 +38,7 @@ STEM = 3.0
 
 
 def walking_stage(
-    wheel: Mover, frames: int, size: tuple[int, int], title: str, display: Display | None, *, dark: bool
+    wheel: WheelMover, frames: int, size: tuple[int, int], title: str, display: Display | None, *, dark: bool
 ) -> Stage:
     """The stage of one step of a walking wheel."""
     angles = -wheel.half + math.tau / wheel.legs * frame_ways("round", frames)
@@ -47,7 +47,7 @@ def walking_stage(
 
 
 def roller_stage(
-    body: CamBody, frames: int, size: tuple[int, int], title: str, display: Display | None, *, dark: bool
+    body: ProfileBody, frames: int, size: tuple[int, int], title: str, display: Display | None, *, dark: bool
 ) -> Stage:
     """The stage of a cam that turns below its roller, once round or, where it is open, there and back."""
     first, last = body.closed.start, body.closed.stop
@@ -56,12 +56,12 @@ def roller_stage(
     return _turning(layer, angles, size, title, display, dark=dark)
 
 
-def loop_of(body: CamBody) -> Loop:
+def loop_of(body: ProfileBody) -> Loop:
     """How the animation of a cam runs on."""
     return "round" if _whole(body) else "back"
 
 
-def _whole(body: CamBody) -> bool:
+def _whole(body: ProfileBody) -> bool:
     return body.closed.stop - body.closed.start >= math.tau * (1.0 - 1e-9)
 
 
@@ -79,7 +79,7 @@ class WalkingLayer(Layer):
     the distance of two footprints, so that the last picture leads to the first.
     """
 
-    def __init__(self, wheel: Mover, turned_by: Array, factor: float) -> None:
+    def __init__(self, wheel: WheelMover, turned_by: Array, factor: float) -> None:
         self.wheel = wheel
         self.turned_by = turned_by
         self.factor = factor
@@ -108,7 +108,7 @@ class TurningCamLayer(Layer):
     The same as a roller carried round a fixed cam, seen from the carrier.
     """
 
-    def __init__(self, body: CamBody, angles: Array, factor: float) -> None:
+    def __init__(self, body: ProfileBody, angles: Array, factor: float) -> None:
         self.body = body
         self.angles = angles
         self.factor = factor

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.guidance import Oscillating
+from centrode.cams.followers.geometry import Oscillating
 from centrode.errors import Status
 from centrode.locale import decimal_mark
 from centrode.present.animations.layers import Array
@@ -15,7 +15,7 @@ from centrode.present.shown import shown_as
 from centrode.quantities import QUANTITIES, status_word, typeset_unit
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.model.asked import Display
     from centrode.study.moving.films import Film
 

@@ -25,7 +25,7 @@ from centrode.present.style import GROUND, MUTED
 from centrode.study.moving.films import frame_ways
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.model.asked import Display
 
 GAP, WALLS, ABOVE = 0.12, 0.4, 0.15

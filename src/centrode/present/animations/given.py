@@ -27,9 +27,9 @@ from centrode.study.moving.films import film_from
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.cams.followers.bodies import FollowerCam
-    from centrode.cams.profiles.bodies import CamBody
-    from centrode.cams.wheel.walking import Mover
+    from centrode.cams.followers.geometry import FollowerCam
+    from centrode.cams.profiles import ProfileBody
+    from centrode.cams.walking_wheel import WheelMover
     from centrode.model.asked import Display
     from centrode.model.mechanism import Mechanism
 
@@ -99,7 +99,7 @@ def animate_centrodes(
 
 
 def animate_walking(
-    wheel: Mover,
+    wheel: WheelMover,
     path: Path,
     title: str = "",
     display: Display | None = None,
@@ -114,7 +114,7 @@ def animate_walking(
 
 
 def animate_cam_body(
-    body: CamBody,
+    body: ProfileBody,
     path: Path,
     title: str = "",
     display: Display | None = None,

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from centrode.cams.followers.described import follower_cam
-from centrode.cams.profiles.bodies import cam_body
-from centrode.cams.profiles.tables import walking_wheel
+from centrode.cams.followers.sizing import follower_cam
+from centrode.cams.profiles import cam_body
+from centrode.cams.results import walking_wheel
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cams.files import AnyCam, curved

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from centrode.cams.choosing.measures import MEASURES
+from centrode.cams.parameter_choice.problem import MEASURES
 from centrode.locale import _
 from centrode.model.cams.values import CONSTANT, POINT
 from centrode.present.curves import legend_width, write_legend, write_title
@@ -19,8 +19,7 @@ from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, house_style
 
 if TYPE_CHECKING:
-    from centrode.cams.choosing.chosen import CamChoice
-    from centrode.cams.choosing.trade_off import TradeOff
+    from centrode.cams.parameter_choice.search import CamChoice, TradeOff
     from centrode.model.asked import Display
     from centrode.model.cams.description import Cam
 

@@ -12,8 +12,7 @@ from centrode.present.cams.choice import measure_shown, parameter_unit
 from centrode.present.shown import shown_as
 
 if TYPE_CHECKING:
-    from centrode.cams.choosing.choice import Design
-    from centrode.cams.choosing.chosen import CamChoice
+    from centrode.cams.parameter_choice.search import CamChoice, CamDesign
 
 
 def write_choice(found: CamChoice, folder: Path) -> None:
@@ -52,7 +51,7 @@ def write_choice(found: CamChoice, folder: Path) -> None:
         (folder / "chosen.toml").write_text(cam_text(cam), encoding="utf-8")
 
 
-def _designs(found: CamChoice) -> Iterator[tuple[str, Design]]:
+def _designs(found: CamChoice) -> Iterator[tuple[str, CamDesign]]:
     yield "start", found.choice.start
     yield "chosen", found.choice.chosen
     for design in found.front.designs if found.front is not None else ():

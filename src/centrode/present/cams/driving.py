@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.described import bounded, follower_cam
-from centrode.cams.followers.guidance import Oscillating
+from centrode.cams.followers.geometry import FollowerCam, Oscillating
+from centrode.cams.followers.sizing import bounded, follower_cam
 from centrode.errors import CentrodeError
 from centrode.model.cam_driving import pivot_of
 from centrode.present.cams.driving_cam import Array, DrivingCam

@@ -9,8 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.guidance import Oscillating
+from centrode.cams.followers.geometry import FollowerCam, Oscillating
 
 Array = NDArray[np.float64]
 PLACES = 361

@@ -13,7 +13,7 @@ from centrode.present.cams.outline_strokes import STROKES, grouped
 from centrode.present.dxf_files import dxf_document
 
 if TYPE_CHECKING:
-    from centrode.cams.profiles.outlines import Outline
+    from centrode.cams.profiles import CamOutline
 
 DEGREE = 3
 CENTRE = 4.0
@@ -24,7 +24,7 @@ CREASE = 1e-9
 """Pieces whose ends are nearer than this share of a metre are one polyline."""
 
 
-def write_outlines_dxf(outlines: Sequence[Outline], path: Path, title: str = "") -> None:
+def write_outlines_dxf(outlines: Sequence[CamOutline], path: Path, title: str = "") -> None:
     """Write outlines as DXF (AutoCAD 2010), one unit a millimetre.
 
     Each piece is a cubic spline through its points with its own slopes at both ends, on the layer of its name; the
@@ -50,7 +50,7 @@ def write_outlines_dxf(outlines: Sequence[Outline], path: Path, title: str = "")
         _title(document, space, outlines, title)
 
 
-def _spline(space: Any, piece: Outline, layer: str) -> None:
+def _spline(space: Any, piece: CamOutline, layer: str) -> None:
     ends = 1e3 * piece.slopes[[0, -1]]
     angles = piece.phi - piece.phi[0]  # knots that begin at 0: some readers know no others
     curve = make_interp_spline(angles, 1e3 * piece.places, k=DEGREE, bc_type=([(1, ends[0])], [(1, ends[1])]))
@@ -60,7 +60,7 @@ def _spline(space: Any, piece: Outline, layer: str) -> None:
     )
 
 
-def _joined(pieces: Sequence[Outline]) -> list[np.ndarray[Any, Any]]:
+def _joined(pieces: Sequence[CamOutline]) -> list[np.ndarray[Any, Any]]:
     """Points [mm] of pieces, those end to end together."""
     found: list[np.ndarray[Any, Any]] = []
     for piece in pieces:
@@ -78,7 +78,7 @@ def _centre(document: Any, space: Any) -> None:
         space.add_line((-end[0], -end[1]), end, dxfattribs={"layer": "centre"})
 
 
-def _title(document: Any, space: Any, outlines: Sequence[Outline], title: str) -> None:
+def _title(document: Any, space: Any, outlines: Sequence[CamOutline], title: str) -> None:
     if not title:
         return
     document.layers.add("title", color=7)

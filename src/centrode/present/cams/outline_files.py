@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from centrode.cams.profiles.outlines import cam_outlines, shoe_outlines
+from centrode.cams.profiles import cam_outlines, shoe_outlines
 from centrode.locale import _
 from centrode.present.cams.outline_dxf import write_outlines_dxf
 from centrode.present.cams.outline_svg import write_outlines_svg

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from centrode.cams.profiles.outlines import Outline
+    from centrode.cams.profiles import CamOutline
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,6 @@ STROKES: Mapping[str, Stroke] = {
 }
 
 
-def grouped(outlines: Sequence[Outline]) -> dict[str, list[Outline]]:
+def grouped(outlines: Sequence[CamOutline]) -> dict[str, list[CamOutline]]:
     """Outlines by their layers, in the order of `STROKES`."""
     return {layer: found for layer in STROKES if (found := [one for one in outlines if one.layer == layer])}

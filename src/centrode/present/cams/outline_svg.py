@@ -12,7 +12,7 @@ import numpy as np
 from centrode.present.cams.outline_strokes import STROKES, grouped
 
 if TYPE_CHECKING:
-    from centrode.cams.profiles.outlines import Outline
+    from centrode.cams.profiles import CamOutline
     from centrode.present.scene import Array
 
 MARGIN = 5.0
@@ -21,7 +21,7 @@ CENTRE = 4.0
 """Half the length of the strokes of a centre mark [mm]."""
 
 
-def write_outlines_svg(outlines: Sequence[Outline], path: Path, title: str = "") -> None:
+def write_outlines_svg(outlines: Sequence[CamOutline], path: Path, title: str = "") -> None:
     """Write outlines as SVG, one millimetre a millimetre, y up, one group a layer, the centre marked.
 
     A piece goes through its points with its own slopes as cubic Bezier curves: between points an angle h apart it
@@ -45,7 +45,7 @@ def write_outlines_svg(outlines: Sequence[Outline], path: Path, title: str = "")
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
 
 
-def _group(layer: str, pieces: Sequence[Outline]) -> list[str]:
+def _group(layer: str, pieces: Sequence[CamOutline]) -> list[str]:
     stroke: Mapping[str, object] = STROKES[layer].svg
     attributes = " ".join(f'{name}="{value}"' for name, value in stroke.items())
     paths = [f'<path d="{bezier(1e3 * one.places, 1e3 * one.slopes, one.phi)}"/>' for one in pieces]

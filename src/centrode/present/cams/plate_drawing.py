@@ -24,8 +24,8 @@ from centrode.present.signs import cross, turning_arrow
 from centrode.present.style import INK, MUTED, house_style
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
-    from centrode.cams.profiles.outlines import Outline
+    from centrode.cams.followers.geometry import FollowerCam
+    from centrode.cams.profiles import CamOutline
     from centrode.model.mechanism import Display
 
 Keys: TypeAlias = list[tuple[Artist, str]]
@@ -42,7 +42,7 @@ ARROW = 0.3
 
 
 def follower_cam_figure(
-    body: FollowerCam, outlines: Sequence[Outline], title: str = "", display: Display | None = None
+    body: FollowerCam, outlines: Sequence[CamOutline], title: str = "", display: Display | None = None
 ) -> Figure:
     """The cam in its axes with the follower at the beginning of the turn.
 
@@ -50,7 +50,7 @@ def follower_cam_figure(
     ----------
     body : FollowerCam
         Of `follower_cam`.
-    outlines : sequence of Outline
+    outlines : sequence of CamOutline
         Of `follower_outlines`.
     title : str
         Stands below what the figure shows.

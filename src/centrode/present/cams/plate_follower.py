@@ -11,13 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from centrode.cams.followers.guidance import Oscillating, Translating
+from centrode.cams.followers.geometry import Oscillating, Translating
 from centrode.locale import _
 from centrode.present import signs
 from centrode.present.style import GROUND, INK, MUTED, PALETTE
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.present.scene import Array
 
 GUIDE = 11.0

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from centrode.cams.frames import frames
-from centrode.cams.profiles.outlines import cam_outlines
+from centrode.cams.profiles import cam_outlines
+from centrode.cams.roller_path import frames
 from centrode.locale import _, mark
 from centrode.present.cams.outline_strokes import STROKES, grouped
 from centrode.present.curves import write_legend, write_title
@@ -22,8 +22,7 @@ from centrode.present.signs import cross
 from centrode.present.style import INK, MUTED, house_style
 
 if TYPE_CHECKING:
-    from centrode.cams.profiles.bodies import CamBody
-    from centrode.cams.profiles.outlines import Outline
+    from centrode.cams.profiles import CamOutline, ProfileBody
     from centrode.model.mechanism import Display
     from centrode.present.scene import Array
 
@@ -45,13 +44,13 @@ UNDERCUT = "#B00020"
 
 
 def profile_figure(
-    body: CamBody, title: str = "", display: Display | None = None, *, groove: bool = False
+    body: ProfileBody, title: str = "", display: Display | None = None, *, groove: bool = False
 ) -> Figure:
     """The cam in its axes: phi = 0 is up, phi grows clockwise.
 
     Parameters
     ----------
-    body : CamBody
+    body : ProfileBody
         Of `cam_body`.
     title : str
         Stands below what the figure shows.
@@ -80,7 +79,7 @@ def profile_figure(
     return figure
 
 
-def draw_outlines(axes: Axes, outlines: Sequence[Outline], factor: float) -> list[tuple[Line2D, str]]:
+def draw_outlines(axes: Axes, outlines: Sequence[CamOutline], factor: float) -> list[tuple[Line2D, str]]:
     """Draw pieces of outlines in the strokes of their layers; returns entries of a legend."""
     keys = []
     for layer, pieces in grouped(outlines).items():
@@ -98,7 +97,7 @@ def finish(axes: Axes, across: str, up: str) -> None:
     axes.set_ylabel(up)
 
 
-def _normals(axes: Axes, body: CamBody, factor: float, groove: bool) -> Line2D:
+def _normals(axes: Axes, body: ProfileBody, factor: float, groove: bool) -> Line2D:
     """Normals from the profile through the roller's centre."""
     phi = body.closed.start + math.tau * np.arange(NORMALS) / NORMALS
     frame = frames(body.closed, phi)
@@ -109,7 +108,7 @@ def _normals(axes: Axes, body: CamBody, factor: float, groove: bool) -> Line2D:
     return line
 
 
-def _rollers(axes: Axes, body: CamBody, factor: float) -> Line2D:
+def _rollers(axes: Axes, body: ProfileBody, factor: float) -> Line2D:
     """Rollers at the ends of the working arc and at kinks, with the angle."""
     kinks = {joint.at for joint in body.kinks}
     ends = {body.closed.arcs[0].stop, body.closed.stop} if len(body.closed.arcs) > 1 else {body.closed.stop}
@@ -144,7 +143,7 @@ def _name(axes: Axes, at: float, place: Array, room: float) -> None:
     )
 
 
-def _undercut(axes: Axes, body: CamBody, factor: float) -> list[tuple[Line2D, str]]:
+def _undercut(axes: Axes, body: ProfileBody, factor: float) -> list[tuple[Line2D, str]]:
     """Stretches where the roller cuts the profile away, over everything."""
     line = None
     for stretch in body.undercuts:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Polygon
 
-from centrode.cams.frames import frames
+from centrode.cams.roller_path import frames
 from centrode.locale import _
 from centrode.present.curves import write_title
 from centrode.present.shown import labelled, shown_as
@@ -21,7 +21,7 @@ from centrode.present.signs import ground, slider
 from centrode.present.style import GROUND, INK, MUTED, PALETTE, house_style
 
 if TYPE_CHECKING:
-    from centrode.cams.wheel.walking import Mover, Pose
+    from centrode.cams.walking_wheel import WheelMover, WheelPose
     from centrode.model.mechanism import Display
     from centrode.present.scene import Array
 
@@ -32,13 +32,13 @@ MOST_INSTANTS = 12
 
 
 def walking_figure(
-    wheel: Mover, turned: Sequence[float], title: str = "", display: Display | None = None
+    wheel: WheelMover, turned: Sequence[float], title: str = "", display: Display | None = None
 ) -> Figure:
     """The wheel where its carrier has turned by the given angles.
 
     Parameters
     ----------
-    wheel : Mover
+    wheel : WheelMover
         Of `walking_wheel`.
     turned : sequence of float [rad]
         At most the first twelve are drawn.
@@ -70,7 +70,7 @@ def walking_figure(
     return figure
 
 
-def draw_wheel(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> list[Artist]:
+def draw_wheel(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> list[Artist]:
     """Draw a wheel at one instant, lengths times `factor`; returns what was drawn."""
     before = set(axes.get_children())
     _ground(axes, wheel, pose, factor)
@@ -83,14 +83,14 @@ def draw_wheel(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> list[Arti
     return [one for one in axes.get_children() if one not in before]
 
 
-def reach(wheel: Mover) -> float:
+def reach(wheel: WheelMover) -> float:
     """How far the wheel reaches from its hub [m], whatever the instant."""
     phi = np.linspace(wheel.closed.start, wheel.closed.stop, POINTS)
     ends = wheel.shoe.place(np.array([0.0, wheel.half]))
     return float(wheel.closed.radius(phi)[0].max() + np.hypot(ends[:, 0], ends[:, 1]).max())
 
 
-def window(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
+def window(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> None:
     """Equal scales and limits that hold the wheel about its hub at any instant."""
     far = 1.04 * reach(wheel)
     axes.set_aspect("equal", adjustable="box")
@@ -116,7 +116,7 @@ def wheel_keys() -> list[tuple[Line2D, str]]:
     ]
 
 
-def _ground(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
+def _ground(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> None:
     """The hatched ground, and the footprints of the steps before and behind."""
     far = 1.04 * factor * reach(wheel)
     hub = factor * float(pose.hub[0])
@@ -135,7 +135,7 @@ def _ground(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
             axes.plot(shown, np.zeros(2), color=PRINT, linewidth=4, solid_capstyle="butt", zorder=2)
 
 
-def _cam(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
+def _cam(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> None:
     phi = np.linspace(wheel.closed.start, wheel.closed.stop, POINTS)
     frame = frames(wheel.closed, phi)
     profile = factor * pose.of_cam(frame.place - wheel.roller * frame.normal)
@@ -145,7 +145,7 @@ def _cam(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
     axes.plot(*path.T, color=MUTED, linewidth=0.8, linestyle=(0, (5, 1.2, 1.2, 1.2)), zorder=3)
 
 
-def _carrier(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
+def _carrier(axes: Axes, wheel: WheelMover, pose: WheelPose, factor: float) -> None:
     """A ring about the cam with a guide for each leg."""
     radius = factor * carrier_radius(wheel)
     hub = factor * pose.hub
@@ -154,7 +154,7 @@ def _carrier(axes: Axes, wheel: Mover, pose: Pose, factor: float) -> None:
         slider(axes, hub + radius * along, math.atan2(along[1], along[0]), 0.05 * radius, CARRIER)
 
 
-def _leg(axes: Axes, wheel: Mover, pose: Pose, leg: int, factor: float) -> None:
+def _leg(axes: Axes, wheel: WheelMover, pose: WheelPose, leg: int, factor: float) -> None:
     """Roller, rod and shoe of a leg."""
     colour = STANDING if leg == pose.supporting else FREE
     phi = np.linspace(-wheel.half, wheel.half, POINTS)
@@ -179,7 +179,7 @@ def _leg(axes: Axes, wheel: Mover, pose: Pose, leg: int, factor: float) -> None:
     axes.plot(*roller, marker="+", color=colour, markersize=5, zorder=7.5)
 
 
-def carrier_radius(wheel: Mover) -> float:
+def carrier_radius(wheel: WheelMover) -> float:
     """Radius of the carrier's ring [m]: outside the rollers, within the shoes of legs drawn in."""
     phi = np.linspace(wheel.closed.start, wheel.closed.stop, POINTS)
     radius: Array = wheel.closed.radius(phi)[0]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from centrode.cams.choosing.chosen import CamChoice, choose_cam
-from centrode.cams.choosing.measures import MEASURES
+from centrode.cams.parameter_choice.problem import MEASURES
+from centrode.cams.parameter_choice.search import CamChoice, choose_cam
 from centrode.locale import _, ngettext
 from centrode.model.cams.description import Cam
 from centrode.model.cams.values import CONSTANT

@@ -7,7 +7,7 @@ from math import isfinite, isinf, isnan
 import numpy as np
 import xarray as xr
 
-from centrode.cams.contacts.labelled import cam_contact
+from centrode.cams.results import cam_contact
 from centrode.locale import _
 from centrode.model.cams.description import Cam
 from centrode.sheets.sheet import Scalar

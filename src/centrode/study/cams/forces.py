@@ -6,10 +6,9 @@ import math
 
 import xarray as xr
 
-from centrode.cams.followers.described import bounded
-from centrode.cams.followers.forces.acting import follower_forces
-from centrode.cams.followers.forces.labelled import dataset_of_forces
-from centrode.cams.sampled import angles_of
+from centrode.cams.followers.forces import dataset_of_forces, follower_forces
+from centrode.cams.followers.sizing import bounded
+from centrode.cams.roller_path import angles_of
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam

@@ -6,8 +6,7 @@ import math
 
 import xarray as xr
 
-from centrode.cams.followers.comparing import cam_laws
-from centrode.cams.followers.labelled import motion_names
+from centrode.cams.followers.motion import cam_laws, motion_names
 from centrode.locale import _, mark
 from centrode.model.cams.plate import PlateCam
 from centrode.quantities import QUANTITIES

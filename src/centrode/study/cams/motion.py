@@ -4,12 +4,21 @@ from __future__ import annotations
 
 import math
 
-from centrode.cams.followers.comparing import Peaks, peaks_of
-from centrode.cams.followers.joints import ORDER, first_jump, joints_of
-from centrode.cams.followers.labelled import dataset_of_motion, motion_names
-from centrode.cams.followers.motion import FollowerMotion, follower_motion
-from centrode.cams.followers.stretches import derivative, extremes_of, greatest_size
-from centrode.cams.sampled import angles_of
+from centrode.cams.followers.motion import (
+    ORDER,
+    FollowerMotion,
+    Peaks,
+    dataset_of_motion,
+    derivative,
+    extremes_of,
+    first_jump,
+    follower_motion,
+    greatest_size,
+    joints_of,
+    motion_names,
+    peaks_of,
+)
+from centrode.cams.roller_path import angles_of
 from centrode.locale import _, mark
 from centrode.model.cams.plate import PlateCam
 from centrode.quantities import QUANTITIES

@@ -7,11 +7,17 @@ import math
 import numpy as np
 import xarray as xr
 
-from centrode.cams.described import half_path, path_of
-from centrode.cams.extremes import curvature_extremes, pressure_extremes, radius_extremes
-from centrode.cams.labelled import dataset_of_path
-from centrode.cams.path import RollerPath, stalls_of
-from centrode.cams.sampled import angles_of, ends_of
+from centrode.cams.cam import dataset_of_path
+from centrode.cams.path_series import half_path, path_of
+from centrode.cams.roller_path import (
+    RollerPath,
+    angles_of,
+    curvature_extremes,
+    ends_of,
+    pressure_extremes,
+    radius_extremes,
+    stalls_of,
+)
 from centrode.errors import CentrodeError
 from centrode.locale import _
 from centrode.model.cams.description import Cam

@@ -6,15 +6,16 @@ import math
 
 import numpy as np
 
-from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.contact import Face
-from centrode.cams.followers.cutting import check_cutter
-from centrode.cams.followers.described import bounded, follower_cam, stretches_text
-from centrode.cams.followers.guidance import Oscillating
-from centrode.cams.followers.outlines import follower_outlines
-from centrode.cams.followers.tabled import follower_profile, points_dataset
+from centrode.cams.followers.geometry import Face, FollowerCam, Oscillating
+from centrode.cams.followers.manufacture import (
+    check_cutter,
+    follower_outlines,
+    follower_profile,
+    points_dataset,
+)
+from centrode.cams.followers.sizing import bounded, follower_cam, stretches_text
 from centrode.cams.nodes import nodes_of
-from centrode.cams.sampled import angles_of
+from centrode.cams.roller_path import angles_of
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.plate import PlateCam

@@ -5,11 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from centrode.cams.followers.bodies import FollowerCam
-from centrode.cams.followers.described import admissible_of, bounded
-from centrode.cams.followers.layouts import layout_of
-from centrode.cams.followers.margins import exact_margin
-from centrode.cams.followers.sizing import Least, best_offset, least_base_radius
+from centrode.cams.followers.geometry import FollowerCam
+from centrode.cams.followers.sizing import (
+    Least,
+    admissible_of,
+    best_offset,
+    bounded,
+    exact_margin,
+    layout_of,
+    least_base_radius,
+)
 from centrode.errors import MotionError
 from centrode.locale import _, mark
 from centrode.model.cams.plate import PlateCam

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from centrode.cams.profiles.bodies import CamBody, cam_body
-from centrode.cams.profiles.equidistants import Undercut
-from centrode.cams.profiles.tables import count_of, profile_dataset
+from centrode.cams.profiles import ProfileBody, Undercut, cam_body
+from centrode.cams.results import count_of, profile_dataset
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
@@ -35,7 +34,7 @@ def profile_part(cam: Cam, asked: Asked) -> CamPart | None:
     return CamPart(heading, rows, _scalars(body), {"cam-profile": dataset}, objects={"body": body})
 
 
-def _closing(body: CamBody, units: Units) -> Rows:
+def _closing(body: ProfileBody, units: Units) -> Rows:
     """The working arc, the return arc, and how they join."""
     working = body.closed.arcs[0]
     ends = {"first": units.angle(working.start), "last": units.angle(working.stop)}
@@ -71,7 +70,7 @@ def _hollow(curvature: float, units: Units) -> str:
     return _("hollow with a radius from {radius}").format(radius=units.text(-1.0 / curvature))
 
 
-def _kinks(body: CamBody, units: Units) -> str:
+def _kinks(body: ProfileBody, units: Units) -> str:
     """How a path closes that was not designed to."""
     if not body.kinks:
         return _("closed without a kink")
@@ -83,7 +82,7 @@ def _kinks(body: CamBody, units: Units) -> str:
     return text.format(kink=units.angle(abs(worst.kink), 6), places=places)
 
 
-def _bends(body: CamBody, units: Units) -> Rows:
+def _bends(body: ProfileBody, units: Units) -> Rows:
     """Undercut, and the roller that would be too large."""
     most, at = body.greatest_roller
     least = most - body.roller
@@ -114,7 +113,7 @@ def _stretch(one: Undercut) -> str:
     return _("{first:.6g} to {last:.6g}").format(first=start, last=stop)
 
 
-def _scalars(body: CamBody) -> dict[str, Scalar]:
+def _scalars(body: ProfileBody) -> dict[str, Scalar]:
     most, at = body.greatest_roller
     scalars = {
         "cam_closed": Scalar(int(body.closed.whole), "1"),

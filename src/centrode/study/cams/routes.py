@@ -7,7 +7,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from centrode.cams.comparison import cam_routes
+from centrode.cams.cam import cam_routes
 from centrode.locale import _, ngettext
 from centrode.model.cams.description import Cam
 from centrode.sheets.sheet import Scalar

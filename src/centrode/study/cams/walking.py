@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-from centrode.cams.profiles.bodies import CamBody, cam_body
-from centrode.cams.profiles.tables import count_of, shoe_dataset, wheel_of
-from centrode.cams.wheel.rolling import Rolling, rolling
-from centrode.cams.wheel.walking import Mover
+from centrode.cams.profiles import ProfileBody, cam_body
+from centrode.cams.results import count_of, shoe_dataset, wheel_of
+from centrode.cams.walking_wheel import WheelMover, WheelRolling, rolling
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.cams.description import Cam
@@ -47,7 +46,7 @@ def walking_part(cam: Cam, asked: Asked) -> CamPart | None:
     )
 
 
-def uneven(body: CamBody, wheel: Mover) -> list[tuple[float, float]]:
+def uneven(body: ProfileBody, wheel: WheelMover) -> list[tuple[float, float]]:
     """Stretches [rad] of a standing leg on which the profile is undercut: the roller leaves its path there."""
     found = []
     for one in body.undercuts:
@@ -58,7 +57,7 @@ def uneven(body: CamBody, wheel: Mover) -> list[tuple[float, float]]:
     return sorted(found)
 
 
-def _failures(wheel: Mover, proof: Rolling, units: Units) -> tuple[str, ...]:
+def _failures(wheel: WheelMover, proof: WheelRolling, units: Units) -> tuple[str, ...]:
     """What keeps the wheel from walking."""
     failures = []
     if proof.clearance < -DUG * wheel.height:
@@ -75,7 +74,7 @@ def _failures(wheel: Mover, proof: Rolling, units: Units) -> tuple[str, ...]:
     return tuple(failures)
 
 
-def _travel(wheel: Mover, units: Units) -> Rows:
+def _travel(wheel: WheelMover, units: Units) -> Rows:
     half, rates = units.angle(wheel.half), wheel.rates
     uneven = _("dX/dφ {least} at {least_at} to {greatest} at {greatest_at}, ratio {ratio:.6g}")
     return [
@@ -100,7 +99,7 @@ def _travel(wheel: Mover, units: Units) -> Rows:
     ]
 
 
-def _shoe(wheel: Mover, units: Units) -> Rows:
+def _shoe(wheel: WheelMover, units: Units) -> Rows:
     bend, at = wheel.shoe.least_bend
     gap = _("and {gap} between them") if wheel.print_gap >= 0 else _("overlapping by {gap}")
     prints = _("{length} long").format(length=units.text(wheel.print_length))
@@ -115,7 +114,7 @@ def _shoe(wheel: Mover, units: Units) -> Rows:
     ]
 
 
-def _proof(wheel: Mover, proof: Rolling, units: Units, cut: list[tuple[float, float]]) -> Rows:
+def _proof(wheel: WheelMover, proof: WheelRolling, units: Units, cut: list[tuple[float, float]]) -> Rows:
     level = _("the shoe put on the ground holds the hub level to {error}")
     slip = _("the shoe's point at the contact moves at {slip:.1g} of the hub's speed")
     arcs = _("arc of the shoe {arc}, ground travelled {ground}, apart by {apart}")
@@ -148,7 +147,7 @@ def _proof(wheel: Mover, proof: Rolling, units: Units, cut: list[tuple[float, fl
     return rows
 
 
-def _scalars(wheel: Mover, proof: Rolling) -> dict[str, Scalar]:
+def _scalars(wheel: WheelMover, proof: WheelRolling) -> dict[str, Scalar]:
     return {
         "walking_legs": Scalar(wheel.legs, "1"),
         "walking_hub_height": Scalar(wheel.height, "m"),

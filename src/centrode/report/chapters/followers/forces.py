@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.forces.acting import follower_forces
+from centrode.cams.followers.forces import follower_forces
 from centrode.locale import _
 from centrode.present.cams.forces import cam_forces_figure
 from centrode.render.document.blocks import Block, Chapter, Formula, Paragraph, Table

@@ -8,16 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.forces.keeping import least_push
-from centrode.cams.followers.forces.meeting_of import meeting_of
+from centrode.cams.followers.forces import least_push, meeting_of
 from centrode.locale import _
 from centrode.report.chapters.followers.parts import ROUNDED
 from centrode.report.chapters.followers.profile_checks import angles
 from centrode.report.telling import measured
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.forces.acting import FollowerForces
-    from centrode.cams.followers.forces.demand import Burden
+    from centrode.cams.followers.forces import Burden, FollowerForces
     from centrode.render.document.blocks import Check
 
 NODES = 16

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.forces.acting import FollowerForces
-from centrode.cams.followers.forces.meeting_of import meeting_of
-from centrode.cams.followers.guidance import Oscillating
+from centrode.cams.followers.forces import FollowerForces, meeting_of
+from centrode.cams.followers.geometry import Oscillating
 from centrode.render.document.formulas import factor, in_si, with_unit
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.joints import joints_of
-from centrode.cams.followers.labelled import motion_names
+from centrode.cams.followers.motion import joints_of, motion_names
 from centrode.locale import _
 from centrode.present.cams.motion_drawing import cam_motion_figure
 from centrode.quantities import QUANTITIES

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.stretches import stretches
+from centrode.cams.followers.motion import stretches
 from centrode.locale import _
 from centrode.report.chapters.followers.curves import CURVES, shares_of
 from centrode.report.chapters.followers.parts import ROUNDED

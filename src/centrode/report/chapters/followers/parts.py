@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.described import bounded, follower_cam
 from centrode.cams.followers.motion import FollowerMotion, follower_motion
+from centrode.cams.followers.sizing import bounded, follower_cam
 from centrode.locale import _
 from centrode.render.document.blocks import Block, Check, Section, Table
 from centrode.render.document.rows import told
@@ -19,7 +19,7 @@ from centrode.views.columns import rows_shown
 if TYPE_CHECKING:
     import xarray as xr
 
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.report.study import ReportStudy
 
 MEGA = 1e-6

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from centrode.cams.followers.described import stretches_text
+from centrode.cams.followers.sizing import stretches_text
 from centrode.locale import _
 from centrode.present.cams.bodies import cam_body_figures
 from centrode.present.cams.plate_curves import plate_curves_figure
@@ -17,7 +17,7 @@ from centrode.report.chapters.followers.profile_checks import by_formulas, by_in
 from centrode.report.chapters.followers.spelled import Spelled
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.report.study import ReportStudy
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.forces.meeting_of import meeting_of
+from centrode.cams.followers.forces import meeting_of
 from centrode.locale import _
 from centrode.render.document.blocks import Check
 from centrode.report.chapters.followers.parts import ROUNDED
@@ -15,7 +15,7 @@ from centrode.report.chapters.followers.textbook import Array, Textbook
 from centrode.report.telling import measured
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.report.study import ReportStudy
 
 PLACES = 721

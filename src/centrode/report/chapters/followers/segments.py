@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from centrode.cams.followers.comparing import peaks_of
+from centrode.cams.followers.motion import peaks_of
 from centrode.laws.segments import THROUGH_POINTS
 from centrode.locale import _
 from centrode.render.document.blocks import Block, Formula, Paragraph, Table

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.described import admissible_of, bounded, least_cam
-from centrode.cams.followers.layouts import layout_of
-from centrode.cams.followers.margins import exact_margin
+from centrode.cams.followers.sizing import admissible_of, bounded, exact_margin, layout_of, least_cam
 from centrode.cams.nodes import nodes_of
 from centrode.errors import CentrodeError
 from centrode.locale import _
@@ -22,7 +20,7 @@ from centrode.report.chapters.followers.profile_checks import closed_forms
 from centrode.report.chapters.followers.spelled import Spelled
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.followers.sizing import Least
     from centrode.model.cams.plate import PlateCam
     from centrode.report.study import ReportStudy

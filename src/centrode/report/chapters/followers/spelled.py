@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.guidance import Oscillating
+from centrode.cams.followers.geometry import Oscillating
 from centrode.render.document.formulas import with_unit
 from centrode.report.chapters.followers.spelled_motion import Lines, SpelledMotion
 

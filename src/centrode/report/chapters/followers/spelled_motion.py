@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.guidance import Oscillating
+from centrode.cams.followers.geometry import Oscillating
 from centrode.render.document.formulas import factor, with_unit
 from centrode.report.chapters.followers.textbook import Array, Textbook
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
     from centrode.render.document.numbers import Numbers
 
 Lines = Iterator[tuple[str, ...]]

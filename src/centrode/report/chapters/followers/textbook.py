@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.followers.contact import Face
-from centrode.cams.followers.guidance import Oscillating
+from centrode.cams.followers.geometry import Face, Oscillating
 
 if TYPE_CHECKING:
-    from centrode.cams.followers.bodies import FollowerCam
+    from centrode.cams.followers.geometry import FollowerCam
 
 Array = NDArray[np.float64]
 

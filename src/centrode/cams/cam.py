@@ -1,0 +1,256 @@
+"""A cam as a labelled result: the path of its roller's centre, with the pressure angle and the curvature."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.cams.curvature_laws import derivatives, drawn_curvature
+from centrode.cams.followers.motion import dataset_of_motion, follower_motion
+from centrode.cams.path_integration import IntegratedPath, integrated_path
+from centrode.cams.path_series import (
+    TOLERANCE,
+    Convergence,
+    ExpandedPath,
+    SeriesPath,
+    convergence,
+    half_path,
+    law_of,
+    path_of,
+    series_path,
+)
+from centrode.cams.roller_path import RollerPath, SymmetricPath, angles_of
+from centrode.errors import Status
+from centrode.kinematics.dataset import Variable, labels_of, named
+from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam, cam_text
+from centrode.model.cams.plate import PlateCam
+from centrode.version import __version__
+
+Array = npt.NDArray[np.float64]
+
+
+def cam(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None = None) -> xr.Dataset:
+    """The path of a cam's roller, by series expanded anew step by step; or the motion of a cam's follower.
+
+    Parameters
+    ----------
+    cam : Cam or PlateCam
+    samples : int
+        Evenly spaced over the range or a turn, both ends included; the description's own number, else 361.
+    at : (n,) angles of the carrier, or of the cam [rad]
+        Exactly these places instead.
+
+    Returns
+    -------
+    Dataset
+        Along `sample`, over `carrier_angle`: rho with two derivatives, the pressure angle, its sine with two
+        derivatives and its cosine, the curvature of the law and its slope, the roller's centre, the curvature of the
+        curve drawn through the neighbouring places, status (docs: cams). Beyond a stall a sample is open; at a stall
+        it is singular: its derivatives are NaN. Of a cam that is given by its follower's lift: along `sample`, over
+        `cam_angle`, the lift with four derivatives by the cam's angle, and with a speed of the cam those in time
+        (docs: cam followers).
+
+    Raises
+    ------
+    InputError
+        As `path_of`.
+    """
+    phi = angles_of(cam, samples, at)
+    if isinstance(cam, PlateCam):
+        return dataset_of_motion(cam, follower_motion(cam), phi)
+    path = path_of(cam)
+    return dataset_of_path(cam, path, phi)
+
+
+def dataset_of_path(cam: Cam, path: RollerPath, phi: Array) -> xr.Dataset:
+    """The labelled result of a path at angles of the carrier [rad]."""
+    along = ("sample",)
+    values = _values(path, phi)
+    data = {name: named(name, along, found) for name, found in values.items()}
+    centre = np.stack([values["path_radius"] * np.sin(phi), values["path_radius"] * np.cos(phi)], axis=-1)
+    data["roller_centre"] = named("roller_centre", ("sample", "axis"), centre)
+    data["status"] = status_of(path, phi)
+    coordinates = {"carrier_angle": named("carrier_angle", along, phi), "axis": labels_of(("x", "y"))}
+    return xr.Dataset(data, coords=coordinates, attrs=_path_facts(cam, path))
+
+
+def _values(path: RollerPath, phi: Array) -> dict[str, Array]:
+    with np.errstate(all="ignore"):
+        radius, sine = (
+            np.where(np.isfinite(one), one, np.nan) for one in (path.radius(phi, 2), path.sine(phi, 2))
+        )
+        curvature = path.curvature(phi, 1)
+        gamma = path.pressure_angle(phi)
+    return {
+        "path_radius": radius[0],
+        "path_radius_slope": radius[1],
+        "path_radius_second": radius[2],
+        "cam_pressure_angle": gamma,
+        "pressure_sine": sine[0],
+        "pressure_sine_slope": sine[1],
+        "pressure_sine_second": sine[2],
+        "pressure_cosine": np.cos(gamma),
+        "law_curvature": curvature[0],
+        "law_curvature_slope": curvature[1],
+        "drawn_curvature": drawn_curvature(phi, radius[0]),
+    }
+
+
+def status_of(path: RollerPath, phi: Array) -> Variable:
+    """Status of every place: open beyond the path, singular at a stall."""
+    known = np.isfinite(path.radius(phi)[0])
+    status = np.where(known, np.int8(Status.OK), np.int8(Status.OPEN)).astype(np.int8)
+    if path.stall is not None:
+        status[known & (np.abs(np.abs(path.pressure_angle(phi)) - math.pi / 2) == 0)] = Status.SINGULAR
+    dimensions, values, attributes = named("status", ("sample",), status)
+    attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
+    return dimensions, values, attributes
+
+
+def _path_facts(cam: Cam, path: RollerPath) -> dict[str, Any]:
+    return {
+        "title": cam.title,
+        "cam": cam_text(cam),
+        "version": __version__,
+        "start": path.start,
+        "stop": path.stop,
+        "stall": math.nan if path.stall is None else path.stall,
+    }
+
+
+# The three routes to a roller's path beside each other: one series, series expanded anew, an integrator.
+
+ROUTES = ("series", "steps", "integrated")
+"""(a) the power series about phi = 0, cut; (b) series expanded anew step by step; (c) the integrator."""
+
+
+@dataclass(frozen=True)
+class Routes:
+    """The path by the three routes, each for phi >= 0 only where the cam is symmetric."""
+
+    series: SeriesPath
+    steps: ExpandedPath
+    integrated: IntegratedPath
+    convergence: Convergence
+
+
+def routes_of(cam: Cam, terms: int | None = None) -> Routes:
+    """The path of a cam by the three routes; `terms` of the series, the description's own number if left out."""
+    law, start = law_of(cam), (cam.start.radius, cam.start.pressure_angle)
+    ends = cam.range.start, cam.range.stop
+    count = cam.study.terms if terms is None else terms
+    steps = half_path(cam)
+    return Routes(
+        series_path(law, *start, *ends, count),
+        steps,
+        integrated_path(law, *start, *ends),
+        convergence(law, *start),
+    )
+
+
+def cam_routes(
+    cam: Cam, samples: int | None = None, at: npt.ArrayLike | None = None, terms: int | None = None
+) -> xr.Dataset:
+    """A roller's path by three routes, and what parts them.
+
+    Parameters
+    ----------
+    cam : Cam
+    samples, at
+        As `cam`.
+    terms : int
+        The series is cut after a_terms; the description's own number (20) if left out.
+
+    Returns
+    -------
+    Dataset
+        Along `sample` and `route` ("series", "steps", "integrated"): rho, the sine of the pressure angle, its slope.
+        Along `sample`: rho by formula (16) and its difference from (15), which vanishes for the whole series; the
+        error of rho that the next four terms foretell (NaN outside the circle of convergence, where there is no
+        error to be foretold); the true differences from the route by steps. Attributes tell the circle of convergence.
+
+    Raises
+    ------
+    InputError
+        As `path_of`; a number of terms out of bounds.
+    """
+    phi = angles_of(cam, samples, at)
+    routes = routes_of(cam, terms)
+    places, sign = (
+        (np.abs(phi), np.sign(phi) + (phi == 0)) if cam.curvature.symmetric else (phi, np.ones_like(phi))
+    )
+    radii, sines, slopes = zip(
+        *((one.radius(places)[0], sign * one.sine(places)[0], one.sine(places, 1)[1]) for one in _three(routes)),
+        strict=True,
+    )  # fmt: skip
+    by_slope = routes.series.radius_by_slope(places)
+    alone = {
+        "radius_by_slope": by_slope,
+        "parting": by_slope - radii[0],
+        "foretold_error": foretold_error(routes, places),
+        "series_error": radii[0] - radii[1],
+        "routes_difference": radii[2] - radii[1],
+    }
+    across = {"path_radius": radii, "pressure_sine": sines, "pressure_sine_slope": slopes}
+    data = {name: named(name, ("route", "sample"), np.stack(found)) for name, found in across.items()}
+    data |= {name: named(name, ("sample",), found) for name, found in alone.items()}
+    data["status"] = status_of(SymmetricPath(routes.steps) if cam.curvature.symmetric else routes.steps, phi)
+    coordinates = {"carrier_angle": named("carrier_angle", ("sample",), phi), "route": labels_of(ROUTES)}
+    return xr.Dataset(data, coords=coordinates, attrs=_comparison_facts(cam, routes, data))
+
+
+def _three(routes: Routes) -> tuple[SeriesPath, ExpandedPath, IntegratedPath]:
+    return routes.series, routes.steps, routes.integrated
+
+
+def foretold_error(routes: Routes, phi: Array) -> Array:
+    """Error of rho [m] by formula (15) that the next terms of the series foretell; NaN outside the circle.
+
+    The sizes of the next four terms of eta' and of cos(gamma), over K, and a geometric series behind them.
+    """
+    series, radius = routes.series, routes.convergence.radius
+    distance = np.abs(phi)
+    slope = np.zeros_like(distance)
+    value = np.zeros_like(distance)
+    with np.errstate(all="ignore"):
+        for n, left_out in enumerate(series.following, series.terms + 1):
+            slope = slope + n * abs(left_out) * distance ** (n - 1)
+            value = value + abs(left_out) * distance**n
+        ratio = (
+            (distance / radius) ** len(series.following) if math.isfinite(radius) else np.zeros_like(distance)
+        )
+        tangent = np.abs(np.tan(series.pressure_angle(phi)))
+        error = (slope + tangent * value) / derivatives(series.law, phi)[0] / (1.0 - ratio)
+    return np.where(ratio < 1.0, error, np.nan)
+
+
+def _comparison_facts(cam: Cam, routes: Routes, data: dict[str, Any]) -> dict[str, Any]:
+    circle, steps = routes.convergence, routes.steps
+    place = complex(math.nan, math.nan) if circle.singularity is None else circle.singularity
+    radii = data["path_radius"][1]
+    with np.errstate(all="ignore"):
+        apart = np.abs(radii[2] / radii[1] - 1.0)
+    return {
+        "title": cam.title,
+        "cam": cam_text(cam),
+        "version": __version__,
+        "terms": routes.series.terms,
+        "radius_of_convergence": circle.radius,
+        "radius_by_coefficients": circle.estimate,
+        "singularity": [place.real, place.imag],
+        "series_from": routes.series.start,
+        "series_to": routes.series.stop,
+        "tolerance": TOLERANCE,
+        "steps": len(steps.centres),
+        "order": steps.order,
+        "worst_difference": float(np.nanmax(apart, initial=0.0)),
+        "stall": math.nan if steps.stall is None else steps.stall,
+        "stall_integrated": math.nan if routes.integrated.stall is None else routes.integrated.stall,
+    }

@@ -1,0 +1,254 @@
+"""Profiles of cams and shoes, and the hub's travel, as labelled results."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from centrode.cams.cam import status_of
+from centrode.cams.contact_stress import Greatest, LineContact, Stressed, stress_along
+from centrode.cams.followers.manufacture import follower_profile
+from centrode.cams.followers.sizing import follower_cam
+from centrode.cams.parameter_choice.search import contact_of, working_arc
+from centrode.cams.path_series import path_of
+from centrode.cams.profiles import ProfileBody, cam_body
+from centrode.cams.return_arc import ClosedPath
+from centrode.cams.roller_path import Array, angles_of, frames, stalls_of
+from centrode.cams.walking_wheel import Shoe, WheelMover, mover
+from centrode.errors import InputError
+from centrode.kinematics.dataset import named
+from centrode.locale import _
+from centrode.model import limits
+from centrode.model.cams.description import Cam
+from centrode.model.cams.files import AnyCam, curved
+from centrode.model.cams.plate import PlateCam
+
+DEFAULT_SAMPLES = 361
+AXES = ["x", "y"]
+SAME = 1e-9
+"""Angles [rad] that are nearer than this are one."""
+
+
+def cam_profile(cam: AnyCam, samples: int | None = None, *, groove: bool = False) -> xr.Dataset:
+    """The closed profile of a cam.
+
+    Parameters
+    ----------
+    cam : Cam or PlateCam
+    samples : int
+        Evenly spaced over the turn, both ends included, joints added; the description's own number, else 361.
+    groove : bool
+        Also the outer wall of a groove; not of a cam that is given by its follower's lift.
+
+    Returns
+    -------
+    Dataset
+        Over `sample`: `carrier_angle` phi, which `part` ("working", "return"), the path of the roller's centre and
+        the profile in the cam's axes and in polar form, pressure angle, curvatures (docs: cam-profiles). Of a cam that
+        is given by its follower's lift: over `cam_angle` (docs: cam-follower-profiles).
+
+    Raises
+    ------
+    InputError, MotionError
+        As the description: no roller, one too large for a hollow of the groove, bounds that cannot be kept, a
+        path that does not close.
+    """
+    if isinstance(cam, PlateCam):
+        if groove:
+            what = _("a groove is made for a cam that is given by its roller's path")
+            raise InputError("groove", what, _("leave it out"))
+        tool = None if cam.tool is None else cam.tool.radius
+        return follower_profile(follower_cam(cam), angles_of(cam, samples), tool)
+    return profile_dataset(cam_body(cam), count_of(cam, samples), groove=groove)
+
+
+def profile_dataset(body: ProfileBody, samples: int, *, groove: bool = False) -> xr.Dataset:
+    """`cam_profile` of a body."""
+    closed = body.closed
+    phi = _angles(closed, samples)
+    frame, inner = frames(closed, phi), body.profile(phi)
+    _places, arcs = closed.located(phi)
+    kinds = np.array([arc.kind for arc in closed.arcs])
+    variables = {
+        "carrier_angle": named("carrier_angle", ("sample",), phi),
+        "part": ("sample", kinds[arcs]),
+        "roller_centre": named("roller_centre", ("sample", "axis"), frame.place),
+        "path_radius": named("path_radius", ("sample",), frame.radius),
+        "profile": named("profile", ("sample", "axis"), inner.place),
+        "profile_radius": named("profile_radius", ("sample",), inner.polar_radius),
+        "profile_angle": named("profile_angle", ("sample",), inner.polar_angle),
+        "cam_pressure_angle": named("cam_pressure_angle", ("sample",), frame.pressure_angle),
+        "path_curvature": named("path_curvature", ("sample",), frame.curvature),
+        "profile_bend": named("profile_bend", ("sample",), inner.bend),
+    }
+    if groove:
+        body.fit_groove()
+        variables["groove"] = named("groove", ("sample", "axis"), body.profile(phi, "outer").place)
+    return xr.Dataset(variables, coords={"axis": AXES}, attrs={"roller": body.roller})
+
+
+def _angles(closed: ClosedPath, samples: int) -> Array:
+    """Evenly spaced angles and the joints; a joint that a sample lies on to rounding is the joint."""
+    even = np.linspace(closed.start, closed.stop, samples)
+    joints = np.array([joint.at for joint in closed.joints[:-1]])
+    apart = np.abs(even[:, None] - joints).min(axis=1, initial=math.inf) > SAME
+    return np.sort(np.concatenate([even[apart], joints]))
+
+
+def shoe_profile(cam: Cam, samples: int | None = None) -> xr.Dataset:
+    """The shoe of a walking wheel and the travel of its hub.
+
+    Parameters
+    ----------
+    samples : int
+        Evenly spaced over the arc on which a leg stands, both ends included.
+
+    Returns
+    -------
+    Dataset
+        Over `sample`: `carrier_angle` of the leg, the profile in the leg's axes (from the roller's centre, y along the
+        leg) and in polar form, the paper's Y1 and Y2, travel and dX/dphi of the hub.
+
+    Raises
+    ------
+    InputError, MotionError
+        As `walking_wheel`.
+    """
+    return shoe_dataset(walking_wheel(cam), count_of(cam, samples))
+
+
+def shoe_dataset(wheel: WheelMover, samples: int) -> xr.Dataset:
+    """`shoe_profile` of a wheel."""
+    shoe: Shoe = wheel.shoe
+    phi: Array = np.linspace(-wheel.half, wheel.half, samples)
+    angle, radius = shoe.polar(phi)
+    first, second = shoe.parts(phi)
+    columns = {
+        "carrier_angle": phi,
+        "shoe_radius": radius,
+        "shoe_angle": angle,
+        "shoe_bend": shoe.bend(phi),
+        "shoe_along": first,
+        "shoe_upright": second,
+        "hub_travel": wheel.travel(phi),
+        "hub_rate": wheel.rate(phi),
+    }
+    variables = {name: named(name, ("sample",), values) for name, values in columns.items()}
+    variables["shoe_profile"] = named("shoe_profile", ("sample", "axis"), shoe.place(phi))
+    return xr.Dataset(variables, coords={"axis": AXES}, attrs={"hub_height": wheel.height})
+
+
+def walking_wheel(cam: AnyCam) -> WheelMover:
+    """The walking wheel of a description.
+
+    Raises
+    ------
+    InputError
+        No `[mover]`, a pressure angle at phi = 0 that makes the shoe singular, too few legs, and what a profile needs.
+    MotionError
+        A shoe with a cusp; no return arc within the bounds.
+    """
+    return wheel_of(curved(cam), cam_body(cam))
+
+
+def wheel_of(cam: Cam, body: ProfileBody) -> WheelMover:
+    """`walking_wheel` on a body that is known."""
+    if cam.mover is None:
+        raise InputError("[mover]", _("a walking wheel needs legs"), _("give [mover] legs and post"))
+    return mover(body.closed, cam.mover.legs, cam.mover.post, body.roller)
+
+
+def count_of(cam: Cam, samples: int | None) -> int:
+    """The number of samples asked for; InputError if it is none."""
+    asked = samples if samples is not None else cam.study.samples
+    count = DEFAULT_SAMPLES if asked is None else asked
+    if isinstance(count, bool) or not 2 <= count <= limits.SAMPLES:
+        raise InputError(
+            _("samples"),
+            _("{samples} samples were asked for").format(samples=count),
+            _("ask for {least} to {most}").format(least=2, most=limits.SAMPLES),
+        )
+    return count
+
+
+# Contact stress of a described cam as a labelled result.
+
+
+def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
+    """Contact of roller and cam over the working arc.
+
+    Parameters
+    ----------
+    cam : Cam
+        With `[contact]`.
+    samples : int
+        Evenly spaced over the working arc, both ends included; the description's own number, else 361.
+
+    Returns
+    -------
+    Dataset
+        By the angle `carrier_angle`: `contact_stress`, `contact_stress_by_source`, `contact_shear`,
+        `contact_depth`, `contact_half_width` and `cam_curvature_radius`, NaN where the cam is undercut or the
+        follower has stalled. Its attributes hold the greatest stress by both formulas with its angle, of a symmetric
+        cam the positive one; infinite where the working arc ends in a stall.
+
+    Raises
+    ------
+    InputError
+        No contact, a curvature that no cam has; a strip wider than the roller, for which the formulas do not hold.
+    """
+    cam = curved(cam)
+    contact = contact_of(cam)
+    if contact is None:
+        what = _("the contact stress needs the force, the width and the materials")
+        raise InputError("[contact]", what, _("write a table [contact]"))
+    path = path_of(cam)
+    low, high = working_arc(cam)
+    ends = max(low, path.start), min(high, path.stop)
+    phi = np.linspace(*ends, len(angles_of(cam, samples)))
+    looked = (0.0, ends[1]) if cam.curvature.symmetric else ends
+    found = stress_along(path, contact, phi, looked)
+    stalls = [one for one in stalls_of(path) if one in looked]
+    if stalls:  # cos gamma runs to zero
+        endless = Greatest(math.inf, stalls[-1])
+        found = replace(found, greatest=endless, greatest_by_source=endless)
+    _check_strip(found, contact)
+    values = {
+        "contact_stress": found.strip.pressure,
+        "contact_stress_by_source": found.by_source,
+        "contact_shear": found.strip.shear,
+        "contact_depth": found.strip.depth,
+        "contact_half_width": found.strip.half_width,
+        "cam_curvature_radius": found.cam_radius,
+    }
+    attributes: dict[str, Any] = {
+        "title": cam.title,
+        "greatest_stress": found.greatest.value,
+        "greatest_stress_at": found.greatest.angle,
+        "greatest_stress_by_source": found.greatest_by_source.value,
+        "greatest_stress_by_source_at": found.greatest_by_source.angle,
+        "contact_modulus": contact.modulus,
+    }
+    if cam.contact is not None and cam.contact.admissible is not None:
+        attributes["admissible_stress"] = cam.contact.admissible
+    data = {name: named(name, ("sample",), one) for name, one in values.items()}
+    data["status"] = status_of(path, phi)
+    coordinates = {"carrier_angle": named("carrier_angle", ("sample",), phi)}
+    return xr.Dataset(data, coords=coordinates, attrs=attributes)
+
+
+def _check_strip(found: Stressed, contact: LineContact) -> None:
+    """Raise InputError where all strips are wider than the roller: a force or modulus in other units."""
+    widths = 2.0 * found.strip.half_width
+    known = widths[np.isfinite(widths)]
+    if known.size and float(known.min()) > 2.0 * contact.roller_radius:
+        what = _("the strip of contact would be {width:.4g} mm wide, wider than the roller").format(
+            width=1e3 * float(known.min())
+        )
+        raise InputError(
+            "[contact]", what, _('check the units: a force such as "3 kN", an elasticity "206 GPa"')
+        )
