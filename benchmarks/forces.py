@@ -17,7 +17,7 @@ from centrode.dynamics.kinetostatics.applied_forces import pace_of
 from centrode.dynamics.kinetostatics.reactions import find
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer, reduction_of
-from centrode.kinematics.ready import ready
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import asked_span, solve
 
 SAMPLES = 361

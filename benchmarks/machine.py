@@ -15,8 +15,8 @@ from benchmarks.table import Row
 from benchmarks.timing import best_times
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.kinematics.evaluate import FixedSigns
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.plan_evaluation import FixedSigns
+from centrode.kinematics.prepared import Ready, ready
 
 CACHED = 8192
 """Numbers in an array of which several stay in the cache nearest to the processor."""

@@ -14,7 +14,7 @@ import centrode as ct
 from benchmarks import peer
 from benchmarks.table import Row
 from benchmarks.timing import best_times
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import asked_span, solve
 from centrode.structure.dimensions import Dimensions, dimensions_of
 

@@ -16,9 +16,8 @@ from centrode.algebra.expressions import Node, variable
 from centrode.algebra.graphs import Graph
 from centrode.algebra.jets import Jet
 from centrode.kinematics.compiled.variables import NODE_JETS, PARAMETER, varied_of
-from centrode.kinematics.evaluate import FixedSigns
-from centrode.kinematics.layout import rotor_of_angle
-from centrode.kinematics.ready import ready
+from centrode.kinematics.plan_evaluation import FixedSigns, rotor_of_angle
+from centrode.kinematics.prepared import ready
 from centrode.structure.dimensions import dimensions_of
 
 Array = npt.NDArray[np.float64]

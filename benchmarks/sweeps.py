@@ -15,8 +15,8 @@ import centrode as ct
 from benchmarks.plans import SIX
 from benchmarks.table import Promise, Row
 from benchmarks.timing import best_times, paired_times, ratio, two_threads
-from centrode.kinematics.compiled.many import solve_many
-from centrode.kinematics.ready import ready
+from centrode.kinematics.compiled.batch import solve_many
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import asked_span, solve
 from centrode.structure.dimensions import dimensions_of
 

@@ -21,7 +21,7 @@ from centrode.algebra.expressions import Node
 from centrode.algebra.graph_arrays import run_on_arrays
 from centrode.algebra.scans import Scan, call_of, room_of
 from centrode.kinematics.compiled.variables import PARAMETER
-from centrode.kinematics.ready import ready
+from centrode.kinematics.prepared import ready
 from centrode.sweeps.limits import KERNEL_BUFFER
 
 if machine_code.PRESENT:

@@ -15,10 +15,10 @@ from centrode.analysis.graphic.board import Board
 from centrode.analysis.graphic.instant import Driven, drawing_of, driven_rates, stages
 from centrode.analysis.graphic.stage import Drawing, Stage
 from centrode.geometry.plane import Pose
-from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.motion import dataset_of
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import solve
-from centrode.kinematics.spans import span_at
 from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]

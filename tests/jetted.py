@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose, subtract, turned
-from centrode.kinematics.paths import JETS
+from centrode.kinematics.path import JETS
 from centrode.kinematics.solve import Solved
 from centrode.structure.constraints import Positions
 

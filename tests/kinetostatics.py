@@ -10,8 +10,8 @@ from centrode.dynamics.kinetostatics.equations import Scheme
 from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
-from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import ready
+from centrode.kinematics.motion import dataset_of
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import asked_span, solve
 from centrode.structure.plan import Structure, structure_of
 

@@ -19,9 +19,9 @@ from tools.campaigns.columns import slide as slide
 
 import centrode as ct
 from centrode.algebra.jets import Jet
-from centrode.kinematics.evaluate import FixedSigns, Kinematics
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.path import JETS
+from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.structure.dimensions import Dimensions
 

@@ -12,9 +12,9 @@ import numpy.typing as npt
 import xarray as xr
 
 import centrode as ct
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, solve
-from centrode.kinematics.spans import span_at
 from centrode.structure.dimensions import Dimensions
 from mechanisms import STEP, Parts, nudged, parts_of
 

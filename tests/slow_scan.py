@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.kinematics.evaluate import FixedSigns, Kinematics
+from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics
 from centrode.structure.constraints import Positions
 
 BASE = 4000

@@ -13,7 +13,7 @@ from centrode.equations.derivation import Equations
 from centrode.equations.formulas import Formula
 from centrode.equations.groups import Solution
 from centrode.equations.letters import Letter
-from centrode.kinematics.paths import JETS
+from centrode.kinematics.path import JETS
 
 Values = dict[Letter, Any]
 

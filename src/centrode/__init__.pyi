@@ -39,10 +39,10 @@ from .model.classics import slider_crank as slider_crank
 # Structure and motion
 from .study.checking import check as check
 from .kinematics.motion import motion as motion
-from .kinematics.several_drives.coefficients import kinematic_coefficients as kinematic_coefficients
-from .kinematics.several_drives.reach import limits as limits
-from .kinematics.several_drives.reach import Limits as Limits
-from .kinematics.several_drives.region import reachable_region as reachable_region
+from .kinematics.several_inputs.coefficients import kinematic_coefficients as kinematic_coefficients
+from .kinematics.several_inputs.limits import limits as limits
+from .kinematics.several_inputs.limits import Limits as Limits
+from .kinematics.several_inputs.region import reachable_region as reachable_region
 from .analysis.rotatability import rotatability as rotatability
 from .analysis.rotatability import Rotatability as Rotatability
 from .analysis.repair import repair as repair

@@ -15,10 +15,10 @@ from centrode.analysis.graphic.diagrams import diagrams
 from centrode.analysis.graphic.instant import drawing_of, driven_rates
 from centrode.analysis.graphic.integrated import STEPS
 from centrode.analysis.graphic.stage import Edge
-from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import ready
+from centrode.kinematics.motion import dataset_of
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import solve
-from centrode.kinematics.spans import span_at
 from drawn import EPS, OPERATIONS, answers, errors, errors_of
 from growing import descriptions, mechanism_of
 from growing_higher import higher_descriptions

@@ -18,7 +18,7 @@ from centrode.analysis.repair import DEFAULT_ANGLE, ENOUGH, Repair
 from centrode.analysis.repairing.candidates import Candidates
 from centrode.analysis.repairing.impossible import impossible
 from centrode.analysis.repairing.varying import varyings
-from centrode.kinematics.ready import ready
+from centrode.kinematics.prepared import ready
 from mechanisms import four_bar
 
 Array = npt.NDArray[np.float64]

@@ -15,7 +15,7 @@ import centrode as ct
 from burdened import burdened
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import Moving, State
-from centrode.kinematics.ready import ready
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import asked_span, solve
 from growing import KINDS, descriptions, grown, mechanism_of
 from growing_higher import HIGHER, grown_higher

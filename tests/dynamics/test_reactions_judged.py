@@ -15,9 +15,9 @@ from centrode.dynamics.kinetostatics.reactions import checks_of, find
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import Moving, State
 from centrode.dynamics.steady_motion.steady import SETTLED
-from centrode.kinematics.ready import ready
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import asked_span, solve
-from centrode.kinematics.spans import span_at
 from centrode.structure.constraints import PointInLink
 from centrode.structure.rank import jacobian
 from mechanisms import EPS, parts_of

@@ -14,8 +14,8 @@ import centrode as ct
 from centrode.algebra.jets import Jet
 from centrode.dynamics.masses import masses_of
 from centrode.dynamics.reduction import Reducer
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import ready
+from centrode.kinematics.path import JETS
+from centrode.kinematics.prepared import ready
 from mechanisms import EPS, OPERATIONS, conditioning, on_branch, solve_evenly
 
 Array = npt.NDArray[np.float64]

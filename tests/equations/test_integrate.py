@@ -18,7 +18,7 @@ from centrode.equations.cauchy import cauchy_form
 from centrode.equations.courses import STRIDE
 from centrode.equations.integrated import Scaled
 from centrode.equations.integration import NUDGE, adaptive_steps
-from centrode.kinematics.ready import ready
+from centrode.kinematics.prepared import ready
 from growing import descriptions, mechanism_of
 from mechanisms import EPS, four_bar
 from samples import few

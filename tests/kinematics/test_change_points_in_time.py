@@ -14,7 +14,7 @@ import centrode as ct
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.kinematics.pace import OFF_GRID, Pace, nearest_node
+from centrode.kinematics.path import OFF_GRID, TimeScale, nearest_node
 from mechanisms import EPS, events, point, statuses
 
 Array = npt.NDArray[np.float64]
@@ -150,8 +150,8 @@ def test_a_limit_in_a_quick_move_after_a_rest_is_found() -> None:
         assert abs(abs(a - c) - 1.2) <= 8 * EPS * (1.0 + 300 * 5)
 
 
-def rates(of: Callable[[Array], Array]) -> Pace:
-    return Pace.of(of)
+def rates(of: Callable[[Array], Array]) -> TimeScale:
+    return TimeScale.of(of)
 
 
 PACES: dict[str, Callable[[Array], Array]] = {
@@ -190,7 +190,7 @@ def test_no_drive_makes_more_than_half_a_degree_between_nodes(name: str) -> None
 
 @pytest.mark.parametrize("time", [0.0, 0.3, 1.0, 2.0, 3.0, 4.0, -0.3, -1.0, -2.0, -2.5, 1e300, -1e-300])
 def test_the_unit_is_that_of_one_stretch(time: float) -> None:
-    pace = Pace(lambda t: 1.0 + np.abs(t), 1.0)
+    pace = TimeScale(lambda t: 1.0 + np.abs(t), 1.0)
     if abs(time) < 1e6:
         below, above = pace.nodes(time, time)[[0, -1]]
         assert below <= time <= above

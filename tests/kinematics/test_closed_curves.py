@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.kinematics import continuation
+from centrode.kinematics import change_points
 from centrode.kinematics.higher_class import tracing
 from centrode.kinematics.higher_class.newton import SMALL
-from centrode.kinematics.higher_class.tracks import Tracks
-from centrode.kinematics.paths import Path
+from centrode.kinematics.higher_class.tracing import CurveTracks
+from centrode.kinematics.path import Path
 from mechanisms import EPS, OPERATIONS, Parts, events, parts_of, statuses
 from redriven import answer
 
@@ -123,16 +123,16 @@ def case(request: pytest.FixtureRequest) -> tuple[ct.Mechanism, float]:
 
 
 @pytest.fixture
-def traced(monkeypatch: pytest.MonkeyPatch) -> list[Tracks]:
+def traced(monkeypatch: pytest.MonkeyPatch) -> list[CurveTracks]:
     """The tracks of all groups that are followed."""
-    found: list[Tracks] = []
+    found: list[CurveTracks] = []
 
     def noted(*asked: Any) -> Any:
         tracks, events = tracing.trace(*asked)
         found.append(tracks)
         return tracks, events
 
-    monkeypatch.setattr(continuation, "trace", noted)
+    monkeypatch.setattr(change_points, "trace", noted)
     return found
 
 
@@ -140,7 +140,7 @@ def start_of(mechanism: ct.Mechanism) -> float:
     return float(mechanism.drives[0].start or 0.0)
 
 
-def test_after_how_many_turns_it_closes(case: tuple[ct.Mechanism, float], traced: list[Tracks]) -> None:
+def test_after_how_many_turns_it_closes(case: tuple[ct.Mechanism, float], traced: list[CurveTracks]) -> None:
     mechanism, period = case
     start, beyond = start_of(mechanism), ((period if period < inf else 2.0) + 0.1) * tau
     ct.motion(mechanism, at=[start - beyond, start + beyond])
@@ -231,7 +231,7 @@ def test_a_result_belongs_to_its_value_alone(name: str) -> None:
             assert np.array_equal(alone[number][0], together[number][k], equal_nan=True), (number, value)
 
 
-def test_each_mechanism_of_a_batch_closes_for_itself(traced: list[Tracks]) -> None:
+def test_each_mechanism_of_a_batch_closes_for_itself(traced: list[CurveTracks]) -> None:
     mechanism = ct.Mechanism(**triad())
     lengths = np.array([0.9, 0.3, 0.5])
     values = np.array([1.0, tau + 1.0, 3.5 * tau])
@@ -243,7 +243,7 @@ def test_each_mechanism_of_a_batch_closes_for_itself(traced: list[Tracks]) -> No
             assert np.array_equal(alone[number][0], batch[number][lane], equal_nan=True), (number, length)
 
 
-def test_many_turns_are_followed_no_further_than_one(traced: list[Tracks]) -> None:
+def test_many_turns_are_followed_no_further_than_one(traced: list[CurveTracks]) -> None:
     mechanism = ct.Mechanism(**triad())
     ct.motion(mechanism, at=[1.5 * tau])
     ct.motion(mechanism, at=[160 * tau])

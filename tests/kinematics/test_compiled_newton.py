@@ -13,13 +13,12 @@ from centrode.algebra.expressions import as_node, variable
 from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.geometry.plane import dot
-from centrode.kinematics.compiled.deciding import chains_of
-from centrode.kinematics.compiled.newton.small_systems import inverse
+from centrode.kinematics.compiled.newton import inverse
+from centrode.kinematics.compiled.path_following import NODES, beginnings, way_of
+from centrode.kinematics.compiled.trace import chains_of
 from centrode.kinematics.compiled.variables import FIRST, PARAMETER, SAMPLE, STEP
-from centrode.kinematics.compiled.walks.beginnings import beginnings
-from centrode.kinematics.compiled.walks.ways import NODES, way_of
-from centrode.kinematics.higher_class.system import System
-from centrode.kinematics.ready import ready
+from centrode.kinematics.higher_class.system import GroupSystem
+from centrode.kinematics.prepared import ready
 from centrode.structure.dimensions import dimensions_of
 from growing_higher import grown_higher
 from mechanisms import EPS
@@ -76,7 +75,7 @@ def test_chains_are_the_positions_of_their_free_coordinates(name: str) -> None:
         equations = prepared.structure.groups[group].equations
         posture = chain.posture(at)
         found = chain.positions(at, posture, [0.0] * chain.pattern.free)
-        system = System(chain.group, numbers, at, 1)
+        system = GroupSystem(chain.group, numbers, at, 1)
         allowed = 16 * EPS * len(equations)
         assert np.abs(system.state_of(found) - system.state_of(at)).max() <= allowed * max(1.0, numbers.scale)
         for link, (cosine, sine) in posture.rotors.items():

@@ -10,10 +10,9 @@ from hypothesis import assume, given, settings
 import centrode as ct
 from centrode.algebra.jets import Jet
 from centrode.errors import InputError
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.path import JETS, span_at
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import solve
-from centrode.kinematics.spans import span_at
 from growing_higher import higher_descriptions
 from jetted import jet_positions
 from mechanisms import EPS, OPERATIONS

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.kinematics.ready import ready
-from centrode.kinematics.several_drives.holding import held_path, starting_at
+from centrode.kinematics.prepared import ready
+from centrode.kinematics.several_inputs.limits import held_path, starting_at
 from drives import apart, five_bar
 from mechanisms import EPS, four_bar
 

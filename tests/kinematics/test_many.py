@@ -8,8 +8,8 @@ import xarray as xr
 
 import centrode as ct
 from centrode.algebra import machine_code
-from centrode.kinematics.compiled import many
-from centrode.kinematics.ready import ready
+from centrode.kinematics.compiled import batch
+from centrode.kinematics.prepared import ready
 from centrode.structure.groups import Newton
 
 pytestmark = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
@@ -19,7 +19,7 @@ def both(mechanism: ct.Mechanism, path: str, share: float, samples: int) -> tupl
     """The motions with machine code, and by arrays alone."""
     vary = {path: ct.value_at(mechanism, path) * np.linspace(1.0 - share, 1.0 + share, 23)}
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(many, "WORTH_COMPILING", 1)
+        patch.setattr(batch, "WORTH_COMPILING", 1)
         found = ct.motion(mechanism, samples, vary=vary)
         patch.setattr(machine_code, "PRESENT", False)
         return found, ct.motion(mechanism, samples, vary=vary)
@@ -54,8 +54,8 @@ def test_the_bits_of_the_arrays(name: str, share: float) -> None:
 
 def test_machine_code_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
     lanes: list[int] = []
-    solve = many.solve
-    monkeypatch.setattr(many, "solve", lambda *args, **more: lanes.append(args[3]) or solve(*args, **more))
+    solve = batch.solve
+    monkeypatch.setattr(batch, "solve", lambda *args, **more: lanes.append(args[3]) or solve(*args, **more))
     both(ct.example("six-bar-press"), "links.OA.length", 0.01, 37)
     # a few for the name of the worst constraint, then all by arrays
     assert lanes[-1] == 23
@@ -63,8 +63,8 @@ def test_machine_code_is_used(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_progress_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(many, "WORTH_COMPILING", 1)
-    monkeypatch.setattr(many, "AT_ONCE", 2)
+    monkeypatch.setattr(batch, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(batch, "AT_ONCE", 2)
     calls: list[tuple[int, int]] = []
     vary = {"links.AB.length": np.linspace(3.4, 3.6, 7)}
     ct.motion(ct.example("crank-rocker"), 7, vary=vary, progress=lambda done, of: calls.append((done, of)))

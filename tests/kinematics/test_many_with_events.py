@@ -11,11 +11,11 @@ import pytest
 
 import centrode as ct
 from centrode.algebra import machine_code
-from centrode.kinematics.compiled import many
-from centrode.kinematics.compiled.events.eventful import Eventful
-from centrode.kinematics.ready import ready
+from centrode.kinematics.compiled import batch
+from centrode.kinematics.compiled.events import Eventful
+from centrode.kinematics.path import SampleGrid, span_at
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import Solved, asked_span, solve
-from centrode.kinematics.spans import Span, span_at
 from centrode.structure.dimensions import dimensions_of
 from drives import five_bar
 from growing import DYADS, grown, mechanism_of
@@ -37,7 +37,7 @@ OPEN = ct.Status.OPEN.value
 @pytest.fixture(autouse=True)
 def by_machine_code(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[int]]:
     """However few there are, machine code computes them; the mechanisms with events that it did."""
-    monkeypatch.setattr(many, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(batch, "WORTH_COMPILING", 1)
     lanes: list[int] = []
     part = Eventful._part
 
@@ -59,11 +59,11 @@ def around(places: Any) -> Array:
 def both(mechanism: ct.Mechanism, vary: Vary, at: Array | int) -> tuple[Solved, Solved]:
     """The motions with machine code, and by arrays, at places or at so many samples."""
     prepared = ready(mechanism)
-    span: Span = (
+    span: SampleGrid = (
         asked_span(prepared, at, None, None) if isinstance(at, int) else span_at(prepared.kinematics.path, at)
     )
     numbers, lanes = dimensions_of(mechanism, vary, np), len(next(iter(vary.values())))
-    return many.solve_many(prepared, span, numbers, lanes), solve(prepared, span, numbers, lanes)
+    return batch.solve_many(prepared, span, numbers, lanes), solve(prepared, span, numbers, lanes)
 
 
 def same(found: Solved, expected: Solved, off: float = 0.0) -> None:

@@ -13,13 +13,12 @@ import growing_sphere
 from centrode.algebra import machine_code
 from centrode.algebra.bends import Bent
 from centrode.algebra.jets import Jet
-from centrode.kinematics.bending import BENDS
-from centrode.kinematics.compiled import many
-from centrode.kinematics.evaluate import FixedSigns
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.compiled import batch
+from centrode.kinematics.events import BENDS
+from centrode.kinematics.path import JETS, span_at
+from centrode.kinematics.plan_evaluation import FixedSigns
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import asked_span, of_batch, solve
-from centrode.kinematics.spans import span_at
 from centrode.structure.dimensions import dimensions_of
 from growing import DYADS, grown, mechanism_of
 from mechanisms import EPS
@@ -143,13 +142,13 @@ def test_a_batch_against_the_scan() -> None:
 @pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
 @pytest.mark.parametrize("seed", [763])
 def test_machine_code_agrees(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(many, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(batch, "WORTH_COMPILING", 1)
     mechanism = narrow(seed)
     prepared, lanes = ready(mechanism), 8
     numbers = dimensions_of(mechanism, varied(mechanism, lanes, 0.02), np)
     start = prepared.kinematics.path.initial
     span = asked_span(prepared, 61, start - 1.5, start + 1.5)
-    fast, slow = (f(prepared, span, numbers, lanes) for f in (many.solve_many, solve))
+    fast, slow = (f(prepared, span, numbers, lanes) for f in (batch.solve_many, solve))
     np.testing.assert_array_equal(fast.status, slow.status)
     told = [sorted((e.lane, e.group, e.kind, e.at) for e in x.branches.events) for x in (fast, slow)]
     assert told[0] == told[1]

@@ -12,11 +12,11 @@ import centrode as ct
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, Rounded
-from centrode.kinematics.evaluate import Hooks
 from centrode.kinematics.higher_class.newton import newton
-from centrode.kinematics.higher_class.system import Motion, System
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.higher_class.system import GroupMotion, GroupSystem
+from centrode.kinematics.path import JETS
+from centrode.kinematics.plan_evaluation import EvaluationPolicy
+from centrode.kinematics.prepared import Ready, ready
 from centrode.structure.constraints import Entity, Positions
 from centrode.structure.groups import Newton
 from mechanisms import EPS
@@ -35,12 +35,12 @@ def known_before(prepared: Ready, m: object, parameter: object) -> Positions:
     """What stands before the group in the plan: cranks and rigid points, which decide nothing."""
     number, _group = group_of(prepared)
     at = prepared.kinematics.frame(m, parameter)
-    prepared.kinematics.advance(at, range(number), m, Hooks())
+    prepared.kinematics.advance(at, range(number), m, EvaluationPolicy())
     return at
 
 
-def system_of(prepared: Ready, known: Positions, places: int = 1) -> System:
-    return System(group_of(prepared)[1], prepared.kinematics.numbers, known, places)
+def system_of(prepared: Ready, known: Positions, places: int = 1) -> GroupSystem:
+    return GroupSystem(group_of(prepared)[1], prepared.kinematics.numbers, known, places)
 
 
 @pytest.fixture(scope="module", params=EXAMPLES)
@@ -48,7 +48,7 @@ def prepared(request: pytest.FixtureRequest) -> Ready:
     return ready(ct.example(request.param))
 
 
-def started(prepared: Ready) -> tuple[System, np.ndarray]:
+def started(prepared: Ready) -> tuple[GroupSystem, np.ndarray]:
     known = known_before(prepared, ARRAYS, np.array([prepared.kinematics.path.initial]))
     system = system_of(prepared, known)
     state = system.state_of(prepared.assembled.positions)
@@ -63,7 +63,7 @@ def test_convergence_is_quadratic(prepared: Ready) -> None:
         free = list(size * random.uniform(-1.0, 1.0, (system.free, 1)))
         linear = system.linear(system.at(ARRAYS, system.known, state))
         still = {entity: (0.0,) * entity.unknowns for entity in linear.tangents}
-        found = newton(system, system.moved(state, Motion(linear.whole(still, free), free)))
+        found = newton(system, system.moved(state, GroupMotion(linear.whole(still, free), free)))
         assert found.found.all()
         steps = found.sizes[:, 0][np.isfinite(found.sizes[:, 0])]
         curvature = 20.0 / np.min(np.linalg.svd(linear.matrix[0], compute_uv=False))
@@ -83,7 +83,7 @@ def test_the_small_equations_are_the_great_ones(prepared: Ready) -> None:
         gaps = []
         for size in (1e-3, 1e-4):
             free = [np.array([size if i == j else 0.0]) for i in range(system.free)]
-            moved = system.moved(state, Motion(linear.whole(still, free), free))
+            moved = system.moved(state, GroupMotion(linear.whole(still, free), free))
             values = system.residual(ARRAYS, system.at(ARRAYS, system.known, moved))
             gaps.append(max(abs(float(v[0])) for i, v in enumerate(values) if i not in kept) / scale)
         assert gaps[0] <= 10.0 * 1e-3**2 * system.free
@@ -99,7 +99,7 @@ def test_matrix_is_the_derivative_of_the_residual(prepared: Ready) -> None:
     for j in range(system.free):
         free = [1.0 if i == j else 0.0 for i in range(system.free)]
         motion = linear.whole(still, free)
-        jets = Motion(
+        jets = GroupMotion(
             {e: tuple(Jet((0.0, x)) for x in shift) for e, shift in motion.items()},
             [Jet((0.0, x)) for x in free],
         )
@@ -130,7 +130,7 @@ def test_bounds_hold_against_fifty_digits(prepared: Ready) -> None:
                 assert bound <= 1e4 * EPS * scale
 
 
-def _polished(prepared: Ready, system: System, at: Positions) -> dict[str, tuple[mp.mpf, mp.mpf]]:
+def _polished(prepared: Ready, system: GroupSystem, at: Positions) -> dict[str, tuple[mp.mpf, mp.mpf]]:
     """The group's points to fifty digits: distances of points of one link, solved by mpmath from where they are."""
     mechanism, numbers = prepared.mechanism, prepared.kinematics.numbers
     fixed = {name: tuple(map(mp.mpf, map(float, place))) for name, place in numbers.frame.items()}

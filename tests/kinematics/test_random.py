@@ -10,8 +10,8 @@ from hypothesis import assume, given, settings
 import centrode as ct
 from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import ready
+from centrode.kinematics.path import JETS
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import Solved
 from centrode.structure.constraints import Entity, Positions, is_drive
 from centrode.structure.rank import jacobian

@@ -11,9 +11,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import centrode as ct
-from centrode.kinematics.ready import ready
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import Solved, solve
-from centrode.kinematics.spans import span_at
 from growing_sphere import Growing, angle_at, coordinates, mechanisms, unit
 from mechanisms import EPS, Parts, conditioning, solve_evenly
 from samples import few

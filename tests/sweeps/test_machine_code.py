@@ -12,8 +12,8 @@ import xarray as xr
 
 import centrode as ct
 from centrode.algebra import machine_code
-from centrode.kinematics.compiled.judging import Judging
-from centrode.kinematics.ready import ready
+from centrode.kinematics.compiled.event_screening import EventScreening
+from centrode.kinematics.prepared import ready
 from centrode.quantities import QUANTITIES
 from centrode.structure.groups import Newton
 from centrode.sweeps import limits
@@ -346,14 +346,14 @@ def test_a_store_belongs_to_one_executor(tmp_path: Path) -> None:
 def test_what_is_clear_has_no_event_nearby(monkeypatch: pytest.MonkeyPatch) -> None:
     """Clear mechanisms keep well away from where the arrays would find an event, and most are clear."""
     kept: list[npt.NDArray[np.bool_]] = []
-    judge = Judging.judge
+    judge = EventScreening.judge
 
-    def watched(self: Judging, values: Any) -> Any:
+    def watched(self: EventScreening, values: Any) -> Any:
         judged = judge(self, values)
         kept.append(judged.clear)
         return judged
 
-    monkeypatch.setattr(Judging, "judge", watched)
+    monkeypatch.setattr(EventScreening, "judge", watched)
     # a four-bar closes everywhere if the longest link of the triangle stays below the others: AB + 3 >= 4 + 1
     lengths = 2.0 + np.concatenate([-np.geomspace(1e-12, 0.5, 40), [0.0], np.geomspace(1e-12, 0.5, 40)])
     mechanism = four_bar(1.0, 3.0, 3.0, 4.0)

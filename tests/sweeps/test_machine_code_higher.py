@@ -11,9 +11,9 @@ import xarray as xr
 
 import centrode as ct
 from centrode.algebra import machine_code
-from centrode.kinematics.compiled import many
-from centrode.kinematics.compiled.newton.certainty import CHANGE, CONDITION
-from centrode.kinematics.ready import ready
+from centrode.kinematics.compiled import batch
+from centrode.kinematics.compiled.newton import CHANGE, CONDITION
+from centrode.kinematics.prepared import ready
 from centrode.sweeps import limits
 from centrode.sweeps.arrays import ArraysExecutor
 from growing_higher import HIGHER, grown_higher
@@ -302,16 +302,16 @@ def test_several_drives_are_left_to_the_arrays(monkeypatch: pytest.MonkeyPatch) 
     with pytest.raises(ct.InputError, match="groups of higher class with several drives; say executor"):
         ct.sweep(mechanism, vary, "position", 3, executor=MACHINE)
     monkeypatch.setattr(limits, "WORTH_COMPILING", 1)
-    monkeypatch.setattr(many, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(batch, "WORTH_COMPILING", 1)
     assert ct.sweep(mechanism, vary, "position", 3).attrs["executor"].startswith(f"{ARRAYS} (")
     assert (ct.motion(mechanism, 3, start=0.0, stop=0.1, vary=vary)["status"] == ct.Status.OK).all()
 
 
 def test_many_motions(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism, vary = triads(20)
-    monkeypatch.setattr(many, "WORTH_COMPILING", 1)
-    solve, lanes = many.solve, []
-    monkeypatch.setattr(many, "solve", lambda *args, **more: lanes.append(args[3]) or solve(*args, **more))
+    monkeypatch.setattr(batch, "WORTH_COMPILING", 1)
+    solve, lanes = batch.solve, []
+    monkeypatch.setattr(batch, "solve", lambda *args, **more: lanes.append(args[3]) or solve(*args, **more))
     found = ct.motion(mechanism, 25, vary=vary)
     assert sum(lanes) < 20, "some meet limits, and one tells the worst constraint"
     monkeypatch.setattr(machine_code, "PRESENT", False)

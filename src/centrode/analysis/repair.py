@@ -15,7 +15,7 @@ from centrode.analysis.repairing.searching import Progress, Search
 from centrode.analysis.repairing.varying import Bounds, Value, Varying, varyings
 from centrode.analysis.rotatability import Rotatability, rotatability
 from centrode.errors import CentrodeError, InputError, NotComputedYet
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.prepared import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si

@@ -19,9 +19,9 @@ from centrode.analysis.turning.swings import Swing, swings_of, watched_members
 from centrode.analysis.turning.tours import Tour, tour_of
 from centrode.analysis.turning.transmission import Transmission, transmissions_of, watched_dyads
 from centrode.analysis.turning.watched import course_of
-from centrode.kinematics.branches import Event
-from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.several_drives.holding import initial_values
+from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import name_of

@@ -19,10 +19,10 @@ import xarray as xr
 from centrode.analysis.transmission_extremes import extreme_transmission_angles
 from centrode.analysis.transmission_on_sphere import ArcAngles
 from centrode.errors import InputError
-from centrode.kinematics.dataset import dataset_of, named
-from centrode.kinematics.ready import ready
+from centrode.kinematics.motion import dataset_of, named
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import asked_span, solve
-from centrode.kinematics.spans import span_at
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.structure.dimensions import Dimensions

@@ -16,9 +16,9 @@ import numpy.typing as npt
 from centrode.analysis.turning.tours import Tour
 from centrode.analysis.turning.transmission import least_of, transmission_at_ends, watched_dyads
 from centrode.analysis.turning.watched import Course, course_of
-from centrode.kinematics.places import Places
-from centrode.kinematics.ready import Ready
-from centrode.kinematics.spans import Span
+from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.prepared import Ready
+from centrode.kinematics.sampling import MotionOnPath
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -50,14 +50,14 @@ class _Stretch(Tour):
         return np.asarray(self.first + (self.last - self.first) * share)
 
 
-def extreme_transmission_angles(ready: Ready, span: Span) -> dict[int, tuple[float, float]]:
+def extreme_transmission_angles(ready: Ready, span: SampleGrid) -> dict[int, tuple[float, float]]:
     """Least and greatest acute transmission angle [rad] of each dyad, by the number of its group.
 
     They are those over all values between the least and the greatest parameter of the span that the mechanism
     reaches; NaN where it reaches none.
     """
     with np.errstate(all="ignore"):
-        continuation = Places.along(ready, ready.kinematics, span.parameter).continuation
+        continuation = MotionOnPath.along(ready, ready.kinematics, span.parameter).continuation
         low, high = continuation.branches.reach(0)
         first, last = max(low, float(np.min(span.parameter))), min(high, float(np.max(span.parameter)))
         drive = ready.kinematics.path.driven[0].drive

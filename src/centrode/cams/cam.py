@@ -26,7 +26,7 @@ from centrode.cams.path_series import (
 )
 from centrode.cams.roller_path import RollerPath, SymmetricPath, angles_of
 from centrode.errors import Status
-from centrode.kinematics.dataset import Variable, labels_of, named
+from centrode.kinematics.motion import Variable, labels_of, named
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import AnyCam, cam_text
 from centrode.model.cams.plate import PlateCam

@@ -20,7 +20,7 @@ from centrode.cams.return_arc import ClosedPath
 from centrode.cams.roller_path import Array, angles_of, frames, stalls_of
 from centrode.cams.walking_wheel import Shoe, WheelMover, mover
 from centrode.errors import InputError
-from centrode.kinematics.dataset import named
+from centrode.kinematics.motion import named
 from centrode.locale import _
 from centrode.model import limits
 from centrode.model.cams.description import Cam

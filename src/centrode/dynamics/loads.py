@@ -25,7 +25,7 @@ from centrode.dynamics.masses import centre_of, masses_of
 from centrode.dynamics.state import Given, Mass, State
 from centrode.dynamics.wrenches import Wrench
 from centrode.errors import InputError, NotComputedYet
-from centrode.kinematics.paths import JETS
+from centrode.kinematics.path import JETS
 from centrode.locale import _
 from centrode.model.loads import LOAD_VARIABLES, PLAIN_SUM, Load
 from centrode.model.mechanism import FRAME, Mechanism

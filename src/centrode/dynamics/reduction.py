@@ -21,9 +21,8 @@ from centrode.dynamics.masses import coordinates_of as speeds_of
 from centrode.dynamics.masses import share, shares
 from centrode.dynamics.state import About, Moving, State, getters_of
 from centrode.errors import InputError
-from centrode.kinematics.branches import Event
-from centrode.kinematics.compiled.deciding import Untraceable
-from centrode.kinematics.dataset import (
+from centrode.kinematics.compiled.trace import Untraceable
+from centrode.kinematics.motion import (
     Variable,
     attributes_of,
     coordinates_of,
@@ -31,11 +30,12 @@ from centrode.kinematics.dataset import (
     labels_of,
     named,
 )
-from centrode.kinematics.places import Places
-from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.several_drives.partials import Partials, partials
+from centrode.kinematics.path import span_at
+from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.sampling import MotionOnPath
+from centrode.kinematics.several_inputs.coefficients import Partials, partials
 from centrode.kinematics.solve import GREATEST_RESULT, Solved, asked_span, solve
-from centrode.kinematics.spans import span_at
 from centrode.locale import _, mark
 from centrode.model.mechanism import Mechanism
 
@@ -90,7 +90,7 @@ class Reducer:
             )
         self.ready = ready
         self.burden = burden
-        self._places: Places | None = None
+        self._places: MotionOnPath | None = None
 
     @classmethod
     def of(cls, mechanism: Mechanism) -> Reducer:
@@ -192,12 +192,12 @@ class Reducer:
         found = self._along(np.array([first, last])).continuation.branches.events
         return [event for event in found if first <= event.at <= last]
 
-    def _along(self, values: Array) -> Places:
+    def _along(self, values: Array) -> MotionOnPath:
         """Places on a stretch of the path with all these values, whose events are known."""
         places = self._places
         if places is None or not (places.mesh[0] <= np.min(values) and np.max(values) <= places.mesh[-1]):
             reach = values if places is None else np.append(values, places.mesh[[0, -1]])
-            places = Places.along(self.ready, self.ready.kinematics, reach)
+            places = MotionOnPath.along(self.ready, self.ready.kinematics, reach)
             self._places = places
         return places
 

@@ -12,8 +12,8 @@ import numpy.typing as npt
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.geometry.sphere import Attitude, carried, cross, dot, unit_vector
-from centrode.kinematics.layout import Layout
-from centrode.kinematics.paths import JETS
+from centrode.kinematics.path import JETS
+from centrode.kinematics.plan_evaluation import PlanLayout
 from centrode.kinematics.sampling import Samples
 from centrode.kinematics.solve import Solved
 from centrode.model.bodies import Link
@@ -152,7 +152,7 @@ class State:
     """
 
     mechanism: Mechanism
-    layout: Layout
+    layout: PlanLayout
     time: Array
     parameter: Array
     rate: Array

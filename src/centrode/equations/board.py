@@ -20,7 +20,7 @@ from centrode.equations.letters import Angle, Letter
 from centrode.equations.lines import Line, Rod, lines_of
 from centrode.equations.places import ORIGIN, Place, polar
 from centrode.equations.sums import Sum
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.structure.constraints import FRAME
 
 

@@ -23,8 +23,8 @@ from centrode.equations.places import Place
 from centrode.equations.sums import Sum
 from centrode.equations.systems import LinearSystem, system_of
 from centrode.errors import InputError
-from centrode.kinematics.paths import DrivenBy
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.path import DrivenBy
+from centrode.kinematics.prepared import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 

@@ -12,7 +12,7 @@ import xarray as xr
 
 from centrode.equations.cauchy import CauchyForm
 from centrode.equations.integration import Trajectory
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.structure.dimensions import Dimensions
 

@@ -22,7 +22,7 @@ from centrode.equations.sphere_laying import laid_on_sphere
 from centrode.equations.sums import Sum
 from centrode.equations.systems import LinearSystem, system_of
 from centrode.errors import InputError
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.prepared import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import assur_groups, roman

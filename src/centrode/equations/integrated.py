@@ -15,7 +15,7 @@ from centrode.equations.cauchy import CauchyForm, form_of
 from centrode.equations.courses import course_of
 from centrode.equations.integration import FINE, Trajectory, adaptive_steps, fixed_steps
 from centrode.errors import InputError, Status
-from centrode.kinematics.dataset import (
+from centrode.kinematics.motion import (
     attributes_of,
     coordinates_of,
     dataset_of,
@@ -23,7 +23,7 @@ from centrode.kinematics.dataset import (
     labels_of,
     named,
 )
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

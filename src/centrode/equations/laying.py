@@ -15,7 +15,7 @@ from centrode.equations.shortcuts import shorten
 from centrode.equations.sums import ZERO
 from centrode.equations.wheels import mesh, meshings_of
 from centrode.errors import InputError
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.locale import _
 
 

@@ -8,7 +8,7 @@ from centrode.equations.alphabet import Alphabet
 from centrode.equations.draft import Draft, Unknown
 from centrode.equations.letters import Letter
 from centrode.equations.sums import Sum
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 
 
 class Lettering:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from centrode.equations.alphabet import Vector
 from centrode.geometry.plane import along
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.structure.constraints import Contact, DisplacementDrive, DistanceDrive, PointOnGuide
 from centrode.structure.gearing import Straight
 

@@ -13,7 +13,7 @@ from centrode.equations.lettering import Lettering
 from centrode.equations.letters import Angle
 from centrode.equations.turned import AXES, BACK, Axes, SpherePlace
 from centrode.errors import InputError
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.locale import _
 from centrode.model.sphere import makes_arc, unit_vector
 from centrode.structure.constraints import FRAME

@@ -16,7 +16,7 @@ from centrode.equations.letters import Angle
 from centrode.equations.sphere_board import SphereBoard, Vector, unwritten
 from centrode.equations.sums import Sum
 from centrode.equations.turned import Axes
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.locale import _
 from centrode.structure.constraints import FRAME
 from centrode.structure.groups import (

@@ -2,41 +2,245 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from math import degrees, radians
 from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
 from centrode.geometry.space import Space
-from centrode.kinematics.evaluate import Choices, Kinematics
-from centrode.kinematics.fitting import check_fit, check_touch
-from centrode.kinematics.groups import solve_group
-from centrode.kinematics.higher_class.guesses import bound_higher, start_higher
-from centrode.kinematics.higher_class.system import System
-from centrode.kinematics.phases import phases_after, phases_before, phases_in, standing_links, with_phases
-from centrode.kinematics.sides import (
+from centrode.kinematics.assembly_mode import (
     DEGENERATE,
+    Bounding,
+    OneSide,
+    Starting,
     angle_off,
+    check_fit,
     check_opens,
     check_sides,
+    check_touch,
     is_measured,
     side_by_angles,
     side_choice,
     stated_side,
     turned_apart,
+    undetermined,
 )
-from centrode.kinematics.starting import Bounding, OneSide, Starting, undetermined
+from centrode.kinematics.dyads import equation_at, solve_group, turn_link
+from centrode.kinematics.higher_class.starting import bound_higher, guesses, start_higher
+from centrode.kinematics.higher_class.system import GroupSystem
+from centrode.kinematics.plan_evaluation import Kinematics, SideChoices
 from centrode.locale import _
 from centrode.structure.assur import name_of
-from centrode.structure.constraints import Positions
+from centrode.structure.constraints import (
+    Constraint,
+    Entity,
+    GearRatio,
+    Meshing,
+    NoSlip,
+    Positions,
+    Standing,
+    angle_links,
+    identity_of,
+    phase_of,
+)
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Meet, Newton, TwoPointLink, links_of, points_of
+from centrode.structure.groups import (
+    Aim,
+    AngleEquation,
+    AngleGiven,
+    Arm,
+    Group,
+    Meet,
+    Meshed,
+    Newton,
+    Rolloff,
+    Train,
+    TurnedLink,
+    Turning,
+    TwoPointLink,
+    links_of,
+    points_of,
+)
+from centrode.structure.rank import columns_of, independent_rows, match
 
+# How wheels mesh: the constants of gears and rolling contacts, from the initial angles of the description.
+#
+# A gear gives the angle of a link; where that link stands initially is what its own `angle` says, else zero.
+# A wheel
+# that is turned by something else, and so puts its centre or its track somewhere, starts at the line's own
+# point.
+
+Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
+
+
+def with_phases(kinematics: Kinematics, phases: Mapping[str, float]) -> Kinematics:
+    """The same plan with constants of gears and rolling contacts added to its numbers."""
+    if not phases:
+        return kinematics
+    numbers = kinematics.numbers
+    return replace(kinematics, numbers=replace(numbers, gearing=numbers.gearing.with_phases(phases)))
+
+
+def phases_before(
+    kinematics: Kinematics, group: Group, at: Positions, choices: SideChoices
+) -> dict[str, float]:
+    """Constants that a group needs before it is solved in the initial position."""
+    if isinstance(group, Train):
+        return _of_train(kinematics, group, at, choices)
+    if not isinstance(group, (TurnedLink, Meet)):
+        return {}
+    found: dict[str, float] = {}
+    link = group.link if isinstance(group, TurnedLink) else group.carriage
+    if link is not None and group.turning is not None and not isinstance(group.turning, Turning):
+        meshing = group.turning.gear if isinstance(group.turning, Meshed) else group.turning.rolling
+        trial = at.copied()
+        trial.angles[link] = stated_angle(kinematics, link)
+        found[identity_of(meshing)] = float(phase_of(meshing, ARRAYS, kinematics.numbers, trial))
+    if isinstance(group, Meet):
+        for locus in group.loci:
+            if isinstance(locus, Rolloff):
+                ahead = with_phases(kinematics, found)
+                found[locus.rolling.rolling] = _turn_at_start(ahead, group, locus.rolling, at, choices)
+    return found
+
+
+def phases_after(kinematics: Kinematics, at: Positions) -> dict[str, float]:
+    """Constants of what no group needed: gears and rolling contacts that repeat others."""
+    known = kinematics.numbers.gearing.phase
+    return {
+        identity_of(c): float(phase_of(c, ARRAYS, kinematics.numbers, at))
+        for c in kinematics.structure.constraints
+        if isinstance(c, Meshing) and identity_of(c) not in known
+    }
+
+
+def phases_in(kinematics: Kinematics, group: Newton, at: Positions) -> dict[str, float]:
+    """Constants of the gears and rolling contacts in a group of higher class that stands in its initial position."""
+    return {
+        identity_of(c): float(phase_of(c, ARRAYS, kinematics.numbers, at))
+        for c, _row in group.equations
+        if isinstance(c, Meshing)
+    }
+
+
+def standing_links(kinematics: Kinematics, group: Newton, at: Positions) -> Newton:
+    """A group of higher class in which links stand at their initial angles instead of meshing.
+
+    Of the links that an equation between angles could give, the first is taken that nothing else gives: the
+    second wheel of a gear, the wheel that rolls, else any link of the group.
+    """
+    meshing = [c for c, _row in group.equations if isinstance(c, Meshing)]
+    if not meshing:
+        return group
+    entities = [Entity("point", name) for name in group.points] + [
+        Entity("link", name) for name in group.links
+    ]
+    first, width = columns_of(entities)
+    guess = guesses(kinematics.structure.mechanism, kinematics.numbers, group, at)[0]
+    kept = [equation for equation in group.equations if not isinstance(equation[0], Meshing)]
+
+    def row(equation: tuple[Constraint, int]) -> Array:
+        constraint, which = equation
+        found = np.zeros(width)
+        for entity, slopes in constraint.rows(kinematics.numbers, guess)[which].items():
+            if entity in first:
+                found[first[entity] : first[entity] + entity.unknowns] += slopes
+        return found
+
+    rows = [row(equation) for equation in kept]
+    for constraint in meshing:
+        wanted = [link for link in angle_links(constraint) if link in group.links]
+        for link in dict.fromkeys([*wanted, *group.links]):
+            standing: tuple[Constraint, int] = (Standing(link, stated_angle(kinematics, link)), 0)
+            if independent_rows(np.array([*rows, row(standing)]))[-1]:
+                rows.append(row(standing))
+                kept.append(standing)
+                break
+    return replace(group, equations=tuple(kept))
+
+
+def stated_angle(kinematics: Kinematics, link: str) -> float:
+    """Initial angle of a link [rad]; zero where the description gives none."""
+    return kinematics.structure.mechanism.initial_angle(link) or 0.0
+
+
+def _turn_at_start(
+    kinematics: Kinematics, group: Meet, rolling: NoSlip, at: Positions, choices: SideChoices
+) -> float:
+    """Angle of a wheel against its track in the initial position, where its centre is at the line's own point."""
+    trial = at.copied()
+    link = group.carriage
+    if link is not None and group.turning is not None:
+        rotor = turn_link(group.turning, link, ARRAYS, kinematics.numbers, trial, choices.continued)
+        if link not in trial.angles:
+            trial.angles[link] = choices.continued(link, np.arctan2(rotor[1], rotor[0]))
+    return float(trial.angles[rolling.link] - trial.angles[rolling.on])
+
+
+def _of_train(kinematics: Kinematics, group: Train, at: Positions, choices: SideChoices) -> dict[str, float]:
+    """Constants of a train's equations: each lets one link of its own stand at its initial angle."""
+    bearing = {equation: meshing for equation in group.equations if (meshing := _meshing(equation))}
+    blank = with_phases(kinematics, {identity_of(meshing): 0.0 for meshing in bearing.values()})
+    rows = {
+        equation: equation_at(equation, ARRAYS, blank.numbers, at, choices.continued)
+        for equation in group.equations
+    }
+    owner = match(
+        {e: _preferred(kinematics, e, rows[e][0], group) for e in sorted(rows, key=lambda e: e in bearing)}
+    )
+    matrix, right = np.zeros((len(rows), len(rows))), np.zeros(len(rows))
+    for k, (link, equation) in enumerate(owner.items()):
+        if equation in bearing:
+            matrix[k, group.links.index(link)] = 1.0
+            right[k] = stated_angle(kinematics, link)
+        else:
+            factors, value = rows[equation]
+            right[k] = float(value)
+            for name, factor in factors.items():
+                if name in group.links:
+                    matrix[k, group.links.index(name)] = factor
+                else:
+                    right[k] -= factor * float(at.angles[name])
+    try:
+        angles = dict(zip(group.links, np.linalg.solve(matrix, right).tolist(), strict=True))
+    except np.linalg.LinAlgError:
+        raise InputError(
+            name_of(group),
+            _("its initial angles do not say how the wheels mesh"),
+            _("give the initial angle of: {links}").format(links=", ".join(group.links)),
+        ) from None
+    everything = {**at.angles, **angles}
+    return {
+        identity_of(meshing): float(
+            sum(factor * everything[name] for name, factor in rows[equation][0].items()) - rows[equation][1]
+        )
+        for equation, meshing in bearing.items()
+    }
+
+
+def _meshing(equation: AngleEquation) -> Meshing | None:
+    if isinstance(equation, AngleGiven):
+        return None
+    return equation.rolling if isinstance(equation, Arm) else equation
+
+
+def _preferred(
+    kinematics: Kinematics, equation: AngleEquation, factors: Mapping[str, Number], group: Train
+) -> list[str]:
+    """Links whose initial angle an equation may rest on: those that state one, then the second wheel first."""
+    own = [link for link, factor in factors.items() if link in group.links and factor != 0.0]
+    if isinstance(equation, GearRatio):
+        own.sort(key=lambda link: (equation.second, equation.first, equation.carrier).index(link))
+    links = kinematics.structure.mechanism.links
+    return sorted(own, key=lambda link: links[link].angle is None)
+
 
 ANGLE_TOLERANCE = radians(5.0)
 """Initial angles name an assembly; further than this from the assembled position they are taken as a mistake."""
@@ -81,7 +285,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
         for i, group in enumerate(kinematics.structure.groups):
             _check_apart(kinematics, group)
             try:
-                phases = phases_before(kinematics, group, at, Choices(starting, i))
+                phases = phases_before(kinematics, group, at, SideChoices(starting, i))
                 kinematics = with_phases(kinematics, phases)
                 if isinstance(group, Newton):
                     kinematics = _start_higher(kinematics, group, at, bounded)
@@ -89,7 +293,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
                     signs[i] = _solve_signed(kinematics, group, at, _bound(kinematics, group, bounded))
                     check_opens(kinematics, i, signs)
                 else:
-                    solve_group(group, ARRAYS, kinematics.numbers, at, Choices(starting, i))
+                    solve_group(group, ARRAYS, kinematics.numbers, at, SideChoices(starting, i))
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
                 raise undetermined(group) from None
             _check_finite(group, at)
@@ -98,7 +302,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
             kinematics.count(i, at, ARRAYS, starting)
             bounding = Bounding(kinematics, group, signs.get(i, 1.0))
             if not isinstance(group, Newton):  # its places have their bounds already
-                solve_group(group, ROUNDED, kinematics.numbers, bounded, Choices(bounding, i))
+                solve_group(group, ROUNDED, kinematics.numbers, bounded, SideChoices(bounding, i))
             kinematics.count(i, bounded, ROUNDED, bounding)
     kinematics = with_phases(kinematics, phases_after(kinematics, at))
     check_touch(kinematics, at)
@@ -112,14 +316,14 @@ def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded:
     standing = standing_links(kinematics, group, at)
     start_higher(kinematics.structure.mechanism, kinematics.numbers, standing, at)
     kinematics = with_phases(kinematics, phases_in(kinematics, group, at))
-    bound_higher(System(group, kinematics.numbers, known, 1), at, bounded)
+    bound_higher(GroupSystem(group, kinematics.numbers, known, 1), at, bounded)
     return kinematics
 
 
 def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
     """Rounding error of a group's radicand, from positions with bounds known before it."""
     bounding = Bounding(kinematics, group, 1.0)
-    solve_group(group, ROUNDED, kinematics.numbers, bounded.copied(), Choices(bounding, 0))
+    solve_group(group, ROUNDED, kinematics.numbers, bounded.copied(), SideChoices(bounding, 0))
     return bounding.bound
 
 
@@ -148,7 +352,7 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
 def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bound: float) -> Positions:
     trial = at.copied()
     solve_group(
-        group, ARRAYS, kinematics.numbers, trial, Choices(OneSide(kinematics, group, at, sign, bound), 0)
+        group, ARRAYS, kinematics.numbers, trial, SideChoices(OneSide(kinematics, group, at, sign, bound), 0)
     )
     return trial
 

@@ -45,7 +45,7 @@ def straight(slope: Array, bend: Array, half: Array | float) -> Mask:
 
 
 @dataclass(frozen=True)
-class Pieces:
+class CellPieces:
     """Cells of chosen mechanisms with the values at their centres: arrays (k,).
 
     `known` are the cells that are clear or straight, `nodes` those of the mesh that were not divided. A cell of
@@ -70,26 +70,26 @@ class Pieces:
         half: Array | float,
         value: Array | float = np.nan,
         nodes: bool = False,
-    ) -> Pieces:
+    ) -> CellPieces:
         """Cells about centres; those of the mesh are known."""
         wide = (np.broadcast_to(x, centre.shape) for x in (half, value, nodes, nodes))
         return cls(lane, centre, *wide)
 
-    def taken(self, which: npt.NDArray[np.intp] | Mask) -> Pieces:
+    def taken(self, which: npt.NDArray[np.intp] | Mask) -> CellPieces:
         """Some of the cells."""
-        return Pieces(*(getattr(self, each.name)[which] for each in fields(self)))
+        return CellPieces(*(getattr(self, each.name)[which] for each in fields(self)))
 
-    def sorted(self) -> Pieces:
+    def sorted(self) -> CellPieces:
         """The cells of every mechanism in the order of the path."""
         return self.taken(np.lexsort((self.centre, self.lane)))
 
     @classmethod
-    def joined(cls, *parts: Pieces) -> Pieces:
+    def joined(cls, *parts: CellPieces) -> CellPieces:
         """The cells of several together."""
         return cls(*(np.concatenate([getattr(part, each.name) for part in parts]) for each in fields(cls)))
 
 
-def towards(lane: Lanes, low: Array, high: Array, place: Array) -> Pieces:
+def towards(lane: Lanes, low: Array, high: Array, place: Array) -> CellPieces:
     """Stretches of the path, each with a place in it, in cells that get shorter towards the place and leave it out."""
     shares = 2.0 ** -np.arange(HALVINGS + 1.0)
     ways = np.concatenate([low - place, high - place])[:, None] * shares
@@ -97,12 +97,12 @@ def towards(lane: Lanes, low: Array, high: Array, place: Array) -> Pieces:
     half = 0.25 * np.abs(ways).ravel()
     lane = np.repeat(np.tile(lane, 2), len(shares))
     worth = half > 0.0
-    return Pieces.of(lane[worth], centre[worth], half[worth])
+    return CellPieces.of(lane[worth], centre[worth], half[worth])
 
 
-def divided(pieces: Pieces, guard: Guard, unit: float) -> Pieces:
+def divided(pieces: CellPieces, guard: Guard, unit: float) -> CellPieces:
     """Cells until each is known, or so short that it is one place; those where the guard has no value are left out."""
-    found: list[Pieces] = []
+    found: list[CellPieces] = []
     rest = pieces
     while len(rest):
         value, slope, bend = guard(rest.lane, rest.centre, rest.half)
@@ -111,10 +111,10 @@ def divided(pieces: Pieces, guard: Guard, unit: float) -> Pieces:
             known = clear(value, slope, bend, rest.half) | straight(slope, bend, rest.half)
         # where the law of a drive changes its formula at a change point there are no derivatives
         done = known | ~np.isfinite(slope) | (rest.half <= unit * _finest(rest.lane, there & ~known))
-        every = Pieces(rest.lane, rest.centre, rest.half, value, known, rest.nodes)
+        every = CellPieces(rest.lane, rest.centre, rest.half, value, known, rest.nodes)
         found.append(every.taken(there & done))
         rest = parts_of(every.taken(there & ~done))
-    return Pieces.joined(*found) if found else pieces
+    return CellPieces.joined(*found) if found else pieces
 
 
 def _finest(lane: Lanes, unknown: Mask) -> Array | float:
@@ -125,17 +125,17 @@ def _finest(lane: Lanes, unknown: Mask) -> Array | float:
     return np.asarray(np.select([count <= MANY, count <= MOST], [FINEST, COARSE], np.inf)[lane])
 
 
-def parts_of(pieces: Pieces) -> Pieces:
+def parts_of(pieces: CellPieces) -> CellPieces:
     """The parts of cells."""
     shifts = (2.0 * np.arange(PARTS) + 1.0) / PARTS - 1.0
-    return Pieces.of(
+    return CellPieces.of(
         np.repeat(pieces.lane, PARTS),
         (pieces.centre[:, None] + pieces.half[:, None] * shifts).ravel(),
         np.repeat(pieces.half / PARTS, PARTS),
     )
 
 
-def changes(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array]:
+def changes(pieces: CellPieces, slack: float) -> tuple[Lanes, Array, Array]:
     """Lanes and stretches between neighbours of opposite signs, in cells in the order of the path.
 
     Cells that are not farther apart than `slack` abut. What is zero has no sign. Neighbours on the mesh are left out.
@@ -146,7 +146,7 @@ def changes(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array]:
     return pieces.lane[first[turned]], pieces.centre[first[turned]], pieces.centre[last[turned]]
 
 
-def without_sign(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array, Array]:
+def without_sign(pieces: CellPieces, slack: float) -> tuple[Lanes, Array, Array, Array]:
     """Lanes and stretches between neighbours of the same sign that have zeros between them, and the sign."""
     first, last = _neighbours(pieces, slack)
     hidden = (last > first + 1) & (np.sign(pieces.value[first]) == np.sign(pieces.value[last]))
@@ -154,7 +154,7 @@ def without_sign(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array, Arr
     return pieces.lane[first], pieces.centre[first], pieces.centre[last], np.sign(pieces.value[first])
 
 
-def unsettled(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array, Array]:
+def unsettled(pieces: CellPieces, slack: float) -> tuple[Lanes, Array, Array, Array]:
     """Lanes and stretches between neighbours of the same sign of which one is not known, and the sign."""
     first, last = _neighbours(pieces, slack)
     doubtful = (last == first + 1) & ~(pieces.known[first] & pieces.known[last])
@@ -163,7 +163,7 @@ def unsettled(pieces: Pieces, slack: float) -> tuple[Lanes, Array, Array, Array]
     return pieces.lane[first], pieces.centre[first], pieces.centre[last], np.sign(pieces.value[first])
 
 
-def _neighbours(pieces: Pieces, slack: float) -> tuple[Lanes, Lanes]:
+def _neighbours(pieces: CellPieces, slack: float) -> tuple[Lanes, Lanes]:
     """Pairs of cells with a sign that abut, or that only cells without one lie between."""
     apart = np.diff(pieces.centre) - pieces.half[1:] - pieces.half[:-1]
     broken = (np.diff(pieces.lane) != 0) | (apart > slack) | np.isinf(pieces.value[1:])

@@ -12,8 +12,9 @@ to node.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -21,43 +22,438 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.bends import Bent
+from centrode.algebra.bends import BendFunctions, Bent, Cells
 from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import SAFETY
-from centrode.kinematics.bending import BENDS, Bending, bent_frame
-from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.continuation import Continuation, Rough
-from centrode.kinematics.counted_turns import counted
-from centrode.kinematics.evaluate import Kinematics, Reached
-from centrode.kinematics.guards import Guards
-from centrode.kinematics.mesh import (
-    CLOSING_IN,
-    cut_cells,
-    first_changes,
-    largest_of,
-    low_minima,
+from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
+from centrode.kinematics.cells import (
+    FINEST,
+    CellPieces,
+    changes,
+    clear,
+    divided,
+    parts_of,
+    straight,
+    towards,
+    unsettled,
+    without_sign,
 )
+from centrode.kinematics.change_points import BranchedPlan, Rough, Windows, inside, numbers_of, set_numbers
+from centrode.kinematics.mesh import CLOSING_IN, cut_cells, first_changes, largest_of, low_minima
+from centrode.kinematics.path import JETS, Path, nearest_node
+from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, ReachedRadicand, counted
 from centrode.kinematics.quick_turns import QuickTurns
-from centrode.kinematics.zeros import Zeros
-from centrode.numerics.search import sign_changes
+from centrode.numerics.search import newton_roots, sign_changes
 from centrode.structure.constraints import Positions
-from centrode.structure.groups import Aim, Meet
+from centrode.structure.groups import Aim, Meet, Newton, links_of, points_of
+
+# A plan run over bent numbers: bounds of second derivatives over cells, through interpolated stretches as
+# well.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
-Mask: TypeAlias = npt.NDArray[np.bool_]
 Number: TypeAlias = Any
 Namespace: TypeAlias = Any
+
+BENDS = BendFunctions(ARRAYS)
+
+
+INSIDE = 0.95
+"""Share of a circle's radius up to which the terms of a series bound its second derivative."""
+ROOM = 2.0
+"""What is known of a law at three places of a cell is taken this many times for the cell: laws are not bounded."""
+
+
+def half_widths(mesh: Array) -> Array | float:
+    """Half widths of the cells about the nodes of a mesh, which together cover it."""
+    gaps = np.diff(mesh)
+    widest = float(np.max(gaps))
+    if np.min(gaps) >= 0.99 * widest:
+        return 0.5 * widest
+    return np.asarray(0.5 * np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps)))
+
+
+def bent_drives(path: Path, at: Array, half: Array | float) -> dict[str, Number]:
+    """Values of all drives over cells about parameters; of laws of time the second derivative is looked at."""
+    if not path.by_time:
+        return path.drive_values(BENDS, BENDS.variable(at, half))
+    cells = Cells(half, ARRAYS)
+    looks = [Path.drive_values(path, JETS, Jet.variable(at + shift * half, 2)) for shift in (0.0, -1.0, 1.0)]
+    found: dict[str, Number] = {}
+    for drive, here in looks[0].items():
+        if not isinstance(here, Jet):
+            found[drive] = here
+            continue
+        value, slope = here.coefficients[:2]
+        seconds = [look[drive].derivative(2) for look in looks]
+        if all(np.ndim(x) == 0 and x == 0.0 for x in seconds):
+            found[drive] = Bent(value, slope, 0.0, cells)
+        else:
+            found[drive] = Bent(
+                value, slope, ROOM * np.max(np.abs(np.broadcast_arrays(*seconds)), axis=0), cells
+            )
+    return found
+
+
+def bent_frame(kinematics: Kinematics, at: Array, half: Array | float) -> Positions:
+    """What is known before the first group of the plan, over cells about parameters."""
+    return Positions.of_frame(kinematics.numbers, bent_drives(kinematics.path, at, half), BENDS)
+
+
+class Bending(Rough):
+    """Signs and interpolated stretches as the branches have them, over bent numbers."""
+
+    def __init__(self, continuation: BranchedPlan, parameter: Array, lanes: Lanes | None) -> None:
+        super().__init__(continuation, BENDS, parameter, lanes)
+
+    def higher(self, group: int, m: Namespace, at: Positions) -> None:
+        """What a group of higher class gives are jets: nothing is known of their second derivatives."""
+        known = at.mapped(lambda x: Jet(x.coefficients) if isinstance(x, Bent) else x)
+        super().higher(group, JETS, known)
+        which = self.continuation.kinematics.structure.groups[group]
+        assert isinstance(which, Newton)
+        at.points.update({name: known.points[name] for name in points_of(which)})
+        at.poses.update({name: known.poses[name] for name in links_of(which)})
+        at.angles.update({name: known.angles[name] for name in links_of(which) if name in known.angles})
+
+    def after(self, group: int, at: Positions) -> None:
+        continuation = self.continuation
+        windows = continuation.windows_of(group)
+        if windows is None:
+            return
+        before = numbers_of(continuation.kinematics, group, at)
+        super().after(group, at)
+        index, chosen = inside(windows, self.parameter.reshape(-1), self.lanes)
+        if not len(chosen):
+            return
+        shape = self.parameter.shape
+        if self.lanes is None:
+            shape = continuation.branches.lanes, shape[-1]
+        along = self.parameter.reshape(-1)[index[-1]]
+        numbers = []
+        for old, new, series in zip(
+            before,
+            numbers_of(continuation.kinematics, group, at),
+            continuation.series_of(group).numbers,
+            strict=True,
+        ):
+            if isinstance(old, Bent) and isinstance(new, Jet):
+                half = np.broadcast_to(old.cells.half, shape)[index]
+                bend = np.array(np.broadcast_to(old.bend, shape), dtype=np.float64)
+                bend[index] = _bends(series, windows.of(chosen), chosen, along, half, bend[index])
+                new = Bent(new.coefficients[0], new.coefficients[1], bend, old.cells)
+            numbers.append(new)
+        set_numbers(continuation.kinematics, group, at, numbers)
+
+
+def _bends(series: Array, windows: Windows, chosen: Lanes, along: Array, half: Array, closed: Array) -> Array:
+    """Bends over cells about places in windows, by the terms of the series; those of closed forms beyond it."""
+    share = (np.abs(along - windows.centre) + half) / windows.radius
+    found = np.zeros(len(chosen))
+    for k in range(series.shape[1] - 1, 1, -1):
+        found = found * share + k * (k - 1.0) * np.abs(series[chosen, k])
+    return np.where(share <= INSIDE, found / windows.radius**2, closed)
+
+
+# Radicands and divisors of groups at single places of the path, one mechanism for each, over any algebra.
+
+
+@dataclass(frozen=True)
+class Guards:
+    """The numbers whose zeros are events; `lanes` are mechanisms and `at` parameters, both (k,)."""
+
+    continuation: BranchedPlan
+
+    def jets(self, group: int, lanes: Lanes, at: Array, order: int) -> Jet:
+        """A group's number with derivatives."""
+        hooks = self.continuation.hooks(JETS, at, lanes)
+        with np.errstate(all="ignore"):
+            guard = self.continuation.kinematics.taken(lanes).guard(
+                JETS, Jet.variable(at, order), group, hooks
+            )
+        return (
+            guard if isinstance(guard, Jet) else Jet((np.broadcast_to(guard, at.shape), *[0.0 * at] * order))
+        )
+
+    def bent(self, group: int, lanes: Lanes, at: Array, half: Array) -> tuple[Array, Array, Array]:
+        """Value and slope, and a bound of the second derivative over cells of half widths."""
+        used, hooks = self.continuation.kinematics.taken(lanes), Bending(self.continuation, at, lanes)
+        with np.errstate(all="ignore"):
+            guard = used.guard_behind(bent_frame(used, at, half), BENDS, group, hooks)
+        if not isinstance(guard, Bent):
+            return np.broadcast_to(guard, at.shape), 0.0 * at, 0.0 * at
+        value, slope, bend = (np.broadcast_to(x, at.shape) for x in (*guard.coefficients, guard.bend))
+        return value, slope, bend
+
+    def rounded(self, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
+        """Value with the bound of its rounding error."""
+        return guard_with_bound(self.continuation, group, lanes, at)
+
+    def roots(self, group: int, lanes: Lanes, low: Array, high: Array) -> Array:
+        """Zeros between places of opposite signs."""
+
+        def guard(x: Array) -> tuple[Array, Array]:
+            jet = self.jets(group, lanes, x, 1)
+            return jet.value, jet.derivative(1)
+
+        return newton_roots(guard, low, high)
+
+    def minima(self, group: int, lanes: Lanes, low: Array, high: Array) -> Array:
+        """Zeros of the slope between places at which it has opposite signs."""
+
+        def slope(x: Array) -> tuple[Array, Array]:
+            jet = self.jets(group, lanes, x, 2)
+            return jet.derivative(1), jet.derivative(2)
+
+        return newton_roots(slope, low, high)
+
+
+def guard_with_bound(continuation: BranchedPlan, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
+    """Radicand of a group at parameters, one lane for each, with the bound of its rounding error."""
+    hooks = continuation.hooks(ROUNDED, at, lanes)
+    with np.errstate(all="ignore"):
+        used = continuation.kinematics.taken(lanes)
+        guard = Rounded.of(used.guard(ROUNDED, Rounded.of(at), group, hooks))
+    return np.broadcast_to(guard.value, at.shape), np.broadcast_to(guard.bound, at.shape)
+
+
+# Where a group's radicand or divisor passes zero on a mesh, or touches it: by bounds of its second
+# derivative.
+#
+# Cells that are known need nothing but the signs at their nodes. In the others the least sizes are found by
+# the root of
+# the derivative, as far as nodes foretell them; then the cells are divided until they are known (`cells`).
+# What is left
+# are places: a sign that is only rounding is none, and a least size within the rounding error of the formulas
+# is zero.
+
+Mask: TypeAlias = npt.NDArray[np.bool_]
+Found: TypeAlias = tuple[Lanes, Array]
+"""Lanes and places, both (k,)."""
+
+NOWHERE: Found = np.zeros(0, dtype=np.intp), np.zeros(0)
+DOUBTFUL = 1e-8
+"""Values below this fraction of the greatest one are compared with their rounding error."""
+QUICK = 4.0
+"""Circles of series below this many half widths of cells: about their change points a group turns fast."""
+SLACK = 8.0
+"""How many times the finest half width cells of a chain may be apart: what lies between is one place."""
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Places on the paths of chosen mechanisms, with the nearest nodes: arrays (k,)."""
+
+    lane: Lanes
+    at: Array
+    node: Lanes
+
+
+@dataclass(frozen=True)
+class _Stops(_Places):
+    """Where groups before stop, or turn fast.
+
+    Nothing passes `walls`; where places are `blind`, nodes beside them foretell nothing.
+    """
+
+    walls: Mask
+    blind: Mask
+
+
+@dataclass(frozen=True)
+class _Minima(_Places):
+    """Where the size of a guard is least, zero where that is rounding; `touches` are those that are events."""
+
+    least: Array
+    touches: Mask
+
+
+@dataclass(frozen=True)
+class Zeros:
+    """The search for zeros on a mesh."""
+
+    guards: Guards
+    mesh: Array
+
+    @property
+    def branches(self) -> Branches:
+        """What was found of the groups before."""
+        return self.guards.continuation.branches
+
+    @cached_property
+    def half(self) -> Array | float:
+        """Half width of the cells about the nodes."""
+        return half_widths(self.mesh)
+
+    def found(
+        self, group: int, value: Array, slope: Array, bend: Array, greatest: Array
+    ) -> tuple[Found, Found]:
+        """Lanes and places where a guard passes zero, and where it touches zero; `greatest` is its greatest size."""
+        with np.errstate(all="ignore"):
+            known = clear(value, slope, bend, self.half)
+            if known.all():
+                return NOWHERE, NOWHERE
+            known |= straight(slope, bend, self.half)
+            there = np.isfinite(value)
+            stops = self._stops(group)
+            rough = there & ~known
+            rough[stops.lane, stops.node] |= ~known[stops.lane, stops.node]
+            lanes, cells = np.nonzero(
+                there[:, :-1]
+                & there[:, 1:]
+                & (value[:, :-1] * value[:, 1:] < 0.0)
+                & ~(rough[:, :-1] | rough[:, 1:])
+            )
+            ends = lanes, self.mesh[cells], self.mesh[cells + 1]
+            if not rough.any():
+                return (lanes, self.guards.roots(group, *ends)), NOWHERE
+            minima = self._looked_into(group, value, slope, rough, stops)
+            pieces = self._divided(group, value, rough, (stops, minima))
+            pieces = self._signed(group, pieces, stops, minima, greatest)
+            others = self._unforeseen(group, pieces, minima)
+        more = changes(pieces, SLACK * self._finest)
+        lanes, low, high = (
+            np.concatenate([ends[0], more[0]]),
+            np.concatenate([ends[1], more[1]]),
+            np.concatenate([ends[2], more[2]]),
+        )
+        found = (minima, others)
+        touched = (
+            np.concatenate([each.lane[each.touches] for each in found]),
+            np.concatenate([each.at[each.touches] for each in found]),
+        )
+        return (lanes, self.guards.roots(group, lanes, low, high)), touched
+
+    @property
+    def _finest(self) -> float:
+        return FINEST * self.branches.unit
+
+    def _nodes_at(self, at: Array) -> Lanes:
+        return nearest_node(self.mesh, at)
+
+    def _stops(self, group: int) -> _Stops:
+        """Where groups before this one stop; where signs do not flip, also where they meet their other assembly.
+
+        And change points about which a group before turns fast: most happens next to them.
+        """
+        kinds = ("limit",) if self.branches.smooth else ("limit", "change point")
+        found = [e for e in self.branches.events if e.group < group and e.kind in kinds]
+        quick = [self._quick(before) for before in range(group)]
+        lanes = np.concatenate(
+            [np.array([e.lane for e in found], dtype=np.intp), *(each[0] for each in quick)]
+        )
+        at = np.concatenate([np.array([e.at for e in found], dtype=np.float64), *(each[1] for each in quick)])
+        walls, blind = np.zeros(len(at), dtype=bool), np.zeros(len(at), dtype=bool)
+        walls[: len(found)] = [e.kind == "limit" for e in found]
+        blind[: len(found)] = True
+        inside = (self.mesh[0] <= at) & (at <= self.mesh[-1])
+        at = at[inside]
+        return _Stops(lanes[inside], at, self._nodes_at(at), walls[inside], blind[inside])
+
+    def _quick(self, group: int) -> Found:
+        """The change points of a group about which it turns fast."""
+        windows = self.guards.continuation.windows_of(group)
+        if windows is None:
+            return NOWHERE
+        half = np.broadcast_to(self.half, self.mesh.shape)[self._nodes_at(windows.centre)]
+        quick = windows.radius < QUICK * half
+        return windows.lane[quick], windows.centre[quick]
+
+    def _looked_into(self, group: int, value: Array, slope: Array, rough: Mask, stops: _Stops) -> _Minima:
+        """The least sizes between nodes, where cells are not known and no group before this one stops."""
+        sign = np.sign(value)
+        looked = rough[:, :-1] | rough[:, 1:]
+        blind = stops.blind
+        looked[stops.lane[blind], np.searchsorted(self.mesh, stops.at[blind]) - 1] = False
+        looked &= sign[:, :-1] == sign[:, 1:]
+        lanes, cells = low_minima(self.mesh, sign * value, sign * slope, looked)
+        at = self.guards.minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
+        return self._touching(group, lanes, at, sign[lanes, cells])
+
+    def _touching(self, group: int, lanes: Lanes, at: Array, sign: Array) -> _Minima:
+        least, bound = self.guards.rounded(group, lanes, at) if len(lanes) else (at, at)
+        near = np.abs(least) <= SAFETY * bound
+        # a radicand that touches zero from below closes in one place, and is not passed
+        touches = near & ((sign > 0.0) | (group not in self.branches.signs))
+        return _Minima(lanes, at, self._nodes_at(at), np.where(near, 0.0, least), touches)
+
+    def _divided(self, group: int, value: Array, rough: Mask, places: Sequence[_Places]) -> CellPieces:
+        """The rough cells in parts that are known, with the nodes beside them."""
+        half = np.broadcast_to(self.half, self.mesh.shape)
+        lanes = np.concatenate([each.lane for each in places])
+        at = np.concatenate([each.at for each in places])
+        nodes = np.concatenate([each.node for each in places])
+        inside = rough[lanes, nodes] & np.isfinite(at)
+        lanes, at, nodes = lanes[inside], at[inside], nodes[inside]
+        order = np.lexsort((at, lanes))
+        lanes, at, nodes = lanes[order], at[order], nodes[order]
+        low, high = self.mesh[nodes] - half[nodes], self.mesh[nodes] + half[nodes]
+        together = (np.diff(lanes) == 0) & (np.diff(nodes) == 0)
+        middle = 0.5 * (at[1:] + at[:-1])[together]
+        low[1:][together], high[:-1][together] = middle, middle
+        plain = rough.copy()
+        plain[lanes, nodes] = False
+        rows, cells = np.nonzero(plain)
+        parts = CellPieces.joined(
+            parts_of(CellPieces.of(rows, self.mesh[cells], half[cells])), towards(lanes, low, high, at)
+        )
+        found = divided(parts, lambda *cell: self.guards.bent(group, *cell), self.branches.unit)
+        beside = np.zeros(rough.shape, dtype=bool)
+        beside[:, 1:] |= rough[:, :-1]
+        beside[:, :-1] |= rough[:, 1:]
+        rows, cells = np.nonzero(beside & ~rough & np.isfinite(value))
+        return CellPieces.joined(
+            found, CellPieces.of(rows, self.mesh[cells], half[cells], value[rows, cells], nodes=True)
+        )
+
+    def _signed(
+        self, group: int, pieces: CellPieces, stops: _Stops, minima: _Minima, greatest: Array
+    ) -> CellPieces:
+        """Cells in the order of the path, with the least sizes as cells of their own; zero where a sign is rounding."""
+        size = np.where(np.isfinite(pieces.value), np.abs(pieces.value), 0.0)
+        most = greatest.copy()  # where a group before turns fast, the nodes may have seen little of it
+        np.maximum.at(most, pieces.lane, size)
+        faint = np.abs(pieces.value) <= DOUBTFUL * most[pieces.lane]
+        doubtful = np.nonzero(~pieces.nodes & (~pieces.known | faint))[0]
+        value = pieces.value.copy()
+        if len(doubtful):
+            _value, bound = self.guards.rounded(group, pieces.lane[doubtful], pieces.centre[doubtful])
+            value[doubtful[~(np.abs(value[doubtful]) > SAFETY * bound)]] = 0.0
+        cores = CellPieces.of(minima.lane, minima.at, self._finest, minima.least)
+        walls = CellPieces.of(stops.lane, stops.at, self._finest, np.inf).taken(stops.walls)
+        cores = cores.taken(np.isfinite(minima.least))
+        return CellPieces.joined(replace(pieces, value=value), cores, walls).sorted()
+
+    def _unforeseen(self, group: int, pieces: CellPieces, minima: _Minima) -> _Minima:
+        """The least sizes between cells of one sign, where no node foretold one.
+
+        They are looked for where zeros lie between two cells, and where a cell was not divided until it was known.
+        """
+        slack = SLACK * self._finest
+        lanes, low, high, sign = (
+            np.concatenate(both)
+            for both in zip(without_sign(pieces, slack), unsettled(pieces, slack), strict=True)
+        )
+        foretold = np.zeros(len(lanes), dtype=bool)
+        for k in range(len(lanes)):
+            near = minima.at[minima.lane == lanes[k]]
+            foretold[k] = ((near > low[k]) & (near < high[k])).any()
+        lanes, low, high, sign = lanes[~foretold], low[~foretold], high[~foretold], sign[~foretold]
+        if len(lanes):
+            falls, rises = (sign * self.guards.jets(group, lanes, x, 1).derivative(1) for x in (low, high))
+            turns = (falls < 0.0) & (rises >= 0.0)
+            lanes, low, high, sign = lanes[turns], low[turns], high[turns], sign[turns]
+        return self._touching(group, lanes, self.guards.minima(group, lanes, low, high), sign)
+
 
 BESIDE_POLE = 1e-6
 """Share of a cell beside a place at infinity where a radicand has its sign again, and not that of rounding."""
 
 
 @dataclass(frozen=True)
-class Scan:
+class EventScan:
     """Search for the events of all groups of a plan, one group after the other."""
 
-    continuation: Continuation
+    continuation: BranchedPlan
     mesh: Array
 
     @property
@@ -77,7 +473,7 @@ class Scan:
         along = self.mesh[None, :]
         with np.errstate(all="ignore"):
             at = bent_frame(self.kinematics, along, self.zeros.half)
-            with suppress(Reached):  # slopes are needed up to the last radicand, and not beyond
+            with suppress(ReachedRadicand):  # slopes are needed up to the last radicand, and not beyond
                 self.kinematics.advance(at, range(last + 1), BENDS, _Searching(self, last))
             plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
             self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, _Counting(self, ARRAYS))
@@ -210,7 +606,7 @@ class Scan:
 class _Counting(Rough):
     """Counts the turns of angles along the mesh, for all that is asked for afterwards."""
 
-    def __init__(self, scan: Scan, m: Namespace) -> None:
+    def __init__(self, scan: EventScan, m: Namespace) -> None:
         super().__init__(scan.continuation, m, scan.mesh[None, :], None)
         self.scan = scan
 
@@ -226,7 +622,7 @@ class _Counting(Rough):
 class _Searching(Bending):
     """Looks for the events of every group before it asks for its sign; goes no further than the last radicand."""
 
-    def __init__(self, scan: Scan, last: int) -> None:
+    def __init__(self, scan: EventScan, last: int) -> None:
         super().__init__(scan.continuation, scan.mesh[None, :], None)
         self.scan = scan
         self.last = last
@@ -238,12 +634,12 @@ class _Searching(Bending):
     def root(self, group: int, radicand: Jet) -> Number:
         self.scan.find(group, radicand)
         if group == self.last:
-            raise Reached(radicand)
+            raise ReachedRadicand(radicand)
         return super().root(group, radicand)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         if group == self.last:
-            raise Reached(None)  # no radicand at all
+            raise ReachedRadicand(None)  # no radicand at all
         self.scan.trace(group)
         super().higher(group, m, at)
 
@@ -253,7 +649,7 @@ class _Searching(Bending):
         return divisor
 
 
-def count(scan: Scan, group: int, key: str, angle: Number) -> None:
+def count(scan: EventScan, group: int, key: str, angle: Number) -> None:
     """Count the turns of an angle on the mesh."""
     branches, mesh = scan.branches, scan.mesh
     quick = QuickTurns(scan.continuation, mesh, group).in_plan(group, key)

@@ -8,10 +8,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.branches import Event
-from centrode.kinematics.continuation import REACH
-from centrode.kinematics.pace import OFF_GRID
-from centrode.kinematics.paths import Path
+from centrode.kinematics.change_points import REACH
+from centrode.kinematics.path import OFF_GRID, Path
+from centrode.kinematics.plan_evaluation import Event
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

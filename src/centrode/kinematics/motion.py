@@ -5,26 +5,235 @@ from __future__ import annotations
 import functools
 import importlib
 from collections.abc import Mapping
-from typing import TypeAlias
+from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import pandas as pd
 import xarray as xr
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.errors import InputError
-from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import Ready, ready
+from centrode.errors import STATUSES_OF_MOTION, InputError
+from centrode.kinematics.path import SampleGrid, span_at
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Progress, Solved, asked_span, solve
-from centrode.kinematics.spans import Span, span_at
-from centrode.locale import _
+from centrode.locale import _, speaking
+from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
+from centrode.quantities import QUANTITIES
+from centrode.structure.assur import name_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
+from centrode.version import __version__
+
+# Results with names: dimensions, units and attributes around the arrays of a motion.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Orders: TypeAlias = tuple[Array | None, Array, Array]
+Variable: TypeAlias = tuple[tuple[str, ...], Any, dict[str, Any]]
+
+BATCH = "mechanism"
+EVENT_KINDS = ("limit", "change point")
+
+
+def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Dataset:
+    """The labelled result of a motion; a batch has the dimension `mechanism` in front.
+
+    What it says in words is English, whatever language messages are in, so that the same motion gives the same file.
+    """
+    batch = bool(vary)
+    front = (BATCH,) if batch else ()
+    variables = _in_time(solved, front)
+    if not solved.ready.kinematics.path.by_time:
+        variables |= _coefficients(solved, front)
+    variables |= judgements_of(solved, front) | _contacts(solved, front)
+    if not batch:
+        variables |= _events(solved)
+    data = xr.Dataset(variables, coords=coordinates_of(solved), attrs=attributes_of(solved))
+    for path, values in (vary or {}).items():
+        data = data.assign_coords({path: (BATCH, np.asarray(values, dtype=np.float64))})
+    return data
+
+
+def named(
+    name: str, dimensions: tuple[str, ...], values: Any, drive_unit: str = "rad", length_unit: str = "m"
+) -> Variable:
+    """A variable of the vocabulary with its dimensions, values and attributes."""
+    return dimensions, values, dict(_words(name, drive_unit, length_unit))
+
+
+@functools.cache
+def _words(name: str, drive_unit: str, length_unit: str) -> Mapping[str, Any]:
+    quantity = QUANTITIES[name].for_drive(drive_unit)
+    if length_unit != "m":
+        quantity = quantity.on_sphere()
+    return {"units": quantity.unit, "symbol": quantity.symbol, "long_name": quantity.long_name}
+
+
+def _lanes(array: Any, batch: tuple[str, ...]) -> Any:
+    return array if batch else array[0]
+
+
+def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
+    """Values and derivatives by time, by the chain rule from those by the path's parameter."""
+    span, unit = solved.span, _length_unit(solved)
+    found: dict[str, Variable] = {}
+    for kind in kinds_of(solved):
+        for order in range(3):
+            values = by_time(kind.orders, order, span)
+            if values is None:
+                continue
+            name, dimensions = kind.names[order], (*front, "sample", *kind.dimensions)
+            found[name] = named(name, dimensions, _lanes(values, front), length_unit=unit)
+    return found
+
+
+def by_time(orders: Orders, order: int, span: SampleGrid) -> Array | None:
+    """Values (order 0), or first or second derivatives by time (lanes, samples, ...); None where there are none."""
+    by_parameter = orders[order]
+    if order == 0 or by_parameter is None:
+        return by_parameter
+    along = (slice(None), *[None] * (by_parameter.ndim - 2))  # samples, then what stands behind them
+    values = by_parameter * (span.rate if order == 1 else span.rate**2)[along]
+    if order == 2 and span.accelerates:
+        values += orders[1] * span.second_rate[along]
+    return values
+
+
+@dataclass(frozen=True)
+class VariableKind:
+    """What has a value and two derivatives by the path's parameter: names by time, prefix per unit of the drive."""
+
+    names: tuple[str, str, str]
+    prefix: str
+    dimensions: tuple[str, ...]
+    orders: Orders
+
+
+def kinds_of(solved: Solved) -> list[VariableKind]:
+    """Everything of a motion that has derivatives."""
+
+    def orders(values: Array) -> Orders:
+        return values[0], values[1], values[2]
+
+    points = ("position", "velocity", "acceleration")
+    slides = ("slide", "slide_velocity", "slide_acceleration")
+    turning = ("angle", "angular_velocity", "angular_acceleration")
+    found = [VariableKind(points, "", ("point", "axis"), orders(solved.all_points))]
+    if solved.spins is None:
+        found.append(VariableKind(turning, "angular_", ("link",), orders(solved.angles)))
+    else:
+        spins = (None, solved.spins[0], solved.spins[1])
+        found.append(VariableKind(turning, "angular_", ("link", "axis"), spins))
+        joints = ("joint_angle", "joint_velocity", "joint_acceleration")
+        found.append(VariableKind(joints, "joint_", ("joint",), orders(solved.angles)))
+    return [*found, VariableKind(slides, "slide_", ("guide",), orders(solved.slides))]
+
+
+def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
+    """Kinematic coefficients: derivatives by the drive's value."""
+    unit = solved.ready.parameter.units[0]
+    found = {}
+    for order, word in ((1, "velocity"), (2, "acceleration")):
+        for kind in kinds_of(solved):
+            name, dimensions = f"{kind.prefix}{word}_coefficient", (*front, "sample", *kind.dimensions)
+            values = _lanes(kind.orders[order], front)
+            found[name] = named(name, dimensions, values, unit, _length_unit(solved))
+    return found
+
+
+def _length_unit(solved: Solved) -> str:
+    return solved.layout.space.unit
+
+
+def _contacts(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
+    """Where rolling wheels touch their tracks."""
+    if not solved.ready.mechanism.rolling:
+        return {}
+    dimensions = (*front, "sample", "rolling", "axis")
+    return {"contact": named("contact", dimensions, _lanes(solved.contacts, front))}
+
+
+def judgements_of(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
+    """Status and residual of every sample."""
+    dimensions, status, attributes = named("status", (*front, "sample"), _lanes(solved.status, front))
+    attributes["flag_values"] = np.array([s.value for s in STATUSES_OF_MOTION], dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(s.name.lower() for s in STATUSES_OF_MOTION)
+    return {
+        "status": (dimensions, status, attributes),
+        "residual": named("residual", (*front, "sample"), _lanes(solved.residual, front)),
+    }
+
+
+def _events(solved: Solved) -> dict[str, Variable]:
+    events = solved.events()
+    parameter = solved.ready.parameter
+    with speaking("en"):
+        groups = [name_of(solved.ready.structure.groups[event.group]) for event in events]
+    kinds = np.array([EVENT_KINDS.index(event.kind) for event in events], dtype=np.int8)
+    dimensions, values, attributes = named("event_kind", ("event",), kinds)
+    attributes["flag_values"] = np.arange(len(EVENT_KINDS), dtype=np.int8)
+    attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in EVENT_KINDS)
+    places = named("event_value", ("event",), np.array([event.at for event in events]))
+    places[2]["units"] = parameter.variable.unit
+    return {
+        "event_value": places,
+        "event_kind": (dimensions, values, attributes),
+        "event_group": named("event_group", ("event",), np.array(groups, dtype=str)),
+    }
+
+
+def coordinates_of(solved: Solved) -> dict[str, Any]:
+    """Times, values of the drives, and names."""
+    path = solved.ready.kinematics.path
+    values = path.drive_values(ARRAYS, solved.span.parameter)
+    count = len(solved.span.time)
+    drives = np.stack([np.broadcast_to(value, (count,)) for value in values.values()], axis=-1)
+    units = solved.ready.parameter.units
+    drive_value = named("drive_value", ("sample", "drive"), drives, units[0])
+    if len(set(units)) > 1:
+        drive_value[2]["units"] = " ".join(units)
+    frame = tuple(solved.ready.structure.dimensions.frame)
+    joints = {} if solved.spins is None else {"joint": labels_of(solved.layout.angles)}
+    wheels = tuple(wheel.id for wheel in solved.ready.mechanism.rolling)
+    return {
+        "time": named("time", ("sample",), solved.span.time),
+        "drive_value": drive_value,
+        "point": labels_of(frame + solved.layout.points),
+        "link": labels_of(solved.layout.links),
+        **joints,
+        "guide": labels_of(solved.layout.guides),
+        **({"rolling": labels_of(wheels)} if wheels else {}),
+        "drive": labels_of(tuple(values)),
+        "axis": labels_of(solved.layout.space.axes),
+    }
+
+
+def labels_of(names: tuple[str, ...]) -> Any:
+    """Names as a coordinate."""
+    # an index as it is: from an array xarray makes one by way of every array library it finds, pint included
+    return pd.Index(names, dtype=object)
+
+
+def attributes_of(solved: Solved) -> dict[str, Any]:
+    """What a result says of itself."""
+    mechanism = solved.ready.mechanism
+    with speaking("en"):
+        worst = solved.worst_constraint.label
+    return {
+        "title": mechanism.title,
+        "mechanism": mechanism_text(mechanism),
+        "version": __version__,
+        "mobility": solved.ready.mobility,
+        "worst_residual": float(np.nanmax(solved.residual, initial=0.0)),
+        "worst_residual_constraint": worst,
+    }
+
 
 Values: TypeAlias = Mapping[str, npt.ArrayLike]
 
 # what machine code needs is not loaded for one motion
-_many = functools.partial(importlib.import_module, "centrode.kinematics.compiled.many")
+_many = functools.partial(importlib.import_module, "centrode.kinematics.compiled.batch")
 
 
 def motion(
@@ -75,7 +284,7 @@ def motion(
 
 
 def _solved(
-    ready: Ready, span: Span, numbers: Dimensions | None, lanes: int, progress: Progress | None
+    ready: Ready, span: SampleGrid, numbers: Dimensions | None, lanes: int, progress: Progress | None
 ) -> Solved:
     if numbers is None:
         return solve(ready, span, progress=progress)

@@ -17,9 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
-from centrode.kinematics.continuation import Continuation, Smooth
-from centrode.kinematics.evaluate import Reached
-from centrode.kinematics.stretches import Stretch, TurnedStretch
+from centrode.kinematics.change_points import BranchedPlan, Smooth
+from centrode.kinematics.plan_evaluation import ReachedRadicand
+from centrode.kinematics.stretches import ParameterStretch, TurnedStretch
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 
@@ -41,12 +41,12 @@ class QuickTurns:
     They lie about change points of the groups before `end`, and of others whose events are known already.
     """
 
-    continuation: Continuation
+    continuation: BranchedPlan
     mesh: Array
     end: int
 
     @cached_property
-    def stretches(self) -> list[Stretch]:
+    def stretches(self) -> list[ParameterStretch]:
         """One for each change point, or for several that are next to each other."""
         places: dict[int, list[tuple[float, float]]] = {}
         for group in range(len(self.continuation.kinematics.structure.groups)):
@@ -94,7 +94,7 @@ class QuickTurns:
         try:
             with np.errstate(all="ignore"):
                 kinematics.positions(ARRAYS, self._parameter, hooks)
-        except Reached as reached:
+        except ReachedRadicand as reached:
             return self._divided(reached.value)
         return []
 
@@ -109,7 +109,7 @@ class _Counted(Smooth):
 
     def __init__(
         self,
-        continuation: Continuation,
+        continuation: BranchedPlan,
         m: Namespace,
         parameter: Array,
         lanes: Lanes,
@@ -121,11 +121,11 @@ class _Counted(Smooth):
 
     def continued(self, group: int, key: str, angle: Number) -> Number:
         if (group, key) == (self.group, self.key):
-            raise Reached(angle)
+            raise ReachedRadicand(angle)
         return super().continued(group, key, angle)
 
 
-def _stretches(lane: int, windows: list[tuple[float, float]], mesh: Array) -> list[Stretch]:
+def _stretches(lane: int, windows: list[tuple[float, float]], mesh: Array) -> list[ParameterStretch]:
     """The stretches about windows (centre, half width) of one mechanism; those that meet are one."""
     pieces: list[tuple[int, int, list[float]]] = []
     for centre, half in sorted(windows):
@@ -144,5 +144,5 @@ def _stretches(lane: int, windows: list[tuple[float, float]], mesh: Array) -> li
         nodes = mesh[first : last + 1]
         between = [x for x in inner if nodes[0] < x < nodes[-1]]
         places = np.unique(np.concatenate([nodes, between]))
-        found.append(Stretch(lane, places, first, np.searchsorted(places, nodes)))
+        found.append(ParameterStretch(lane, places, first, np.searchsorted(places, nodes)))
     return found

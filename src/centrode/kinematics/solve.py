@@ -10,19 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
-from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.contacts import contacts_at
-from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.events import Scan
-from centrode.kinematics.layout import Layout, layout_of
+from centrode.kinematics.assembly import with_phases
+from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.phases import with_phases
-from centrode.kinematics.places import Places, start_of
-from centrode.kinematics.ready import Ready
-from centrode.kinematics.residuals import Kept
-from centrode.kinematics.rooms import Room
-from centrode.kinematics.sampling import Samples
-from centrode.kinematics.spans import Span, span_of
+from centrode.kinematics.path import SampleGrid, span_of
+from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, PlanLayout, layout_of
+from centrode.kinematics.prepared import Ready
+from centrode.kinematics.sampling import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
 from centrode.locale import _
 from centrode.model.asked import REACHABLE
 from centrode.structure.dimensions import Dimensions
@@ -58,8 +52,8 @@ class Solved:
     """
 
     ready: Ready
-    span: Span
-    layout: Layout
+    span: SampleGrid
+    layout: PlanLayout
     branches: Branches
     all_points: Array
     points: Array
@@ -81,7 +75,7 @@ class Solved:
         return sorted((e for e in inside if e.lane == lane), key=lambda e: e.at)
 
 
-def asked_span(ready: Ready, samples: int | None, start: float | None, stop: float | None) -> Span:
+def asked_span(ready: Ready, samples: int | None, start: float | None, stop: float | None) -> SampleGrid:
     """Evenly spaced samples; what is left out is what the description asks for."""
     study = ready.mechanism.study
     start = study.start if start is None else start
@@ -94,7 +88,7 @@ def asked_span(ready: Ready, samples: int | None, start: float | None, stop: flo
 
 def solve(
     ready: Ready,
-    span: Span,
+    span: SampleGrid,
     numbers: Dimensions | None = None,
     lanes: int = 1,
     progress: Progress | None = None,
@@ -106,7 +100,7 @@ def solve(
     layout = layout_of(kinematics)
     check_size(layout, lanes, samples)
     size = lanes_at_once(kinematics, span)
-    room = Room.of(layout, kinematics.numbers, lanes, samples)
+    room = ResultArrays.of(layout, kinematics.numbers, lanes, samples)
     parts = []
     for first in range(0, lanes, size):
         rows = slice(first, min(first + size, lanes))
@@ -134,17 +128,17 @@ def solve(
     )
 
 
-def lanes_at_once(kinematics: Kinematics, span: Span) -> int:
+def lanes_at_once(kinematics: Kinematics, span: SampleGrid) -> int:
     """How many mechanisms of a batch are solved together."""
     return max(1, CHUNK // max(len(span.parameter), len(mesh_of(kinematics.path, span.parameter))))
 
 
-def size_of(layout: Layout, lanes: int, samples: int) -> int:
+def size_of(layout: PlanLayout, lanes: int, samples: int) -> int:
     """Memory [bytes] that a result takes, on the way to it as well."""
     return BYTES * lanes * samples * max(layout.width, 1)
 
 
-def check_size(layout: Layout, lanes: int, samples: int) -> None:
+def check_size(layout: PlanLayout, lanes: int, samples: int) -> None:
     """Refuse a result that would not fit into the memory of an ordinary machine."""
     most = GREATEST_RESULT // max(layout.width, 1)
     if lanes * samples > most:
@@ -157,7 +151,7 @@ def check_size(layout: Layout, lanes: int, samples: int) -> None:
         )
 
 
-def fit_for(ready: Ready, span: Span) -> Ready:
+def fit_for(ready: Ready, span: SampleGrid) -> Ready:
     """With several drives: the path's unit of time, by which groups of higher class are followed, fit for the span."""
     kinematics = ready.kinematics
     ends = np.append(span.parameter, kinematics.path.initial)
@@ -174,7 +168,7 @@ def _reach_if_needed(
     extent = 2.0 * np.pi * TURNS if path.turns else SEARCH * path.unit
     ends = np.array([path.initial - extent, path.initial + extent])
     continuation = start_of(ready, ready.kinematics)
-    Scan(continuation, mesh_of(path, ends)).run()
+    EventScan(continuation, mesh_of(path, ends)).run()
     low, high = continuation.branches.reach(0)
     # a cylinder does not get shorter than zero
     return (max(low, 0.0), high) if path.driven[0].drive.kind == "distance" else (low, high)
@@ -210,9 +204,9 @@ class _Part:
     contacts: Array
 
 
-def _solve_part(ready: Ready, kinematics: Kinematics, span: Span, samples: Samples) -> _Part:
+def _solve_part(ready: Ready, kinematics: Kinematics, span: SampleGrid, samples: Samples) -> _Part:
     """Fill in the samples and angles of some mechanisms of a batch."""
-    places = Places.along(ready, kinematics, span.parameter, samples.status.shape[0])
+    places = MotionOnPath.along(ready, kinematics, span.parameter, samples.status.shape[0])
     found = places.fill(span.parameter, samples)
     contacts = contacts_at(kinematics, found.at, samples)
     return _Part(places.continuation.branches, found.residual, found.worst_constraint, contacts)

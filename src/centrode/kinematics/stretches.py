@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.pace import nearest_node
+from centrode.kinematics.path import nearest_node
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -19,7 +19,7 @@ TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
-class Stretch:
+class ParameterStretch:
     """Places about a change point of one mechanism, nodes of the mesh at both ends: they begin with the node `first`.
 
     `nodes` are the numbers of those places that are nodes of the mesh, in their order.
@@ -35,12 +35,12 @@ class Stretch:
 class TurnedStretch:
     """The angle of a link in (-pi, pi] at the places of a stretch, and how often it has passed pi since the first."""
 
-    stretch: Stretch
+    stretch: ParameterStretch
     angle: Array
     passed: Array
 
     @classmethod
-    def of(cls, stretch: Stretch, angle: Array) -> TurnedStretch:
+    def of(cls, stretch: ParameterStretch, angle: Array) -> TurnedStretch:
         """Turns counted from place to place; where an angle is absent none are passed."""
         steps = np.round(-np.diff(angle) / TURN)
         passed = np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(steps), steps, 0.0))])

@@ -14,7 +14,7 @@ from centrode.analysis.instant_centres.cases import Case
 from centrode.analysis.instant_centres.centres import bearing
 from centrode.analysis.instant_centres.construction import Construction, Step
 from centrode.errors import Status
-from centrode.kinematics.ready import ready
+from centrode.kinematics.prepared import ready
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Display, Mechanism
 from centrode.model.spoken import body_name

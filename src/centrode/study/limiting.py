@@ -8,7 +8,7 @@ import json
 from typing import TypeAlias
 
 from centrode.errors import InputError
-from centrode.kinematics.several_drives.reach import End, Limits, limits
+from centrode.kinematics.several_inputs.limits import End, Limits, limits
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.study.wording import value_text

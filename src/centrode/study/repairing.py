@@ -11,7 +11,7 @@ from centrode.analysis.repair import Change, Repair
 from centrode.analysis.repairing.candidates import Candidates
 from centrode.analysis.repairing.impossible import impossible
 from centrode.analysis.rotatability import rotatability
-from centrode.kinematics.ready import ready
+from centrode.kinematics.prepared import ready
 from centrode.locale import _, ngettext, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.wording import value_text

@@ -13,11 +13,11 @@ from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.steady_motion.machine import MachineResults, machine_results
 from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
-from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import Ready, ready
-from centrode.kinematics.several_drives.coefficients import coefficients_of, most_samples
+from centrode.kinematics.motion import dataset_of
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.several_inputs.coefficients import coefficients_of, most_samples
 from centrode.kinematics.solve import Solved, asked_span, solve
-from centrode.kinematics.spans import span_at
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
 from centrode.sheets.sheet import Scalar

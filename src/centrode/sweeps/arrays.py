@@ -10,11 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.layout import layout_of
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.plan_evaluation import layout_of
+from centrode.kinematics.prepared import Ready
 from centrode.kinematics.solve import Solved, solve
-from centrode.kinematics.spans import Span
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
 from centrode.sweeps import limits
@@ -38,7 +38,7 @@ class Task:
     """What is computed for every mechanism: a mechanism made ready, its samples, what is asked for, what varies."""
 
     ready: Ready
-    span: Span
+    span: SampleGrid
     asked: Asked
     paths: tuple[str, ...]
 

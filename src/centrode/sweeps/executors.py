@@ -11,7 +11,7 @@ from typing import Protocol
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.executors import AUTO, MACHINE_CODE, chosen
 from centrode.errors import InputError
-from centrode.kinematics.compiled.deciding import Untraceable
+from centrode.kinematics.compiled.trace import Untraceable
 from centrode.locale import _
 from centrode.model.problems import nearest, shown
 from centrode.structure.dimensions import Dimensions, dimensions_of

@@ -11,13 +11,18 @@ import numpy.typing as npt
 
 from centrode.algebra.expressions import Node, as_node, variable
 from centrode.algebra.graphs import Graph
-from centrode.kinematics.compiled.drives import inputs_of
-from centrode.kinematics.compiled.judging import Judging
-from centrode.kinematics.compiled.traced import Traced
-from centrode.kinematics.compiled.turns import before_of, centre_of
-from centrode.kinematics.compiled.variables import ALONG, SCALE, Varied, boxed
-from centrode.kinematics.compiled.walks.walking import Walk
-from centrode.kinematics.compiled.walks.ways import Way, way_of
+from centrode.kinematics.compiled.event_screening import EventScreening
+from centrode.kinematics.compiled.path_following import Walk, Way, way_of
+from centrode.kinematics.compiled.trace import Traced
+from centrode.kinematics.compiled.variables import (
+    ALONG,
+    SCALE,
+    Varied,
+    before_of,
+    boxed,
+    centre_of,
+    inputs_of,
+)
 from centrode.sweeps.arrays import Task
 from centrode.sweeps.folds import Folds
 from centrode.sweeps.slopes import Slopes
@@ -94,7 +99,7 @@ class Expressed:
         return found
 
     @cached_property
-    def judging(self) -> Judging:
+    def judging(self) -> EventScreening:
         """How mechanisms are judged before."""
         residual = as_node(self.traced.solved.residual[0, 0])
         nodes = [node for column in self.columns.values() for node in column]
@@ -103,7 +108,7 @@ class Expressed:
         told_by = before_of if self.traced.steps else centre_of
         links = tuple(link for link in self.traced.turning if told_by(link) in used)
         names = tuple(dict.fromkeys([*self.varied.names, SCALE]))
-        return Judging(self.traced, self.task.span.parameter, names, links, self.kernels, self.threads)
+        return EventScreening(self.traced, self.task.span.parameter, names, links, self.kernels, self.threads)
 
     @cached_property
     def judges(self) -> dict[str, Node]:

@@ -21,13 +21,11 @@ from centrode.algebra.graph_arrays import evaluate
 from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.errors import Status
-from centrode.kinematics.compiled.deciding import Untraceable
-from centrode.kinematics.compiled.events.eventful import Eventful
-from centrode.kinematics.compiled.traced import traced
+from centrode.kinematics.compiled.events import Eventful
+from centrode.kinematics.compiled.path_following import SURE, beginnings
+from centrode.kinematics.compiled.trace import Untraceable, traced
 from centrode.kinematics.compiled.variables import taken, varied_of
-from centrode.kinematics.compiled.walks.beginnings import beginnings
-from centrode.kinematics.compiled.walks.walking import SURE
-from centrode.kinematics.residuals import CLOSED
+from centrode.kinematics.sampling import CLOSED
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
 from centrode.sweeps import limits

@@ -12,7 +12,7 @@ import xarray as xr
 
 from centrode.dynamics.reduction import REDUCED, Values, reduced_number
 from centrode.errors import InputError
-from centrode.kinematics.dataset import by_time, kinds_of
+from centrode.kinematics.motion import by_time, kinds_of
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
 from centrode.model.problems import nearest, shown

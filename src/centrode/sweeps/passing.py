@@ -14,9 +14,8 @@ from centrode.algebra.executors import streamer
 from centrode.algebra.graphs import Graph
 from centrode.algebra.reductions import Reduction, together
 from centrode.algebra.scans import Scan
-from centrode.kinematics.compiled.passes import Pass, greatest, least
-from centrode.kinematics.compiled.variables import PARAMETER
-from centrode.kinematics.compiled.walks.walking import Walking
+from centrode.kinematics.compiled.path_following import Walking
+from centrode.kinematics.compiled.variables import PARAMETER, Pass, greatest, least
 from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -12,8 +12,7 @@ from centrode.algebra.gradients import gradient
 from centrode.algebra.graphs import Graph, rebuilt, split
 from centrode.algebra.operations import CONSTANT, VARIABLE
 from centrode.algebra.reductions import Reduction
-from centrode.kinematics.compiled.deciding import Untraceable
-from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.trace import Traced, Untraceable
 from centrode.kinematics.compiled.variables import Varied
 from centrode.locale import mark
 from centrode.structure.gearing import Straight

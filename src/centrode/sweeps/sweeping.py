@@ -12,8 +12,8 @@ import xarray as xr
 from centrode.algebra.arrays import ARRAYS
 from centrode.dynamics.reduction import REDUCED, check_reducible, reduction_of
 from centrode.errors import InputError
-from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import ready
+from centrode.kinematics.motion import dataset_of
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

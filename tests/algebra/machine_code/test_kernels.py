@@ -19,8 +19,8 @@ from centrode.algebra.graphs import Graph
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.algebra.scans import Scan
-from centrode.kinematics.evaluate import FixedSigns
-from centrode.kinematics.ready import ready
+from centrode.kinematics.plan_evaluation import FixedSigns
+from centrode.kinematics.prepared import ready
 
 NEEDS = "machine code needs llvmlite: pip install 'centrode[fast]'"
 kernels = pytest.importorskip("centrode.algebra.machine_code.kernels", reason=NEEDS)

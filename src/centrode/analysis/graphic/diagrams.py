@@ -15,10 +15,10 @@ from centrode.analysis.graphic.instant import drawing_of, driven_rates, stages
 from centrode.analysis.graphic.scales import chosen_scale
 from centrode.analysis.graphic.stage import Drawing, Edge, Stage, Step
 from centrode.errors import InputError, MotionError, Status
-from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.motion import dataset_of
+from centrode.kinematics.path import SampleGrid, span_at
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import asked_span, solve
-from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
@@ -183,7 +183,7 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
 def _constructed(
     prepared: Ready,
     exact: xr.Dataset,
-    span: Span,
+    span: SampleGrid,
     board: Board,
     scales: Mapping[str, float],
     grains: tuple[float, float] = (0.0, 0.0),

@@ -13,9 +13,8 @@ from centrode.analysis.graphic.board import Board
 from centrode.analysis.graphic.construction import construct
 from centrode.analysis.graphic.stage import Drawing, Stage
 from centrode.geometry.plane import pose_with_point
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import Ready
-from centrode.kinematics.spans import Span
+from centrode.kinematics.path import JETS, SampleGrid
+from centrode.kinematics.prepared import Ready
 from centrode.structure.constraints import Positions
 from centrode.structure.plan import Structure
 
@@ -55,7 +54,7 @@ def positions_at(prepared: Ready, exact: xr.Dataset) -> Positions:
     return at
 
 
-def driven_rates(prepared: Ready, span: Span) -> tuple[dict[str, float], dict[str, float]]:
+def driven_rates(prepared: Ready, span: SampleGrid) -> tuple[dict[str, float], dict[str, float]]:
     """First and second derivatives by time of every drive's value."""
     path = prepared.kinematics.path
     if not path.by_time:

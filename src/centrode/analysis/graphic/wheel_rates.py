@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from centrode.analysis.graphic.board import dot
 from centrode.analysis.graphic.stage import Stage
-from centrode.kinematics.wheels import solved_angles
+from centrode.kinematics.dyads import solved_angles
 from centrode.structure.constraints import FRAME, GearRatio, NoSlip, Positions
 from centrode.structure.gearing import Straight
 from centrode.structure.groups import AngleEquation, AngleGiven, Arm, Meshed, Rolled, Train

@@ -17,7 +17,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import InputError
-from centrode.kinematics.dataset import BATCH
+from centrode.kinematics.motion import BATCH
 from centrode.locale import _
 from centrode.model.files import parse_mechanism
 from centrode.model.mechanism import FRAME, Guide, Mechanism

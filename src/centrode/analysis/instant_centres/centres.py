@@ -22,7 +22,7 @@ from centrode.analysis.instant_centres.bodies import (
 from centrode.analysis.instant_centres.cases import Case, Recogniser
 from centrode.analysis.instant_centres.turning_bodies import TurningBodies, turning_bodies_of
 from centrode.errors import InputError
-from centrode.kinematics.dataset import labels_of, named
+from centrode.kinematics.motion import labels_of, named
 from centrode.kinematics.solve import GREATEST_RESULT
 from centrode.locale import _
 

@@ -15,7 +15,7 @@ from centrode.analysis.instant_centres.polodes import Polodes, polodes_of
 from centrode.analysis.instant_centres.relative import seen_by
 from centrode.analysis.instant_centres.turning_bodies import turning_bodies_of
 from centrode.errors import Status
-from centrode.kinematics.dataset import named
+from centrode.kinematics.motion import named
 from centrode.model.motion_parameter import parameter_values
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(4)

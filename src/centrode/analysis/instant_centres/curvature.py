@@ -21,14 +21,13 @@ from centrode.analysis.instant_centres.bodies import (
 from centrode.analysis.instant_centres.relative import Seen
 from centrode.errors import InputError, NotComputedYet, Status
 from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
-from centrode.kinematics.dataset import coordinates_of, judgements_of, labels_of, named
-from centrode.kinematics.events import Scan
+from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.places import start_of
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.motion import coordinates_of, judgements_of, labels_of, named
+from centrode.kinematics.path import JETS, SampleGrid, span_at
+from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.sampling import start_of
 from centrode.kinematics.solve import fit_for, solve
-from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.problems import nearest, shown
@@ -128,11 +127,11 @@ def _check_body(mechanism: Mechanism, name: str) -> None:
         raise InputError("link", what, nearest(name, names))
 
 
-def jet_positions(prepared: Ready, span: Span) -> Positions:
+def jet_positions(prepared: Ready, span: SampleGrid) -> Positions:
     """Positions with three derivatives by the path's parameter, (1, samples) each, on the branch of the motion."""
     fitted = fit_for(prepared, span)
     continuation = start_of(fitted, fitted.kinematics)
-    Scan(continuation, mesh_of(fitted.kinematics.path, span.parameter)).run()
+    EventScan(continuation, mesh_of(fitted.kinematics.path, span.parameter)).run()
     along = span.parameter[None, :]
     with np.errstate(all="ignore"):
         return continuation.kinematics.positions(

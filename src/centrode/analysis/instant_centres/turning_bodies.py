@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from centrode.analysis.instant_centres.bodies import Array, Named, Pair, described, sliders_of
-from centrode.kinematics.dataset import BATCH
+from centrode.kinematics.motion import BATCH
 from centrode.model.mechanism import FRAME, Guide, Mechanism
 from centrode.model.sphere import unit_vector
 

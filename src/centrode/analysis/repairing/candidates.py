@@ -12,10 +12,10 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.analysis.repairing.varying import Varying, places_anew
 from centrode.geometry.plane import Vector, add, reversed_rotor, rotor_of, subtract, turned
-from centrode.kinematics.evaluate import Choices, FixedSigns, Kinematics
-from centrode.kinematics.groups import solve_group
-from centrode.kinematics.ready import Ready
-from centrode.kinematics.sides import side_names, side_words, stated_side
+from centrode.kinematics.assembly_mode import side_names, side_words, stated_side
+from centrode.kinematics.dyads import solve_group
+from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
+from centrode.kinematics.prepared import Ready
 from centrode.model.frozen import FrozenMap
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.paths import with_value
@@ -148,7 +148,7 @@ def signs_at_start(
                 decided = not placed or stated_side(kinematics, group) is not None
                 hints = {} if decided else _hints(mechanism, group, angles)
                 signs[index] = _nearer(kinematics, group, index, at, hints) if hints else own
-            choices = Choices(FixedSigns(ARRAYS, signs), index)
+            choices = SideChoices(FixedSigns(ARRAYS, signs), index)
             solve_group(group, ARRAYS, kinematics.numbers, at, choices)
     return {index: np.broadcast_to(sign, (size, 1)) for index, sign in signs.items()}
 
@@ -171,7 +171,9 @@ def _nearer(
     off = []
     for sign in (1.0, -1.0):
         trial = at.copied()
-        solve_group(group, ARRAYS, kinematics.numbers, trial, Choices(_Clamped(ARRAYS, {index: sign}), index))
+        solve_group(
+            group, ARRAYS, kinematics.numbers, trial, SideChoices(_Clamped(ARRAYS, {index: sign}), index)
+        )
         total: Number = 0.0
         for link, hint in hints.items():
             cosine, sine = trial.poses[link].rotor

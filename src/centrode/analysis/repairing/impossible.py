@@ -12,7 +12,7 @@ import numpy as np
 
 from centrode.analysis.repairing.candidates import Candidates
 from centrode.geometry.plane import cross, subtract
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.locale import _
 from centrode.model.mechanism import FRAME
 from centrode.structure.groups import Meet, Rail, Rod, TurnedLink

@@ -16,8 +16,8 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.analysis.repairing.candidates import Batch
 from centrode.geometry.plane import Circle, dot, subtract
-from centrode.kinematics.evaluate import Choices, FixedSigns, Kinematics
-from centrode.kinematics.groups import loci_of, solve_group
+from centrode.kinematics.dyads import loci_of, solve_group
+from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet
 
@@ -37,7 +37,7 @@ def squared_sines(batch: Batch, nodes: int) -> Array:
     found = []
     with np.errstate(all="ignore"):
         for index, group in enumerate(kinematics.structure.groups):
-            choices = Choices(hooks, index)
+            choices = SideChoices(hooks, index)
             size = _greatest(kinematics, group, at, choices)
             solve_group(group, ARRAYS, kinematics.numbers, at, choices)
             if size is not None:
@@ -64,7 +64,7 @@ class _Keeping(FixedSigns):
         return divisor
 
 
-def _greatest(kinematics: Kinematics, group: Group, at: Positions, choices: Choices) -> Number | None:
+def _greatest(kinematics: Kinematics, group: Group, at: Positions, choices: SideChoices) -> Number | None:
     """The radicand of a group at a transmission angle of 90 degrees; None for a group without one."""
     numbers = kinematics.numbers
     if isinstance(group, Aim):

@@ -8,7 +8,7 @@ from math import pi
 from typing import TypeAlias
 
 from centrode.errors import InputError
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.paths import value_at

@@ -18,8 +18,8 @@ from centrode.analysis.turning.symbols import (
 )
 from centrode.analysis.turning.tours import Tour
 from centrode.geometry.plane import dot, subtract
-from centrode.kinematics.evaluate import Choices, FixedSigns
-from centrode.kinematics.groups import aim_curve, loci_of
+from centrode.kinematics.dyads import aim_curve, loci_of
+from centrode.kinematics.plan_evaluation import FixedSigns, SideChoices
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.quantities import display_unit
@@ -144,7 +144,7 @@ def _of_two_rods(about: _About, group: Meet) -> Cause:
 def _stretched(about: _About, group: Meet) -> tuple[bool, float]:
     """Whether two circles touch from outside, and how far apart their centres are."""
     at = about.tour.stopped(about.value, ARRAYS)
-    choices = Choices(FixedSigns(ARRAYS, {about.index: 0.0}), about.index)
+    choices = SideChoices(FixedSigns(ARRAYS, {about.index: 0.0}), about.index)
     space = about.numbers.space
     with np.errstate(all="ignore"):
         one, other = loci_of(group, ARRAYS, about.numbers, at, choices)

@@ -17,8 +17,8 @@ import numpy.typing as npt
 
 from centrode.analysis.turning.combinations import Combinations
 from centrode.analysis.turning.tours import Tour
-from centrode.kinematics.branches import Event
-from centrode.kinematics.sides import side_names, side_words
+from centrode.kinematics.assembly_mode import side_names, side_words
+from centrode.kinematics.plan_evaluation import Event
 from centrode.locale import _
 from centrode.structure.groups import Newton
 

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.analysis.turning.tours import Tour
-from centrode.kinematics.branches import Branches, Event
-from centrode.kinematics.continuation import Continuation
-from centrode.kinematics.events import Scan
-from centrode.kinematics.pace import OFF_GRID
+from centrode.kinematics.change_points import BranchedPlan
+from centrode.kinematics.events import EventScan
+from centrode.kinematics.path import OFF_GRID
+from centrode.kinematics.plan_evaluation import Branches, Event
 from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -62,12 +62,12 @@ class Combinations:
         signs = {group: self.signs[:, k].copy() for k, group in enumerate(self.signed)}
         start = tour.continuation.branches
         branches = Branches(start.initial, start.forward, start.unit, lanes, signs, False, start.angles)
-        continuation = Continuation(
+        continuation = BranchedPlan(
             tour.continuation.kinematics, branches, tour.continuation.start, tour.continuation.nominal
         )
         count = len(self.nodes)
         ends = [self.nodes[0] + self.length] if tour.angular else []
-        at = Scan(continuation, np.concatenate([self.nodes, ends])).run()
+        at = EventScan(continuation, np.concatenate([self.nodes, ends])).run()
         closed = np.ones((lanes, count), dtype=bool)
         for x in _numbers(at):
             closed &= np.isfinite(np.broadcast_to(x, (lanes, count + len(ends)))[:, :count])

@@ -14,7 +14,7 @@ from math import pi
 
 from centrode.algebra.arrays import ARRAYS
 from centrode.geometry.plane import cross, subtract
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.prepared import Ready
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
 from centrode.model.names import body_word

@@ -15,8 +15,8 @@ from centrode.analysis.turning.alignments import Pairs, in_line
 from centrode.analysis.turning.dwells import Dwell, dwells_of
 from centrode.analysis.turning.tours import Tour
 from centrode.analysis.turning.watched import STILL, Course, Watched
-from centrode.kinematics.layout import rotor_of_angle, slide_of
-from centrode.kinematics.paths import JETS
+from centrode.kinematics.path import JETS
+from centrode.kinematics.plan_evaluation import rotor_of_angle, slide_of
 from centrode.structure.groups import Meet
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -12,15 +12,14 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.kinematics.branches import Event
-from centrode.kinematics.continuation import Continuation, Smooth
-from centrode.kinematics.events import Scan
+from centrode.kinematics.change_points import BranchedPlan, Smooth
+from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.pace import OFF_GRID
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.places import start_of
-from centrode.kinematics.ready import Ready
-from centrode.kinematics.several_drives.holding import check_closed, held_path, starting_at
+from centrode.kinematics.path import JETS, OFF_GRID
+from centrode.kinematics.plan_evaluation import Event
+from centrode.kinematics.prepared import Ready
+from centrode.kinematics.sampling import start_of
+from centrode.kinematics.several_inputs.limits import check_closed, held_path, starting_at
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive
 from centrode.structure.constraints import Positions
@@ -51,7 +50,7 @@ class Tour:
     prepared: Ready
     drive: Drive
     held: Mapping[str, float]
-    continuation: Continuation
+    continuation: BranchedPlan
     low: float
     high: float
     extent: float
@@ -175,7 +174,7 @@ def tour_of(prepared: Ready, drive: str, held: Mapping[str, float]) -> Tour:
     chosen = next(one.drive for one in path.driven if one.drive.id == drive)
     extent = tau * TURNS if chosen.kind == "angle" else SEARCH * path.unit
     ends = np.array([path.initial - extent, path.initial + extent])
-    Scan(continuation, mesh_of(path, ends)).run()
+    EventScan(continuation, mesh_of(path, ends)).run()
     if not only:
         check_closed(continuation)
     low, high = continuation.branches.reach(0)

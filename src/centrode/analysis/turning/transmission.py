@@ -15,9 +15,9 @@ from centrode.geometry.plane import cross as plane_cross
 from centrode.geometry.plane import dot as plane_dot
 from centrode.geometry.plane import place, subtract, turned
 from centrode.geometry.sphere import cross, dot, tangent
-from centrode.kinematics.evaluate import Kinematics
-from centrode.kinematics.groups import aim_curve
-from centrode.kinematics.paths import JETS
+from centrode.kinematics.dyads import aim_curve
+from centrode.kinematics.path import JETS
+from centrode.kinematics.plan_evaluation import Kinematics
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Slot, Stroke

@@ -19,7 +19,7 @@ from centrode.cams.followers.geometry import FollowerCam, Oscillating
 from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.roller_path import angles_of
 from centrode.errors import Status
-from centrode.kinematics.dataset import Variable, named
+from centrode.kinematics.motion import Variable, named
 from centrode.model.cams.files import AnyCam, cam_text, with_follower
 from centrode.model.cams.parts import Material as DescribedMaterial
 from centrode.model.cams.plate import PlateCam

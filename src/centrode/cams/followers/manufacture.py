@@ -15,7 +15,7 @@ from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.nodes import inside
 from centrode.cams.profiles import CamOutline, Layer
 from centrode.errors import InputError
-from centrode.kinematics.dataset import Variable, named
+from centrode.kinematics.motion import Variable, named
 from centrode.locale import _
 from centrode.model.cams.files import AnyCam, with_follower
 

@@ -20,7 +20,7 @@ from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.cams.nodes import mesh
 from centrode.errors import InputError, Status
-from centrode.kinematics.dataset import Variable, labels_of, named
+from centrode.kinematics.motion import Variable, labels_of, named
 from centrode.laws import CURVES, Segment, SegmentedLaw
 from centrode.locale import _, mark
 from centrode.model.cams.files import AnyCam, cam_text, with_follower

@@ -18,11 +18,11 @@ from centrode.dynamics.state import Mass, Moving, Place, State
 from centrode.dynamics.steady_motion.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME, Panels
 from centrode.dynamics.steady_motion.steady import SteadySolution, solution_of, turned_at
 from centrode.errors import InputError, MotionError, NotComputedYet
-from centrode.kinematics.dataset import Variable, attributes_of, coordinates_of, judgements_of, named
-from centrode.kinematics.places import Places
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.motion import Variable, attributes_of, coordinates_of, judgements_of, named
+from centrode.kinematics.path import SampleGrid, span_at
+from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.sampling import MotionOnPath
 from centrode.kinematics.solve import Solved, asked_span, solve
-from centrode.kinematics.spans import Span, span_at
 from centrode.locale import _, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.model.problems import nearest, shown
@@ -152,7 +152,7 @@ class Instants:
     ready: Ready
     pace: Callable[[Array], ShaftMotion]
     panels: Panels | None = None
-    _places: Places | None = field(default=None, repr=False)
+    _places: MotionOnPath | None = field(default=None, repr=False)
 
     @classmethod
     def of(cls, mechanism: Mechanism, speed: Speed = "mean") -> Instants:
@@ -175,7 +175,7 @@ class Instants:
         places = self._places
         if places is None or not (places.mesh[0] <= np.min(values) and np.max(values) <= places.mesh[-1]):
             reach = values if places is None else np.append(values, places.mesh[[0, -1]])
-            places = Places.along(self.ready, self.ready.kinematics, reach)
+            places = MotionOnPath.along(self.ready, self.ready.kinematics, reach)
             self._places = places
         moving = Moving(0.0 * values, values, np.ones(len(values)))
         return State.of_samples(
@@ -588,7 +588,7 @@ def _asked(
     stop: float | None,
     at: npt.ArrayLike | None,
     speed: Speed,
-) -> tuple[Ready, Span]:
+) -> tuple[Ready, SampleGrid]:
     """The samples, passed at the speed that is asked for."""
     if speed == "steady":
         if start is not None or stop is not None:
@@ -598,7 +598,7 @@ def _asked(
         turned = turned_at(found, samples, at)
         rate, second = found.speed.at(turned), found.speed.acceleration(turned)
         sense = found.cycle.sense
-        return found.prepared, Span(
+        return found.prepared, SampleGrid(
             found.speed.time(turned), found.cycle.value(turned), sense * rate, sense * second
         )
     prepared = ready(mechanism)
@@ -610,7 +610,7 @@ def _asked(
     if mechanism.machine is not None and path.parameter.is_uniform:
         rate = np.full(len(span.parameter), np.copysign(mechanism.machine.mean_speed, path.forward))
         time = path.parameter.times(span.parameter, path.driven[0].start, rate)
-        return prepared, Span(time, span.parameter, rate, 0.0 * rate)
+        return prepared, SampleGrid(time, span.parameter, rate, 0.0 * rate)
     return prepared, span
 
 

@@ -41,10 +41,10 @@ from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer, reduced
 from centrode.dynamics.state import Moving, State
 from centrode.errors import InputError, MotionError, Status
-from centrode.kinematics.dataset import dataset_of
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.motion import dataset_of
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, solve
-from centrode.kinematics.spans import span_at
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Mechanism
 from centrode.model.problems import nearest

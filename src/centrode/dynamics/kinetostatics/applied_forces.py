@@ -18,10 +18,9 @@ from centrode.dynamics.state import About, Mass, Moving, Spread, State, Vector3
 from centrode.dynamics.steady_motion.steady import solution_of, turned_at
 from centrode.dynamics.wrenches import Moment, Vector, Wrench, couple, on_link
 from centrode.geometry.sphere import add, cross, dot, times
-from centrode.kinematics.paths import JETS
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.path import JETS, SampleGrid
+from centrode.kinematics.prepared import Ready
 from centrode.kinematics.solve import Solved
-from centrode.kinematics.spans import Span
 from centrode.model.mechanism import Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -180,11 +179,11 @@ def pace_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
 
 def steady_span(
     mechanism: Mechanism, samples: int | None, at: npt.ArrayLike | None
-) -> tuple[Ready, Span, InputMotion]:
+) -> tuple[Ready, SampleGrid, InputMotion]:
     """Samples of a machine in steady motion, with the real speed of its drive; raises as `steady_motion` does."""
     found = solution_of(mechanism)
     turned, cycle, speed = turned_at(found, samples, at), found.cycle, found.speed
-    span = Span(
+    span = SampleGrid(
         speed.time(turned),
         cycle.value(turned),
         cycle.sense * speed.at(turned),
@@ -204,5 +203,5 @@ def rates_of(solved: Solved, pace: InputMotion) -> Array:
     return np.stack([np.broadcast_to(speed, solved.span.time.shape) for speed in speeds], axis=-1)
 
 
-def _along(span: Span, source: str) -> InputMotion:
+def _along(span: SampleGrid, source: str) -> InputMotion:
     return InputMotion(Moving(span.time, span.parameter, span.rate), span.second_rate, source)

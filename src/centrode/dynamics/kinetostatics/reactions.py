@@ -52,7 +52,7 @@ from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import State
 from centrode.dynamics.wrenches import Vector, Wrench, components, total
 from centrode.errors import InputError, NotComputedYet, Status
-from centrode.kinematics.dataset import (
+from centrode.kinematics.motion import (
     Variable,
     attributes_of,
     coordinates_of,
@@ -60,9 +60,9 @@ from centrode.kinematics.dataset import (
     labels_of,
     named,
 )
-from centrode.kinematics.ready import ready
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import Solved, asked_span, solve
-from centrode.kinematics.spans import span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Entity

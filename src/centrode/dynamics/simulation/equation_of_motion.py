@@ -30,7 +30,7 @@ from centrode.dynamics.reduction import Reducer
 from centrode.dynamics.state import Moving, State
 from centrode.dynamics.steady_motion.cycle import NODES, resolved
 from centrode.errors import InputError, MotionError, Status
-from centrode.kinematics.branches import AT_THE_START
+from centrode.kinematics.plan_evaluation import AT_THE_START
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulations import DRIVING_LAW_VARIABLES, MOST_TURNS, Simulation

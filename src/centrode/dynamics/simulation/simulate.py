@@ -35,12 +35,12 @@ from centrode.dynamics.simulation.equation_of_motion import (
 )
 from centrode.dynamics.simulation.stepping import Stepper, Until, compiled, even_times, fixed_steps
 from centrode.errors import InputError, MotionError
-from centrode.kinematics.compiled.deciding import Untraceable
-from centrode.kinematics.dataset import attributes_of, coordinates_of, dataset_of, judgements_of, named
-from centrode.kinematics.layout import layout_of
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.compiled.trace import Untraceable
+from centrode.kinematics.motion import attributes_of, coordinates_of, dataset_of, judgements_of, named
+from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.plan_evaluation import layout_of
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, check_size, solve
-from centrode.kinematics.spans import Span
 from centrode.locale import _
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
@@ -208,7 +208,7 @@ def simulation_dataset(
     forces = _forces(setting, times, states, senses)
     moving = senses != 0.0
     acceleration = np.where(moving, forces.acceleration(states[RATE]), 0.0)
-    solved = solve(setting.prepared, Span(times, states[VALUE], states[RATE], acceleration))
+    solved = solve(setting.prepared, SampleGrid(times, states[VALUE], states[RATE], acceleration))
     unit = solved.ready.parameter.units[0]
     curves = _curves(setting, states, forces, acceleration, moving)
     curves_named = {name: named(name, ("sample",), values, unit) for name, values in curves.items()}

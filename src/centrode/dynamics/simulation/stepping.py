@@ -50,12 +50,10 @@ from centrode.dynamics.simulation.equation_of_motion import Array as States
 from centrode.dynamics.simulation.interpolation import Interpolant
 from centrode.dynamics.state import Moving
 from centrode.errors import MotionError
-from centrode.kinematics.compiled.deciding import Untraceable
-from centrode.kinematics.compiled.traced import traced
-from centrode.kinematics.compiled.turns import centre_of, winding_of
-from centrode.kinematics.compiled.variables import PARAMETER, TIME, varied_of
+from centrode.kinematics.compiled.trace import Untraceable, traced
+from centrode.kinematics.compiled.variables import PARAMETER, TIME, centre_of, varied_of, winding_of
 from centrode.kinematics.compiled.variables import RATE as RATE_VARIABLE
-from centrode.kinematics.spans import Span
+from centrode.kinematics.path import SampleGrid
 from centrode.locale import _, mark
 from centrode.model.simulations import MOST_TURNS
 from centrode.numerics.search import bisect, root
@@ -241,7 +239,7 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
     """Derivatives of the states as expressions of time, value and rate."""
     reducer = rows.reducer
     # two samples whose times and rates differ: then these are variables
-    span = Span(np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([1.0, 2.0]), np.zeros(2))
+    span = SampleGrid(np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([1.0, 2.0]), np.zeros(2))
     found = traced(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
     if found.steps:
         raise Untraceable(mark("groups of higher class"))

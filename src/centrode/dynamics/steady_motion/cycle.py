@@ -16,9 +16,9 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.text import TextFormula
 from centrode.dynamics.reduction import Reducer
 from centrode.errors import InputError, MotionError, Status
-from centrode.kinematics.ready import Ready
+from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.prepared import Ready
 from centrode.kinematics.solve import solve
-from centrode.kinematics.spans import Span
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
@@ -390,7 +390,7 @@ def _places(prepared: Ready, turned: Array) -> Array:
     """Coordinates of all moving points (n, coordinates)."""
     path = prepared.kinematics.path
     ones = np.ones(len(turned))
-    solved = solve(prepared, Span(turned, path.initial + path.forward * turned, ones, 0.0 * ones))
+    solved = solve(prepared, SampleGrid(turned, path.initial + path.forward * turned, ones, 0.0 * ones))
     missing = ~np.isin(solved.status[0], (Status.OK, Status.SINGULAR))
     if missing.any():
         raise _locks(prepared, turned[missing])

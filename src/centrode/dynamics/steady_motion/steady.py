@@ -35,10 +35,10 @@ from centrode.dynamics.steady_motion.speed import (
     with_inertia,
 )
 from centrode.errors import InputError, MotionError
-from centrode.kinematics.dataset import dataset_of, named
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.motion import dataset_of, named
+from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
-from centrode.kinematics.spans import Span
 from centrode.locale import _
 from centrode.model import limits
 from centrode.model.machines import DRIVING_VARIABLES, Machine
@@ -349,7 +349,7 @@ def steady_dataset(found: SteadySolution, turned: Array, method: Method = "exact
     cycle = found.cycle
     speed = found.speed if method == "exact" else found.by_source
     rate, second = cycle.sense * speed.at(turned), cycle.sense * speed.acceleration(turned)
-    span = Span(speed.time(turned), cycle.value(turned), rate, second)
+    span = SampleGrid(speed.time(turned), cycle.value(turned), rate, second)
     data = dataset_of(solve(found.prepared, span))
     with_energies = {
         name: named(name, ("sample",), values) for name, values in _curves(found, turned).items()

@@ -14,14 +14,12 @@ from centrode.algebra.bends import BendFunctions, Bent, Cells
 from centrode.algebra.expression_functions import EXPRESSIONS
 from centrode.algebra.expressions import Operand, variable
 from centrode.algebra.jets import Jet
-from centrode.kinematics.bending import bent_drives, half_widths
-from centrode.kinematics.compiled.drives import traced_path
-from centrode.kinematics.compiled.variables import PARAMETER, Varied
-from centrode.kinematics.evaluate import Hooks, Reached
-from centrode.kinematics.paths import Path
-from centrode.kinematics.phases import with_phases
-from centrode.kinematics.ready import Ready
-from centrode.kinematics.spans import Span
+from centrode.kinematics.assembly import with_phases
+from centrode.kinematics.compiled.variables import PARAMETER, Varied, traced_path
+from centrode.kinematics.events import bent_drives, half_widths
+from centrode.kinematics.path import Path, SampleGrid
+from centrode.kinematics.plan_evaluation import EvaluationPolicy, ReachedRadicand
+from centrode.kinematics.prepared import Ready
 from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -33,7 +31,7 @@ RADICAND, DIVISOR = "radicand", "divisor"
 
 
 @dataclass
-class _Bounding(Hooks):
+class _Bounding(EvaluationPolicy):
     """Signs as they are given; keeps radicands and divisors up to the first group of higher class."""
 
     signs: Mapping[int, Operand]
@@ -49,17 +47,17 @@ class _Bounding(Hooks):
         return divisor
 
     def continued(self, group: int, key: str, angle: Number) -> Number:
-        raise Reached(None)  # only walks along the path count turns
+        raise ReachedRadicand(None)  # only walks along the path count turns
 
     def higher(self, group: int, m: Any, at: Positions) -> None:
-        raise Reached(None)
+        raise ReachedRadicand(None)
 
     def _bent(self, number: Number) -> Bent:
         return number if isinstance(number, Bent) else Bent(number, 0.0, 0.0, self.cells)
 
 
 def bent_guards(
-    ready: Ready, span: Span, varied: Varied, signs: Mapping[int, Operand] | None = None
+    ready: Ready, span: SampleGrid, varied: Varied, signs: Mapping[int, Operand] | None = None
 ) -> dict[tuple[str, int], Bent]:
     """(radicand or divisor, group) -> the number on a cell of the mesh, as far as its second derivative is bounded."""
     known = ready.kinematics
@@ -71,7 +69,7 @@ def bent_guards(
     drives = {drive: _driven(drive, x, cells) for drive, x in path.drive_values(NODE_BENDS, place).items()}
     hooks = _Bounding(ready.assembled.signs if signs is None else signs, {}, cells)
     at = Positions.of_frame(kinematics.numbers, drives, NODE_BENDS)
-    with suppress(Reached):
+    with suppress(ReachedRadicand):
         kinematics.advance(at, range(len(kinematics.structure.groups)), NODE_BENDS, hooks)
     return hooks.found
 

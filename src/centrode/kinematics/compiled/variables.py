@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from centrode.algebra.executors import runner
 from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Operand, variable
+from centrode.algebra.expressions import Node, Operand, as_node, variable
+from centrode.algebra.graphs import Graph
 from centrode.algebra.jet_functions import JetFunctions
-from centrode.kinematics.spans import Span
+from centrode.algebra.jets import Jet
+from centrode.algebra.reductions import Reduction
+from centrode.algebra.scans import Scan
+from centrode.kinematics.path import JETS, Path, SampleGrid
+from centrode.kinematics.sampling import ORDERS
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -94,7 +102,7 @@ def arrays_of(numbers: Dimensions) -> list[Array]:
 
 
 @dataclass(frozen=True)
-class TracedSpan(Span):
+class TracedSpan(SampleGrid):
     """One place of the path, whose numbers may be variables."""
 
     accelerated: bool = False
@@ -104,7 +112,7 @@ class TracedSpan(Span):
         return self.accelerated
 
 
-def span_of_variables(span: Span) -> TracedSpan:
+def span_of_variables(span: SampleGrid) -> TracedSpan:
     """The place as variables; rates that are the same everywhere as numbers."""
     accelerates = span.accelerates
 
@@ -116,10 +124,197 @@ def span_of_variables(span: Span) -> TracedSpan:
     return TracedSpan(boxed([variable(TIME)]), place, row(RATE, span.rate), second, accelerates)
 
 
-def times_of(span: Span) -> dict[str, Array]:
+def times_of(span: SampleGrid) -> dict[str, Array]:
     """What the variables of a place that tell of time stand for at the samples of a span: name -> (samples,)."""
     return {
         TIME: span.time,
         RATE: span.rate,
         SECOND_RATE: span.second_rate,
     }
+
+
+# Several drives in a traced plan: their values and rates are variables of a place on the path.
+#
+# A law is not traced: what it gives at the places is computed by the arrays, once for all mechanisms.
+# Derivatives that
+# are the same everywhere stay numbers, so that plans skip their zeros as the arrays do.
+
+Namespace: TypeAlias = Any
+
+
+@dataclass(frozen=True)
+class TracedPath(Path):
+    """A path of several drives, the value of each with its derivatives as variables."""
+
+    known: Mapping[str, Number] = field(default_factory=dict)
+
+    def drive_values(self, m: Namespace, parameter: Number) -> dict[str, Number]:
+        """Jets where the parameter is one, else values."""
+        if isinstance(parameter, Jet):
+            return dict(self.known)
+        values = {drive: x.value if isinstance(x, Jet) else x for drive, x in self.known.items()}
+        if isinstance(parameter, np.ndarray):
+            return {drive: boxed([x]) for drive, x in values.items()}
+        return values
+
+
+def traced_path(path: Path, parameter: Array, order: int) -> Path:
+    """The path as a plan is traced with; `parameter` are some of its places."""
+    if not path.by_time:
+        return path
+    known: dict[str, Number] = {}
+    for drive, value in _jets(path, parameter, order).items():
+        known[drive] = value
+        if isinstance(value, Jet):
+            known[drive] = Jet([_operand(drive, k, x) for k, x in enumerate(value.coefficients)])
+    whole = {each.name: getattr(path, each.name) for each in fields(Path)}
+    return TracedPath(**whole, known=known)
+
+
+def places_of(path: Path, parameter: Array, order: int) -> dict[str, Array]:
+    """What the variables of places on the path stand for at parameters: name -> (n,)."""
+    found = {PARAMETER: parameter}
+    if not path.by_time:
+        return found
+    for drive, value in _jets(path, parameter, order).items():
+        if isinstance(value, Jet):
+            rows = (np.broadcast_to(x, parameter.shape) for x in value.coefficients)
+            found |= {_name(drive, k): row for k, row in enumerate(rows)}
+    return found
+
+
+def inputs_of(path: Path, span: SampleGrid) -> dict[str, Array]:
+    """What the variables of a place stand for at the samples of a span: name -> (samples,)."""
+    return {**places_of(path, span.parameter, ORDERS - 1), **times_of(span)}
+
+
+def winders_of(path: Path) -> dict[str, Operand]:
+    """What links may turn with: the drive's value, or those of several drives."""
+    if not path.by_time:
+        return {path.driven[0].drive.id: variable(PARAMETER)}
+    values = path.drive_values(None, variable(PARAMETER))
+    return {one.drive.id: values[one.drive.id] for one in path.driven if one.drive.kind == "angle"}
+
+
+def _jets(path: Path, parameter: Array, order: int) -> dict[str, Number]:
+    with np.errstate(all="ignore"):
+        return Path.drive_values(path, JETS, Jet.variable(parameter, order))
+
+
+def _operand(drive: str, k: int, coefficient: Number) -> Operand:
+    return variable(_name(drive, k)) if np.ndim(coefficient) else float(coefficient)
+
+
+def _name(drive: str, k: int) -> str:
+    return f"drive {drive}, {k}"
+
+
+# Turns of angles as expressions: told by a centre that may run on with the drive, or by the place before.
+
+TURN = 2.0 * math.pi
+WHOLE = 1.5 * 2.0**52
+"""Added and taken away again it leaves the nearest whole number: the bits behind the point do not fit."""
+MOST = 0.8
+"""Greatest change of an angle [rad] from one place at which turns are counted to the next."""
+AWAY = 0.2
+"""How far [rad] angles stay from half a turn off what tells their turns."""
+
+
+def whole_turns(near: Number, angle: Number) -> Number:
+    """The turns to add to an angle to come as close as may be to another, over any algebra."""
+    return ((near - angle) * (1.0 / TURN) + WHOLE) - WHOLE
+
+
+def turns_of(link: str, cosine: Operand, sine: Operand, winders: Mapping[str, Operand]) -> Operand:
+    """The turns that bring an angle within half a turn of a centre that runs on with a drive."""
+    centre: Operand = variable(centre_of(link))
+    for drive, value in winders.items():
+        centre = centre + variable(winding_of(link, drive)) * value
+    turns: Operand = whole_turns(centre, EXPRESSIONS.atan2(sine, cosine))
+    return turns
+
+
+def turns_along(link: str, cosine: Operand, sine: Operand) -> Operand:
+    """The turns that bring an angle within half a turn of what it was at the place before."""
+    turns: Operand = whole_turns(variable(before_of(link)), EXPRESSIONS.atan2(sine, cosine))
+    return turns
+
+
+def before_of(link: str) -> str:
+    """Name of a link's angle at the place before."""
+    return f"angle before {link}"
+
+
+def centre_of(link: str) -> str:
+    """Name of the middle of a link's angles, those of the drive (times its winding) taken off."""
+    return f"centre {link}"
+
+
+def winding_of(link: str, drive: str) -> str:
+    """Name of the turns that a link makes for one of a drive: -1, 0 or 1."""
+    return f"winding {link} with {drive}"
+
+
+# One pass over places of the path for many mechanisms: what is left of it are a few numbers of each.
+
+Values: TypeAlias = Mapping[str, Array]
+
+m = EXPRESSIONS
+INFINITE = float("inf")
+
+
+@dataclass(frozen=True)
+class Pass:
+    """A reduction over places that have nothing to do with one another.
+
+    Attributes
+    ----------
+    names : what may be known of mechanisms
+    places : name -> (places,), what may be known of places
+    """
+
+    reduction: Reduction
+    names: Sequence[str]
+    places: Values
+
+    @cached_property
+    def scan(self) -> Scan:
+        """The scan, with those of the names that are used."""
+        used = frozenset(Graph(self.reduction.state).variables)
+        return Scan(
+            tuple(name for name in dict.fromkeys(self.names) if name in used),
+            tuple(name for name in self.places if name in used),
+            {},
+            self.reduction.state,
+        )
+
+    def run(self, values: Values, kernels: str, threads: int, steps: int = 1) -> dict[str, Array]:
+        """The states behind all places, name -> (lanes,); `steps` says how many there are where nothing tells."""
+        scan = self.scan
+        if not scan.state:
+            return {}
+        parameters = np.stack([values[name] for name in scan.parameters]) if scan.parameters else None
+        inputs = np.stack([self.places[name] for name in scan.inputs]) if scan.inputs else None
+        lanes = len(next(iter(values.values())))
+        start = np.repeat([[value] for value in self.reduction.start.values()], lanes, axis=1)
+        run = runner(scan, kernels, threads=threads)
+        state = run(parameters, inputs, start, steps=None if scan.inputs else steps).state
+        return dict(zip(scan.state, state, strict=True))
+
+
+def greatest(name: str, value: Node, start: float = -INFINITE) -> Reduction:
+    """The greatest of all places; NaN where one is: such a mechanism is not clear."""
+    return Reduction({name: as_node(m.max(value, variable(name)))}, {name: start})
+
+
+def least(name: str, value: Node) -> Reduction:
+    """The least of all places; NaN where one is."""
+    return Reduction({name: as_node(m.min(value, variable(name)))}, {name: INFINITE})
+
+
+def least_of(values: Sequence[Node]) -> Node:
+    """The least of several; NaN where one is."""
+    found = values[0]
+    for value in values[1:]:
+        found = as_node(m.min(found, value))
+    return found

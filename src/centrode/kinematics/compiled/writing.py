@@ -17,7 +17,7 @@ from centrode.algebra.graphs import Graph, ordered
 from centrode.algebra.machine_code.tables import FUNCTIONS
 from centrode.algebra.operations import VARIABLE
 from centrode.algebra.scans import Scan
-from centrode.kinematics.compiled.traced import Traced
+from centrode.kinematics.compiled.trace import Traced
 from centrode.kinematics.compiled.variables import PARAMETER, boxed
 from centrode.kinematics.solve import Solved
 

@@ -14,12 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.jets import Jet
-from centrode.kinematics.higher_class.bordering import Shifts, bordered, motion_along
-from centrode.kinematics.higher_class.newton import settled, size_of
-from centrode.kinematics.higher_class.reduction import Linear, solved
-from centrode.kinematics.higher_class.surroundings import Surroundings
-from centrode.kinematics.higher_class.system import Motion, total
-from centrode.kinematics.paths import JETS
+from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
+from centrode.kinematics.higher_class.newton import Shifts, bordered, motion_along, settled, size_of
+from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, solved, total
+from centrode.kinematics.path import JETS
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
@@ -36,7 +34,7 @@ CONTRACTION = 0.2
 
 
 @dataclass
-class Places:
+class CurvePlaces:
     """Places on curves, one lane each; all arrays have one row a place.
 
     `numbers` (k, width + 1) are state and parameter, `first` their derivatives by the curve's arc; `along` is the
@@ -60,11 +58,11 @@ class Places:
     def parameter(self) -> Array:
         return self.numbers[:, -1]
 
-    def of(self, which: Lanes | Mask) -> Places:
+    def of(self, which: Lanes | Mask) -> CurvePlaces:
         """Some of the places."""
-        return Places(*(getattr(self, f.name)[which] for f in fields(self)))
+        return CurvePlaces(*(getattr(self, f.name)[which] for f in fields(self)))
 
-    def put(self, which: Lanes | Mask, others: Places) -> None:
+    def put(self, which: Lanes | Mask, others: CurvePlaces) -> None:
         """Put others in some of the places."""
         for f in fields(self):
             getattr(self, f.name)[which] = getattr(others, f.name)
@@ -76,23 +74,23 @@ class Places:
 
 
 @dataclass(frozen=True)
-class Reached:
+class ReachedPlace:
     """Places found on planes square to curves at their bases.
 
     `arc` is their distance along the bases' directions, `first` and `second` are Taylor coefficients of numbers
     by it; `wrong` is by how much the foretold place was off.
     """
 
-    places: Places
+    places: CurvePlaces
     arc: Array
     first: Array
     second: Array
     wrong: Array
     found: Mask
 
-    def of(self, which: Lanes | Mask) -> Reached:
+    def of(self, which: Lanes | Mask) -> ReachedPlace:
         """Some of the places."""
-        return Reached(
+        return ReachedPlace(
             self.places.of(which), self.arc[which], self.first[which], self.second[which], self.wrong[which],
             self.found[which],
         )  # fmt: skip
@@ -101,12 +99,12 @@ class Reached:
 def reach(
     around: Surroundings,
     lanes: Lanes,
-    base: Places,
+    base: CurvePlaces,
     along: Array,
     parameter: Array,
     state: Array,
     stride: Array | None = None,
-) -> Reached:
+) -> ReachedPlace:
     """Where curves pass planes square to `along` through foretold places.
 
     They are as good as it takes to foretell others at such strides; without these, to the last digit.
@@ -143,14 +141,16 @@ def reach(
         length = np.sqrt(total(slope * slope))
         # the determinant bordered by the curve's own direction is that by the plane's, times their cosine
         size = np.linalg.det(matrix) * length
-        places = Places(numbers, first / length[:, None], second, slope / length[:, None], size, base.weight)
+        places = CurvePlaces(
+            numbers, first / length[:, None], second, slope / length[:, None], size, base.weight
+        )
         _rate, places.second = _by_distance(places, first, second)
         inward = _by_distance(base, first, second)
     found &= np.isfinite(inward[1]).all(axis=1)
-    return Reached(places, base.distance(numbers - base.numbers), *inward, wrong, found)
+    return ReachedPlace(places, base.distance(numbers - base.numbers), *inward, wrong, found)
 
 
-def _by_distance(base: Places, first: Array, second: Array) -> tuple[Array, Array]:
+def _by_distance(base: CurvePlaces, first: Array, second: Array) -> tuple[Array, Array]:
     """Taylor coefficients by the distance along a base's direction, from those by any other variable."""
     rate, bend = base.distance(first)[:, None], base.distance(second)[:, None]
     return first / rate, second / rate**2 - first * bend / rate**3
@@ -173,7 +173,7 @@ def _coefficients(
     still = {entity: (0.0,) * entity.unknowns for entity in follow}
     one = motion_along(linear, still, follow, slope)
     zero = np.zeros(len(parameter))
-    straight = Motion(
+    straight = GroupMotion(
         {e: tuple(Jet((zero, x, zero)) for x in shift) for e, shift in one.shifts.items()},
         [Jet((zero, x, zero)) for x in one.free],
     )
@@ -182,7 +182,7 @@ def _coefficients(
     right = np.concatenate([system.stacked(rest), zero[:, None]], axis=1)
     bend = solved(matrix, right[:, :, None])[:, :, 0]
     two = motion_along(linear, moved, follow, bend)
-    curved = Motion(
+    curved = GroupMotion(
         {
             e: tuple(Jet((zero, x, y)) for x, y in zip(one.shifts[e], two.shifts[e], strict=True))
             for e in one.shifts
@@ -196,7 +196,7 @@ def _coefficients(
     return system.stacked(first), system.stacked(second)
 
 
-def quintic(base: Places, reached: Reached) -> Array:
+def quintic(base: CurvePlaces, reached: ReachedPlace) -> Array:
     """Polynomials (k, 6, width + 1) through two places each, in the share of the arc between them.
 
     Values, first and second derivatives agree at both ends; the parameter is that beyond the base.
@@ -210,3 +210,171 @@ def quintic(base: Places, reached: Reached) -> Array:
     start = base.numbers.copy()
     start[:, -1] = 0.0
     return np.stack([start, c1, c2, c3, c4, c5], axis=1)
+
+
+# Limits of a group of higher class: places of its curve at which the path's parameter turns back.
+
+LIMIT_STEPS = 30
+"""Most Newton steps along the curve to a limit, from where the polynomial between two places turns back."""
+SMALL_ARC = 1e-8
+"""After a step this small, in the arc between the two places, the next is below rounding."""
+LONGEST = 0.1
+"""Greatest such step, in the arc between the two places."""
+LEAST_MARGIN = 8.0
+"""Units of rounding of the parameter itself that a place may be away from a limit and still be the limit."""
+
+
+@dataclass(frozen=True)
+class CurveLimits:
+    """Limits reached from places, and by how much rounding may shift the parameter there."""
+
+    reached: ReachedPlace
+    margin: Array
+
+
+def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: ReachedPlace) -> CurveLimits:
+    """Limits between places and those reached beyond them."""
+    whole = quintic(here, there)
+    share = _first_turn(whole[:, :, -1])
+    arrived = np.zeros(len(share), dtype=bool)
+    for _step in range(LIMIT_STEPS):
+        powers = share[:, None] ** np.arange(6)
+        value = total(whole * powers[:, :, None])
+        parameter = here.parameter + value[:, -1]
+        state = around.blank(lanes).righted(value[:, :-1])
+        limit = reach(around, lanes, here, here.along, parameter, state)
+        with np.errstate(all="ignore"):
+            change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / there.arc
+            change = np.where(np.isfinite(change), np.clip(change, -LONGEST, LONGEST), np.inf)
+        if arrived.all():
+            break
+        share = np.where(arrived | np.isinf(change), share, share + change)
+        arrived |= np.abs(change) <= SMALL_ARC
+    limit.found[:] &= arrived
+    return CurveLimits(limit, _margin(around, lanes, limit.places))
+
+
+def _first_turn(coefficients: Array) -> Array:
+    """The first share in [0, 1] at which polynomials (k, 6) turn back."""
+    found = np.full(len(coefficients), 0.5)
+    for k, c in enumerate(coefficients):
+        roots = np.polynomial.Polynomial(c).deriv().roots()
+        real = np.sort(roots.real[np.abs(roots.imag) < 1e-6])
+        inside = real[(real >= -1e-6) & (real <= 1.0 + 1e-6)]
+        found[k] = inside[0] if len(inside) else 0.5
+    return found
+
+
+def _margin(around: Surroundings, lanes: Lanes, places: CurvePlaces) -> Array:
+    """By how much rounding of the equations may shift a limit along the path."""
+    parameter, state = places.parameter, places.state
+    system, linear, _moved, _rest, _follow, matrix = bordered(around, lanes, parameter, state, None)
+    values = system.residual(ROUNDED, system.at(ROUNDED, around.bounded(parameter, lanes), state))
+    zero = np.zeros(len(parameter))
+    _moved, rest = linear.reduced([Rounded(zero, zero + Rounded.of(x).bound) for x in values])
+    bounds = system.stacked([Rounded.of(x).bound for x in rest])
+    with np.errstate(all="ignore"):
+        # the combination of equations that does not feel the group's own motion there tells the parameter
+        least = np.linalg.svd(np.where(np.isfinite(matrix), matrix, 0.0)[:, :, :-1])[0][:, :, -1]
+        pushed = np.abs(total(least * matrix[:, :, -1]))
+        shift = around.unit * total(np.abs(least) * bounds) / pushed
+    spacing = LEAST_MARGIN * np.spacing(np.maximum(np.abs(parameter), 1e-3 * around.unit))
+    return np.asarray(np.fmax(SAFETY * shift, spacing), dtype=np.float64)
+
+
+# Where two curves of a group of higher class meet: a change point, told from a near miss.
+#
+# At a change point the equations are dependent, parameter included. Seen along the two directions in which
+# they
+# tell least, the worst equation has a saddle there; its value at the saddle is to a group of higher class
+# what the
+# radicand is to a dyad: zero within its rounding error at a change point, anything else a near miss
+# (Golubitsky
+# and Schaeffer, Singularities and Groups in Bifurcation Theory I, 1985, chapter 1).
+
+CROSSING_STEPS = 20
+GREATEST = 0.05
+"""Greatest step towards a saddle, in rad or in the greatest length."""
+FLAT_SADDLE = 1e-11
+"""A saddle is flat: its value is exact to the square of this."""
+NEAR = 3.0
+"""How many arcs away from its beginning a crossing may lie to belong to it."""
+
+
+@dataclass
+class _Saddle:
+    """A place on its way to the saddle: one lane."""
+
+    around: Surroundings
+    lane: Lanes
+    parameter: Array
+    state: Array
+
+    def approach(self) -> tuple[float, bool]:
+        """Step towards the saddle; returns the size of the step and whether it is one."""
+        system, linear, moved, rest, follow, matrix = bordered(
+            self.around, self.lane, self.parameter, self.state, None
+        )
+        left, values, right = np.linalg.svd(matrix[0])
+        least, plane = left[:, -1], right[-2:]
+        bends = [self._bend(least, d) for d in (plane[0], plane[1], plane[0] + plane[1])]
+        mixed = 0.5 * (bends[2] - bends[0] - bends[1])
+        hessian = np.array([[bends[0], mixed], [mixed, bends[1]]])
+        inside = -np.linalg.solve(hessian, plane @ matrix[0].T @ least)
+        back = right[: len(values) - 1].T @ ((left[:, :-1].T @ rest[0]) / values[:-1])
+        step = plane.T @ inside + back
+        size = float(np.max(np.abs(step)))
+        step *= min(1.0, GREATEST / size)
+        self.state = system.moved(self.state, motion_along(linear, moved, follow, step[None, :]))
+        self.parameter = self.parameter + self.around.unit * step[-1]
+        return size, bool(np.linalg.det(hessian) < 0.0)
+
+    def _bend(self, least: Array, direction: Array) -> float:
+        """Second derivative of the worst equation in a direction of the curve's coordinates."""
+        system, linear, _moved, _rest, follow, _matrix = bordered(
+            self.around, self.lane, self.parameter, self.state, None
+        )
+        zero = np.zeros(1)
+        still = {entity: (0.0,) * entity.unknowns for entity in follow}
+        one = motion_along(linear, still, follow, direction[None, :])
+        shifts = {e: tuple(Jet((zero, x, zero)) for x in shift) for e, shift in one.shifts.items()}
+        straight = GroupMotion(shifts, [Jet((zero, x, zero)) for x in one.free])
+        ahead = Jet((self.parameter, zero + self.around.unit * direction[-1], zero))
+        known = self.around.known(ahead, self.lane)
+        values = system.residual(JETS, system.at(JETS, known, self.state, straight))
+        _moved, rest = linear.reduced([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
+        return 2.0 * float(least @ system.stacked(rest)[0])
+
+    def value(self) -> tuple[float, float]:
+        """The worst equation's value with the bound of its rounding error."""
+        system, linear, _moved, rest, _follow, matrix = bordered(
+            self.around, self.lane, self.parameter, self.state, None
+        )
+        least = np.linalg.svd(matrix[0])[0][:, -1]
+        known = self.around.bounded(self.parameter, self.lane)
+        values = system.residual(ROUNDED, system.at(ROUNDED, known, self.state))
+        _moved, bounds = linear.reduced([Rounded(np.zeros(1), Rounded.of(x).bound) for x in values])
+        bound = float(np.abs(least) @ np.array([float(np.max(Rounded.of(x).bound)) for x in bounds]))
+        return float(least @ rest[0]), bound
+
+
+def crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: ReachedPlace) -> float | None:
+    """The parameter at which curves cross between two places; None if they do not."""
+    share = float(np.clip(base.size[0] / (base.size[0] - there.places.size[0]), 0.0, 1.0))
+    middle = total(quintic(base, there) * share ** np.arange(6)[:, None])
+    system = around.blank(lane)
+    state = system.righted(middle[:, :-1])
+    saddle = _Saddle(around, lane, base.parameter + middle[:, -1], state)
+    try:
+        with np.errstate(all="ignore"):
+            for _step in range(CROSSING_STEPS):
+                size, crosses = saddle.approach()
+                if not size > FLAT_SADDLE:
+                    break
+            value, bound = saddle.value()
+    except np.linalg.LinAlgError:
+        return None
+    parameter = float(saddle.parameter[0])
+    away = abs(parameter - float(base.parameter[0])) / around.unit
+    met = crosses and size <= 1e-7 and away <= NEAR * float(there.arc[0]) and abs(value) <= SAFETY * bound
+    return parameter if met else None

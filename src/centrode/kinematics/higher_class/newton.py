@@ -10,9 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import UNIT_ROUNDOFF
-from centrode.kinematics.higher_class.reduction import Linear, Shift, solved
-from centrode.kinematics.higher_class.system import Motion, System
+from centrode.kinematics.higher_class.system import (
+    GroupMotion,
+    GroupSystem,
+    Linear,
+    Shift,
+    Surroundings,
+    solved,
+)
+from centrode.kinematics.path import JETS
 from centrode.structure.constraints import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -37,7 +45,7 @@ class Converged:
     sizes: Array
 
 
-def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
+def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
     """Newton's method from a state at every place; each place stops by itself, whatever its neighbours do."""
     state = start.copy()
     going = np.nonzero(np.isfinite(start).all(axis=1))[0]
@@ -62,16 +70,16 @@ def newton(system: System, start: Array, steps: int = STEPS) -> Converged:
     return Converged(state, found, sizes)
 
 
-def step_at(system: System, state: Array, linear: Linear | None = None) -> tuple[Motion, Array]:
+def step_at(system: GroupSystem, state: Array, linear: Linear | None = None) -> tuple[GroupMotion, Array]:
     """A Newton step from a state, and its size."""
     at = system.at(ARRAYS, system.known, state)
     linear = system.linear(at) if linear is None else linear
     moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
     free = solved(linear.matrix, system.stacked(rest)[:, :, None])[:, :, 0]
-    return Motion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
+    return GroupMotion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
 
 
-def size_of(system: System, moved: Mapping[Entity, Shift], free: Array) -> Array:
+def size_of(system: GroupSystem, moved: Mapping[Entity, Shift], free: Array) -> Array:
     """Size of a step, in rad or in the greatest length."""
     size: Array = np.max(np.abs(free), axis=1)
     scale = 1.0 / system.numbers.scale
@@ -90,3 +98,48 @@ def settled(last: Array, size: Array) -> Mask:
     with np.errstate(all="ignore"):
         next_size = size * (size / last) ** 2
         return np.asarray((size <= SMALL) & ((last <= SMALL) | (next_size <= UNIT_ROUNDOFF)))
+
+
+# Equations of a group bordered by the normal of a plane across its curve, and the motion of a step along it.
+
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Shifts: TypeAlias = Mapping[Entity, Shift]
+
+
+def bordered(
+    around: Surroundings, lanes: Lanes, parameter: Array, state: Array, along: Array | None
+) -> tuple[GroupSystem, Linear, Shifts, Array, Shifts, Array]:
+    """Equations at places: made linear, their residual, how they follow the parameter, and their matrix.
+
+    It has a column for the parameter and, at the bottom, the normal of a plane if there is one.
+    """
+    known = around.known(Jet.variable(parameter, 1), lanes)
+    system = around.system(known, lanes)
+    linear = system.linear(system.at(JETS, system.known, state))
+    values = system.residual(JETS, system.at(JETS, known, state))
+    jets = [x if isinstance(x, Jet) else Jet((x, 0.0)) for x in values]
+    moved, rest = linear.reduced([-x.coefficients[0] for x in jets])
+    # how unknowns and right sides move with one unit of the parameter
+    follow, pushed = linear.reduced([_times(x.coefficients[1], -around.unit) for x in jets])
+    count, free = len(parameter), linear.pattern.free
+    rows = free if along is None else free + 1
+    matrix = np.empty((count, rows, free + 1))
+    matrix[:, :free, :-1] = linear.matrix
+    matrix[:, :free, -1] = -system.stacked(pushed)
+    if along is not None:
+        matrix[:, -1] = along
+    return system, linear, moved, system.stacked(rest), follow, matrix
+
+
+def _times(x: object, factor: float) -> object:
+    return x if type(x) is float and x == 0.0 else x * factor  # type: ignore[operator]
+
+
+def motion_along(linear: Linear, moved: Shifts, follow: Shifts, step: Array) -> GroupMotion:
+    """The motion of a step (k, free + 1), the parameter's part included."""
+    free, ahead = list(step[:, :-1].T), step[:, -1]
+    together = {
+        entity: tuple(x + y * ahead for x, y in zip(shift, follow[entity], strict=True))
+        for entity, shift in moved.items()
+    }
+    return GroupMotion(linear.whole(together, free), free)

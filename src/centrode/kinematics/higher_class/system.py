@@ -8,10 +8,10 @@ and Stability of Numerical Algorithms, 2nd ed., 2002, section 25).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any, TypeAlias
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -19,21 +19,262 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jets import Jet
 from centrode.algebra.rounding import ROUNDED, Rounded
-from centrode.geometry.plane import rotor_of
-from centrode.kinematics.higher_class.reduction import Linear, Pattern, Shift, pattern_of, solved
-from centrode.kinematics.paths import JETS
-from centrode.structure.constraints import Constraint, Entity, Positions
+from centrode.geometry.plane import (
+    Pose,
+    Vector,
+    cross,
+    dot,
+    is_literal_zero,
+    place,
+    pose_with_point,
+    rotor_of,
+    subtract,
+    turned,
+)
+from centrode.kinematics.path import JETS
+from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics
+from centrode.structure.constraints import Constraint, Entity, PointInLink, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
 
+# Linear equations of a group of higher class, made small: what follows from a few free coordinates is left
+# out.
+#
+# A link that hangs on a known point has one free coordinate, its turn about that point; a point of such a
+# link has
+# none. Only the equations that are left over have to be solved together (tearing; Cellier and Kofman,
+# Continuous
+# System Simulation, 2006, section 7). The order of elimination follows from the group alone.
+
 Array: TypeAlias = npt.NDArray[np.float64]
-Mask: TypeAlias = npt.NDArray[np.bool_]
 Number: TypeAlias = Any
+Shift: TypeAlias = Sequence[Number]
+Block: TypeAlias = tuple[tuple[Number, Number], tuple[Number, Number]]
+
+
+class Follow(NamedTuple):
+    """An unknown, the hinge from which it follows, and the first of its free coordinates.
+
+    A link that hangs on a point is free to turn; without a hinge all coordinates of the unknown are free.
+    """
+
+    entity: Entity
+    by: PointInLink | None
+    first: int
+
+    @property
+    def turn(self) -> int:
+        """The free coordinate that is the turn of a link."""
+        return self.first if self.by is not None else self.first + 2
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """The unknowns of a group in the order in which they follow, and the equations left over."""
+
+    follows: tuple[Follow, ...]
+    kept: tuple[int, ...]
+
+    @property
+    def free(self) -> int:
+        """Number of free coordinates."""
+        return len(self.kept)
+
+
+@lru_cache(maxsize=256)
+def pattern_of(group: Newton) -> Pattern:
+    """In which order the unknowns of a group follow."""
+    whole = [
+        c
+        for c, row in group.equations
+        if row == 1 and isinstance(c, PointInLink) and (c, 0) in group.equations
+    ]
+    left = [Entity("link", name) for name in group.links] + [Entity("point", name) for name in group.points]
+    follows: list[Follow] = []
+    used: set[PointInLink] = set()
+    free = 0
+    while left:
+        found = next((f for entity in left if (f := _hinge(entity, whole, left))), None)
+        entity = left[0] if found is None else found[0]
+        by = None if found is None else found[1]
+        follows.append(Follow(entity, by, free))
+        left.remove(entity)
+        if by is None:
+            free += entity.unknowns
+        else:
+            used.add(by)
+            free += entity.kind == "link"
+    kept = tuple(i for i, (c, _row) in enumerate(group.equations) if c not in used)
+    return Pattern(tuple(follows), kept)
+
+
+def _hinge(
+    entity: Entity, whole: Sequence[PointInLink], left: Sequence[Entity]
+) -> tuple[Entity, PointInLink] | None:
+    """A hinge that ties an unknown to what is known already."""
+    for constraint in whole:
+        point, link = constraint.bodies
+        if entity in (point, link) and not (point in left and link in left):
+            return entity, constraint
+    return None
+
+
+class Linear:
+    """The equations of a group made linear at k places.
+
+    `matrix` (k, free, free) are derivatives of the equations left over by the free coordinates: turns [rad], and
+    shifts in the greatest length; their lengths are in the greatest length too.
+    """
+
+    def __init__(self, group: Newton, numbers: Dimensions, at: Positions, places: int) -> None:
+        self.group, self.numbers, self.places = group, numbers, places
+        self.pattern = pattern_of(group)
+        found = {c: c.rows(numbers, at) for c, _row in group.equations}
+        self.rows = [found[c][row] for c, row in group.equations]
+        self.number = {equation: i for i, equation in enumerate(group.equations)}
+        self.tangents: dict[Entity, dict[int, Shift]] = {}
+        self._inverses: dict[Entity, Block] = {}
+        self._shifts: dict[Entity, Sequence[Shift]] = {}
+        for follow in self.pattern.follows:
+            self.tangents[follow.entity] = self._tangents(follow, at)
+        self.units = [
+            1.0 if group.equations[i][0].angular else 1.0 / numbers.scale for i in self.pattern.kept
+        ]
+        self.matrix = self._matrix()
+
+    def _tangents(self, follow: Follow, at: Positions) -> dict[int, Shift]:
+        """How an unknown moves with each free coordinate."""
+        entity, by, space = follow.entity, follow.by, self.numbers.space
+        if by is None:
+            if entity.kind == "point":
+                return {follow.first: (self.numbers.scale, 0.0), follow.first + 1: (0.0, self.numbers.scale)}
+            # the link's first point may only ride on it, and be solved after the group
+            place = next(iter(self.numbers.local[entity.name].values()))
+            pivot = space.place(ARRAYS, at.poses[entity.name], place)
+            shifts = space.shifts(ARRAYS, pivot, self.numbers.scale)
+            return {follow.first + k: shift for k, shift in enumerate(shifts)}
+        one, other = self._pair(by)
+        if entity.kind == "link":
+            pivot = at.points[by.point]
+            self._shifts[entity] = space.shifts(ARRAYS, pivot, 1.0)[:2]
+            block = [[_dot(row[entity], shift) for shift in self._shifts[entity]] for row in (one, other)]
+        else:
+            block = [[row[entity][0], row[entity][1]] for row in (one, other)]
+        self._inverses[entity] = _inverse(block)
+        source = by.bodies[0] if entity.kind == "link" else by.bodies[1]
+        tangents: dict[int, Shift] = {}
+        for j, shift in self.tangents.get(source, {}).items():
+            tangents[j] = self._answer(entity, [_minus(_dot(row[source], shift)) for row in (one, other)])
+        if entity.kind == "link":
+            tangents[follow.first] = space.spin(at.poses[entity.name], at.points[by.point])
+        return tangents
+
+    def _pair(self, by: PointInLink) -> tuple[Mapping[Entity, Shift], Mapping[Entity, Shift]]:
+        return self.rows[self.number[by, 0]], self.rows[self.number[by, 1]]
+
+    def _answer(self, entity: Entity, right: Sequence[Number]) -> Shift:
+        """How an unknown moves so that the two rows of its hinge give what is asked."""
+        (a, b), (c, d) = self._inverses[entity]
+        pair = _dot((a, b), right), _dot((c, d), right)
+        if entity.kind == "point":
+            return pair
+        return _combined(pair, self._shifts[entity])
+
+    def _matrix(self) -> Array:
+        free = self.pattern.free
+        parts = [x for k in self.pattern.kept for row in self.rows[k].values() for x in row]
+        matrix = np.zeros(
+            (self.places, free, free), dtype=np.result_type(np.float64, *map(np.asarray, parts))
+        )
+        for i, (k, unit) in enumerate(zip(self.pattern.kept, self.units, strict=True)):
+            for entity, slopes in self.rows[k].items():
+                for j, shift in self.tangents.get(entity, {}).items():
+                    matrix[:, i, j] += _dot(slopes, shift) * unit
+        return matrix
+
+    def reduced(self, right: Sequence[Number]) -> tuple[dict[Entity, Shift], list[Number]]:
+        """What right sides of all equations ask for at no free motion, and the right sides left over."""
+        moved: dict[Entity, Shift] = {}
+        for entity, by, _first in self.pattern.follows:
+            if by is None:
+                continue
+            source = by.bodies[0] if entity.kind == "link" else by.bodies[1]
+            wanted = [right[self.number[by, k]] for k in (0, 1)]
+            if source in moved:
+                rows = self._pair(by)
+                wanted = [x - _dot(row[source], moved[source]) for x, row in zip(wanted, rows, strict=True)]
+            moved[entity] = self._answer(entity, wanted)
+        rest = []
+        for k, unit in zip(self.pattern.kept, self.units, strict=True):
+            value = right[k]
+            for entity, slopes in self.rows[k].items():
+                if entity in moved:
+                    value = value - _dot(slopes, moved[entity])
+            rest.append(value * unit)
+        return moved, rest
+
+    def whole(self, moved: Mapping[Entity, Shift], free: Sequence[Number]) -> dict[Entity, Shift]:
+        """How all unknowns move: as asked for at no free motion, and with free coordinates."""
+        found: dict[Entity, Shift] = {}
+        for entity, tangents in self.tangents.items():
+            total = moved.get(entity, (0.0,) * entity.unknowns)
+            for j, shift in tangents.items():
+                total = tuple(_sum(t, _dot((x,), (free[j],))) for t, x in zip(total, shift, strict=True))
+            found[entity] = total
+        return found
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """Solution (k, n, m) of the equations at every place; NaN where the matrix is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        sign, _size = np.linalg.slogdet(matrix)
+        found = np.full(right.shape, np.nan, dtype=np.result_type(matrix, right))
+        found[sign != 0.0] = np.linalg.solve(matrix[sign != 0.0], right[sign != 0.0])
+        return found
+
+
+def _sum(a: Number, b: Number) -> Number:
+    return b if is_literal_zero(a) else a if is_literal_zero(b) else a + b
+
+
+def _minus(a: Number) -> Number:
+    return a if is_literal_zero(a) else -a
+
+
+def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
+    """Scalar product; literal zeros and ones, of which rows are full, cost nothing."""
+    total: Number = 0.0
+    for x, y in zip(a, b, strict=True):
+        if is_literal_zero(x) or is_literal_zero(y):
+            continue
+        total = _sum(
+            total, y if type(x) is float and x == 1.0 else x if type(y) is float and y == 1.0 else x * y
+        )
+    return total
+
+
+def _combined(factors: Sequence[Number], shifts: Sequence[Shift]) -> Shift:
+    return tuple(_dot(factors, [shift[k] for shift in shifts]) for k in range(len(shifts[0])))
+
+
+def _inverse(block: Sequence[Sequence[Number]]) -> Block:
+    """Inverse of a matrix of two rows and columns."""
+    (a, b), (c, d) = block
+    over = 1.0 / (_dot((a,), (d,)) - _dot((b,), (c,)))
+    return (_dot((d,), (over,)), _minus(_dot((b,), (over,)))), (
+        _minus(_dot((c,), (over,))),
+        _dot((a,), (over,)),
+    )
+
+
+Mask: TypeAlias = npt.NDArray[np.bool_]
 Namespace: TypeAlias = Any
 
 
 @dataclass(frozen=True)
-class Motion:
+class GroupMotion:
     """A small motion of a group: how every unknown moves, and how its free coordinates change."""
 
     shifts: Mapping[Entity, Shift]
@@ -41,7 +282,7 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class System:
+class GroupSystem:
     """The equations of a group at k places: dimensions and known positions are floats or (k,) arrays.
 
     A state (k, width) holds the numbers of the group's points, then those of its links' poses, then the angles of
@@ -53,13 +294,13 @@ class System:
     known: Positions
     places: int
 
-    def taken(self, which: npt.NDArray[np.intp]) -> System:
+    def taken(self, which: npt.NDArray[np.intp]) -> GroupSystem:
         """The same equations at some of the places."""
 
         def take(x: Number) -> Number:
             return x if np.ndim(x) == 0 else x[which]
 
-        return System(self.group, self.numbers.mapped(take), self.known.mapped(take), len(which))
+        return GroupSystem(self.group, self.numbers.mapped(take), self.known.mapped(take), len(which))
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -83,7 +324,9 @@ class System:
             return {}  # no turns are counted there
         return {f.entity.name: f.turn for f in self.pattern.follows if f.entity.kind == "link"}
 
-    def at(self, m: Namespace, known: Positions, state: Array, motion: Motion | None = None) -> Positions:
+    def at(
+        self, m: Namespace, known: Positions, state: Array, motion: GroupMotion | None = None
+    ) -> Positions:
         """Known positions with those of a state, moved a little, over any algebra."""
         at, space, column = known.copied(), self.numbers.space, 0
         for name in self.group.points:
@@ -125,7 +368,7 @@ class System:
         """The state in which positions are: (k, width)."""
         return self.stacked(self.numbers_of(at))
 
-    def moved(self, state: Array, motion: Motion) -> Array:
+    def moved(self, state: Array, motion: GroupMotion) -> Array:
         """A state moved a little."""
         return self.righted(self.state_of(self.at(ARRAYS, self.known, state, motion)))
 
@@ -173,7 +416,7 @@ class System:
             row[:] = value
         return found.T
 
-    def jets(self, known: Positions, state: Array, linear: Linear, order: int) -> Motion:
+    def jets(self, known: Positions, state: Array, linear: Linear, order: int) -> GroupMotion:
         """Taylor coefficients of the motion from a converged state, by the variable of the known jets."""
         zero = np.zeros(self.places)
         shifts = {f.entity: [[zero] for _ in range(f.entity.unknowns)] for f in linear.pattern.follows}
@@ -191,7 +434,7 @@ class System:
                 c.append(x)
         return _as_jets(shifts, free, order)
 
-    def bounds(self, known: Positions, state: Array, linear: Linear) -> Motion:
+    def bounds(self, known: Positions, state: Array, linear: Linear) -> GroupMotion:
         """The motion zero with the bound of the state's rounding error."""
         values = [Rounded.of(x) for x in self.residual(ROUNDED, self.at(ROUNDED, known, state))]
         zero = np.zeros(self.places)
@@ -203,14 +446,16 @@ class System:
             entity: tuple(Rounded(zero, Rounded.of(x).bound) for x in shift)
             for entity, shift in linear.whole(moved, free).items()
         }
-        return Motion(shifts, free)
+        return GroupMotion(shifts, free)
 
 
-def _as_jets(shifts: Mapping[Entity, list[list[Number]]], free: list[list[Number]], order: int) -> Motion:
+def _as_jets(
+    shifts: Mapping[Entity, list[list[Number]]], free: list[list[Number]], order: int
+) -> GroupMotion:
     def jet(c: list[Number]) -> Jet:
         return Jet([*c[: order + 1], *[0.0] * (order + 1 - len(c))])
 
-    return Motion({entity: tuple(map(jet, cs)) for entity, cs in shifts.items()}, [jet(c) for c in free])
+    return GroupMotion({entity: tuple(map(jet, cs)) for entity, cs in shifts.items()}, [jet(c) for c in free])
 
 
 def cut(x: Number, order: int) -> Number:
@@ -236,3 +481,288 @@ def times(matrix: Array, vector: Array) -> Array:
     for j in range(vector.shape[1]):
         total += matrix[:, :, j] * vector[:, j : j + 1]
     return total
+
+
+# A group of higher class by its free coordinates alone: everything else follows, link by link, from what is
+# known.
+#
+# A link that hangs on a point that is known is told by its rotor; its points follow, and from these the links
+# that
+# hang on them. So the equations that `reduction` eliminates hold by construction, and only those left over
+# are
+# solved. In the plane.
+
+
+@dataclass(frozen=True)
+class Posture:
+    """Where the free coordinates of a group stand.
+
+    Attributes
+    ----------
+    rotors, angles : of its links; an angle has its turns
+    places : of its points, and of the first points of its links, that hang on nothing
+    """
+
+    rotors: Mapping[str, Vector]
+    angles: Mapping[str, Number]
+    places: Mapping[str, Vector]
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A link that hangs on a point and has to reach one other: its turn stands in the two equations of that alone.
+
+    Seen along the arm between both, one equation does not speak of the turn; seen across, the other tells it.
+    """
+
+    constraint: PointInLink
+    column: int
+    rows: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class LinkChain:
+    """A group with its dimensions, over any algebra; free lengths are measured in `unit` [m]."""
+
+    group: Newton
+    numbers: Dimensions
+    unit: float
+
+    @property
+    def pattern(self) -> Pattern:
+        """What follows from what."""
+        return pattern_of(self.group)
+
+    @cached_property
+    def kept(self) -> tuple[tuple[Constraint, int], ...]:
+        """The equations left over, each a constraint and a row of it."""
+        return tuple(self.group.equations[k] for k in self.pattern.kept)
+
+    @cached_property
+    def leaves(self) -> tuple[Leaf, ...]:
+        """The links whose turns are found last."""
+        follows = {f.entity.name: f for f in self.pattern.follows if f.entity.kind == "link" and f.by}
+        spoken = [body for c, row in self.group.equations if row == 0 for body in c.bodies]
+        found = []
+        for number, (c, row) in enumerate(self.kept):
+            if row or not isinstance(c, PointInLink) or c.link not in follows or (c, 1) not in self.kept:
+                continue
+            # the link is spoken of by its hinge and by this constraint, and by nothing else
+            if sum(body.kind == "link" and body.name == c.link for body in spoken) == 2:
+                found.append(Leaf(c, follows[c.link].turn, (number, self.kept.index((c, 1)))))
+        return tuple(found)
+
+    def posture(self, at: Positions) -> Posture:
+        """The free coordinates of positions."""
+        places = {}
+        for follow in self.pattern.follows:
+            name = follow.entity.name
+            if follow.by is None:
+                link = follow.entity.kind == "link"
+                places[name] = place(at.poses[name], self._pivot(follow)) if link else at.points[name]
+        links = self.group.links
+        rotors = {name: at.poses[name].rotor for name in links}
+        return Posture(rotors, {name: at.angles[name] for name in links}, places)
+
+    def positions(self, known: Positions, posture: Posture, motion: Sequence[Number]) -> Positions:
+        """Known positions with those of the group: in a posture, moved by jets that are zero there, or by 0.0."""
+        at = known.copied()
+        for follow in self.pattern.follows:
+            name = follow.entity.name
+            if follow.entity.kind == "link":
+                turn = motion[follow.turn]
+                at.poses[name] = self._pose(follow, posture, motion, at)
+                at.angles[name] = posture.angles[name] + turn if _moves(turn) else posture.angles[name]
+            elif follow.by is None:
+                at.points[name] = self._shifted(follow, posture, motion)
+            else:
+                at.points[name] = place(at.poses[follow.by.link], self.numbers.local[follow.by.link][name])
+        return at
+
+    def _pose(self, follow: Follow, posture: Posture, motion: Sequence[Number], at: Positions) -> Pose:
+        turn, rotor = motion[follow.turn], posture.rotors[follow.entity.name]
+        if _moves(turn):
+            rotor = turned(rotor, _rotor_of_zero(turn))
+        there = self._shifted(follow, posture, motion) if follow.by is None else at.points[follow.by.point]
+        return pose_with_point(self._pivot(follow), there, rotor)
+
+    def _shifted(self, follow: Follow, posture: Posture, motion: Sequence[Number]) -> Vector:
+        x, y = posture.places[follow.entity.name]
+        by_x, by_y = motion[follow.first : follow.first + 2]
+        return (
+            x + self.unit * by_x if _moves(by_x) else x,
+            y + self.unit * by_y if _moves(by_y) else y,
+        )
+
+    def _pivot(self, follow: Follow) -> Vector:
+        """What a link turns about, in its axes."""
+        local = self.numbers.local[follow.entity.name]
+        pivot: Vector = next(iter(local.values())) if follow.by is None else local[follow.by.point]
+        return pivot
+
+    def arm(self, leaf: Leaf) -> Vector:
+        """From the hinge of a leaf to the point that it has to reach, in its axes."""
+        link = leaf.constraint.link
+        follow = next(f for f in self.pattern.follows if f.entity.name == link and f.entity.kind == "link")
+        return subtract(self.numbers.local[link][leaf.constraint.point], self._pivot(follow))
+
+    def arms(self, posture: Posture) -> list[Vector]:
+        """The arms of all leaves as they lie, in `unit`."""
+        over = 1.0 / self.unit
+        found = []
+        for leaf in self.leaves:
+            x, y = turned(self.arm(leaf), posture.rotors[leaf.constraint.link])
+            found.append((x * over, y * over))
+        return found
+
+    def equations(self, m: Namespace, at: Positions, arms: Sequence[Vector]) -> list[Number]:
+        """Left sides of the equations left over, those of leaves along and across given arms, in rad and `unit`."""
+        over = 1.0 / self.unit
+        sides: dict[Constraint, list[Number]] = {}
+        values = []
+        for c, row in self.kept:
+            if c not in sides:
+                sides[c] = c.residual(m, self.numbers, at)
+            values.append(sides[c][row] if c.angular else sides[c][row] * over)
+        for leaf, arm in zip(self.leaves, arms, strict=True):
+            first, second = leaf.rows
+            gap = values[first], values[second]
+            values[first], values[second] = dot(gap, arm), cross(arm, gap)
+        return values
+
+
+def _moves(x: Number) -> bool:
+    return isinstance(x, Jet)
+
+
+def _rotor_of_zero(turn: Jet) -> Vector:
+    """Rotor of a jet of first or second order whose value is zero."""
+    rate = turn.coefficients[1]
+    bend = turn.coefficients[2:]
+    return Jet((1.0, 0.0, *(-0.5 * (rate * rate) for _x in bend))), Jet((0.0, rate, *bend))
+
+
+# What a group of higher class is solved in: the part of the plan before it, at any parameters.
+
+Lanes: TypeAlias = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """The plan up to a group of higher class; `hooks` runs it at parameters, one lane for each."""
+
+    kinematics: Kinematics
+    group: int
+    hooks: Callable[[Namespace, Array, Lanes], EvaluationPolicy]
+
+    @property
+    def unit(self) -> float:
+        """Change of the parameter that counts as large."""
+        return self.kinematics.path.unit
+
+    @property
+    def equations(self) -> Newton:
+        """The group itself."""
+        return cast(Newton, self.kinematics.structure.groups[self.group])
+
+    def known(self, parameter: Jet, lanes: Lanes) -> Positions:
+        """What the group's equations need of what is known before it, at a parameter given as a jet."""
+        used = self.kinematics.taken(lanes)
+        hooks = self.hooks(JETS, parameter.value, lanes)
+        with np.errstate(all="ignore"):
+            at = used.frame(JETS, parameter)
+            used.advance(at, range(self.group), JETS, hooks)
+        return needed(self.equations, at)
+
+    def known_at(self, parameter: Array, lanes: Lanes) -> Positions:
+        """The same at plain parameters."""
+        return needed(self.equations, self.before(parameter, lanes))
+
+    def before(self, parameter: Array, lanes: Lanes) -> Positions:
+        """Everything that is known before the group, at plain parameters."""
+        used = self.kinematics.taken(lanes)
+        with np.errstate(all="ignore"):
+            at = used.frame(ARRAYS, parameter)
+            used.advance(at, range(self.group), ARRAYS, self.hooks(ARRAYS, parameter, lanes))
+        return at
+
+    def bounded(self, parameter: Array, lanes: Lanes) -> Positions:
+        """The same with bounds of rounding errors."""
+        used = self.kinematics.taken(lanes)
+        with np.errstate(all="ignore"):
+            at = used.frame(ROUNDED, Rounded.of(parameter))
+            used.advance(at, range(self.group), ROUNDED, self.hooks(ROUNDED, parameter, lanes))
+        return needed(self.equations, at)
+
+    def blank(self, lanes: Lanes) -> GroupSystem:
+        """The group's equations beside nothing: for what needs the state alone."""
+        return GroupSystem(
+            self.equations, self.kinematics.taken(lanes).numbers, Positions({}, {}, {}, {}), len(lanes)
+        )
+
+    def with_numbers(self, numbers: Dimensions, lanes: Lanes) -> Surroundings:
+        """The same part of the plan with other dimensions of some mechanisms, which are counted anew."""
+
+        def hooks(m: Namespace, parameter: Array, which: Lanes) -> EvaluationPolicy:
+            return self.hooks(m, parameter, lanes[which])
+
+        return replace(self, kinematics=replace(self.kinematics, numbers=numbers), hooks=hooks)
+
+    def system(self, known: Positions, lanes: Lanes) -> GroupSystem:
+        """The group's equations beside known positions, one lane for each place."""
+        return GroupSystem(
+            self.equations, self.kinematics.taken(lanes).numbers, known.mapped(plain), len(lanes)
+        )
+
+
+def needed(group: Newton, at: Positions) -> Positions:
+    """The points and links of which the equations of a group speak."""
+    bodies = {body.name for constraint, _row in group.equations for body in constraint.bodies}
+    return Positions(
+        {name: place for name, place in at.points.items() if name in bodies},
+        {name: pose for name, pose in at.poses.items() if name in bodies},
+        at.drives,
+        {name: angle for name, angle in at.angles.items() if name in bodies},
+    )
+
+
+def plain(number: Number) -> Number:
+    """The value of a number of any algebra."""
+    return number.value if isinstance(number, Jet | Rounded) else number
+
+
+def within(function: Callable[[Number], Number]) -> Callable[[Number], Number]:
+    """A function of plain numbers made one of jets and bounded numbers, part by part."""
+
+    def apply(x: Number) -> Number:
+        if isinstance(x, Jet):
+            return Jet([apply(c) for c in x.coefficients])
+        if isinstance(x, Rounded):
+            return Rounded(apply(x.value), apply(x.bound))
+        return function(x)
+
+    return apply
+
+
+def flattened(at: Positions, shape: tuple[int, ...]) -> Positions:
+    """Positions with every array spread over the shape and laid out in one row; floats stay."""
+
+    def flat(x: Number) -> Number:
+        return x if np.ndim(x) == 0 else np.broadcast_to(x, shape).reshape(-1)
+
+    return at.mapped(within(flat))
+
+
+def shaped(at: Positions, names: Newton, shape: tuple[int, ...], into: Positions) -> None:
+    """Add the group's points and links, laid out in one row, to positions of a shape."""
+
+    def fold(x: Number) -> Number:
+        return np.reshape(x, shape) if np.ndim(x) else x
+
+    folded = at.mapped(within(fold))
+    for name in names.points:
+        into.points[name] = folded.points[name]
+    for name in names.links:
+        into.poses[name] = folded.poses[name]
+        if name in folded.angles:
+            into.angles[name] = folded.angles[name]

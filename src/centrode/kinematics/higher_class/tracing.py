@@ -8,25 +8,342 @@ Where the parameter turns back is a limit. A curve that closes after whole turns
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import TypeAlias
+from math import tau
+from typing import Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.branches import Event
-from centrode.kinematics.higher_class.crossings import crossing
-from centrode.kinematics.higher_class.curves import Places, Reached, quintic, reach
-from centrode.kinematics.higher_class.limits import limits
-from centrode.kinematics.higher_class.periods import Rounds, repeated
-from centrode.kinematics.higher_class.surroundings import Surroundings
-from centrode.kinematics.higher_class.system import total
-from centrode.kinematics.higher_class.tracks import Piece, Tracks, Trail
+from centrode.kinematics.higher_class.curves import (
+    CurvePlaces,
+    ReachedPlace,
+    crossing,
+    limits,
+    quintic,
+    reach,
+)
+from centrode.kinematics.higher_class.newton import SMALL, newton
+from centrode.kinematics.higher_class.system import Surroundings, needed, total
+from centrode.kinematics.plan_evaluation import Event
+from centrode.structure.constraints import Positions
+
+# The track of a group of higher class: its curve over the path in pieces, and where Newton's method starts.
+#
+# Pieces belong to the mechanism and its path, not to the samples: a place starts from the piece on which it
+# lies.
+# So what is found does not depend on what else is asked for. A curve that closes after whole turns is
+# followed once:
+# behind that every place starts from the one as many turns before.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]
 Mask: TypeAlias = npt.NDArray[np.bool_]
+End: TypeAlias = Literal["on", "limit", "lost"]
+
+HALVINGS, CLOSE = 60, 1e-13
+
+
+@dataclass(frozen=True)
+class CurvePiece:
+    """A stretch of the curve by its share u, 0 to 1: coefficients (6, width + 1), that of u^0 first.
+
+    The last column is the path's parameter beyond `origin`. `first` and `last` are the parameters at the ends,
+    `sense` is the sign of the group's determinant.
+    """
+
+    coefficients: Array
+    origin: float
+    first: float
+    last: float
+    sense: float
+
+
+@dataclass(frozen=True)
+class Period:
+    """After so much of the path a closed curve repeats itself; the numbers of the state have grown by (width,)."""
+
+    length: float
+    grown: Array
+
+
+@dataclass
+class Trail:
+    """The pieces in one sense of the path, outward from the initial position, and how they end.
+
+    A place closer than `margin` to a limit is the limit itself.
+    """
+
+    pieces: list[CurvePiece] = field(default_factory=list)
+    end: End = "on"
+    limit: float = np.nan
+    margin: float = -1.0
+    state: Array | None = None
+    """There, if the limit is the group's own."""
+    period: Period | None = None
+    """Of a closed curve."""
+
+
+@dataclass(frozen=True)
+class Foretold:
+    """Where Newton's method starts at every place, and what is known of the place beforehand."""
+
+    state: Array
+    sense: Array
+    beyond: Mask
+    limit: Mask
+
+
+@dataclass(frozen=True)
+class CurveTracks:
+    """The tracks of all mechanisms of a batch: one trail behind and one ahead of each initial position.
+
+    `powers` (6, width + 1, pieces) are the coefficients of all pieces. Curves that are closed repeat themselves after a
+    `period` (lanes, 2) of the path, and have `grown` (lanes, 2, width) then.
+    """
+
+    lanes: int
+    initial: float
+    powers: Array
+    origin: Array
+    sense: Array
+    edges: list[Array]
+    first: Lanes
+    limits: Array
+    margins: Array
+    at_limit: Array
+    followed: Array
+    period: Array
+    grown: Array
+
+    @classmethod
+    def of(cls, initial: float, behind: Sequence[Trail], ahead: Sequence[Trail], width: int) -> CurveTracks:
+        """Tracks from trails; a mechanism without pieces has no track."""
+        pieces: list[CurvePiece] = []
+        edges, first = [], []
+        limits, margins = np.full((len(ahead), 2), np.nan), np.zeros((len(ahead), 2))
+        at_limit = np.full((len(ahead), 2, width), np.nan)
+        followed = np.full((len(ahead), 2), np.nan)
+        period, grown = np.full((len(ahead), 2), np.inf), np.zeros((len(ahead), 2, width))
+        for lane, trails in enumerate(zip(behind, ahead, strict=True)):
+            own = [*reversed(trails[0].pieces), *trails[1].pieces]
+            first.append(len(pieces))
+            pieces += own
+            edges.append(np.sort([edge for piece in own for edge in (piece.first, piece.last)])[1:-1:2])
+            for side, trail in enumerate(trails):
+                if trail.pieces:
+                    followed[lane, side] = trail.pieces[-1].last
+                if trail.end == "limit":
+                    limits[lane, side], margins[lane, side] = trail.limit, trail.margin
+                if trail.state is not None:
+                    at_limit[lane, side] = trail.state
+                if trail.period is not None:
+                    period[lane, side], grown[lane, side] = trail.period.length, trail.period.grown
+        coefficients = np.array([piece.coefficients for piece in pieces]).reshape(-1, 6, width + 1)
+        return cls(
+            len(ahead),
+            initial,
+            np.ascontiguousarray(np.moveaxis(coefficients, 0, 2)),
+            np.array([piece.origin for piece in pieces]),
+            np.array([piece.sense for piece in pieces]),
+            edges,
+            np.array(first, dtype=np.intp),
+            limits,
+            margins,
+            at_limit,
+            followed,
+            period,
+            grown,
+        )
+
+    def foretell(self, parameter: Array, lanes: Lanes) -> Foretold:
+        """Starting states at parameters, one lane for each."""
+        parameter, grown = self._repeated(parameter, lanes)
+        which, known = self._pieces(parameter, lanes)
+        state = np.full((self.at_limit.shape[2], len(parameter)), np.nan).T
+        sense = np.zeros(len(parameter))
+        chosen = which[known]
+        if len(chosen):
+            share = share_at(self.powers[:, -1], chosen, parameter[known] - self.origin[chosen])
+            for column, powers in enumerate(np.moveaxis(self.powers[:, :-1], 1, 0)):
+                state[known, column] = _value(powers, chosen, share)
+            sense[known] = self.sense[chosen]
+            state += grown
+        limit = self._at_limits(parameter, lanes, state)
+        past = (parameter < self.limits[lanes, 0]) | (parameter > self.limits[lanes, 1])
+        return Foretold(state, sense, past & ~limit, limit)
+
+    def _repeated(self, parameter: Array, lanes: Lanes) -> tuple[Array, Array]:
+        """The places on the first round of closed curves that come before places, and how states grow between them."""
+        side = (parameter > self.initial).astype(np.intp)
+        period = self.period[lanes, side]
+        # the end of a round belongs to it
+        rounds = np.maximum(np.ceil(np.abs(parameter - self.initial) / period) - 1.0, 0.0)
+        back = rounds * np.where(np.isfinite(period), period, 0.0) * (1.0 - 2.0 * side)
+        return parameter + back, rounds[:, None] * self.grown[lanes, side]
+
+    def _pieces(self, parameter: Array, lanes: Lanes) -> tuple[Lanes, Mask]:
+        """The piece of each place, and whether the curve was followed as far as that."""
+        which = np.zeros(len(parameter), dtype=np.intp)
+        order = np.argsort(lanes, kind="stable")
+        bounds = np.searchsorted(lanes[order], np.arange(self.lanes + 1))
+        for lane in np.nonzero(np.diff(bounds))[0]:
+            here = order[bounds[lane] : bounds[lane + 1]]
+            which[here] = self.first[lane] + np.searchsorted(self.edges[lane], parameter[here])
+        reach = self.followed[lanes]
+        low, high = np.fmin(reach[:, 0], reach[:, 1]), np.fmax(reach[:, 0], reach[:, 1])
+        return which, (parameter >= low) & (parameter <= high)
+
+    def _at_limits(self, parameter: Array, lanes: Lanes, state: Array) -> Mask:
+        """Where places are limits themselves; puts the state of the limit there."""
+        limit = np.zeros(len(parameter), dtype=bool)
+        for side in (0, 1):
+            place = self.limits[lanes, side]
+            with np.errstate(invalid="ignore"):
+                here = np.abs(parameter - place) <= self.margins[lanes, side]
+            state[here] = self.at_limit[lanes[here], side]
+            limit |= here
+        return limit
+
+
+def share_at(powers: Array, which: Lanes, wanted: Array) -> Array:
+    """Where polynomials (6, pieces) that run one way from 0 to 1 take values: Newton's method between bounds."""
+    own = powers[:, which]
+    slopes = own[1:] * np.arange(1.0, len(own))[:, None]
+    low, high = np.zeros(len(wanted)), np.ones(len(wanted))
+    whole = _horner(own[1:], np.ones(len(wanted)))
+    with np.errstate(all="ignore"):
+        share = np.clip(wanted / whole, 0.0, 1.0)
+        going = np.ones(len(wanted), dtype=bool)
+        for _step in range(HALVINGS):
+            beyond = _horner(own, share) - wanted
+            short = (beyond < 0.0) == (whole > 0.0)
+            low, high = np.where(short, share, low), np.where(short, high, share)
+            better = share - beyond / _horner(slopes, share)
+            better = np.where((better >= low) & (better <= high), better, 0.5 * (low + high))
+            change, share = np.abs(better - share), np.where(going, better, share)
+            going &= change > CLOSE  # each place stops by itself
+            if not going.any():
+                break
+    return np.asarray(share, dtype=np.float64)
+
+
+def _value(powers: Array, which: Lanes, share: Array) -> Array:
+    """Values of polynomials (6, pieces), a piece and a share for each place."""
+    return _horner(powers[:, which], share)
+
+
+def _horner(coefficients: Array, share: Array) -> Array:
+    value = coefficients[-1]
+    for c in coefficients[-2::-1]:
+        value = value * share + c
+    return np.asarray(value, dtype=np.float64)
+
+
+# Groups of higher class that stand after whole turns of the drive as they began.
+#
+# Where the drive is an angle, how the mechanism goes on depends on where everything stands, and not on the
+# turns
+# made: two drives' values whole turns apart, with everything before a group and the group itself in the same
+# places,
+# are followed by the same curve. So a curve that has come back to a place near its beginning is closed: it
+# repeats
+# itself, and only angles grow, by whole turns.
+
+BEHIND = 0.1
+"""How far [rad] behind the beginning of a turn a group is compared with itself: at the very start both assemblies of
+a dyad may meet. The mesh reaches further beyond what is asked for, so it does not decide whether a curve is closed."""
+
+
+@dataclass
+class Rounds:
+    """Walkers along curves, and the places, one a turn, at which they may have come round.
+
+    Attributes
+    ----------
+    passed : such places that each walker has passed
+    begun : states (k, width) at the first of these
+    """
+
+    around: Surroundings
+    lane: Lanes
+    forward: Array
+    initial: float
+    begun: Array
+    passed: Lanes
+
+    @classmethod
+    def of(cls, around: Surroundings, lane: Lanes, forward: Array, initial: float, width: int) -> Rounds:
+        """Walkers that set out."""
+        begun = np.full((len(lane), width), np.nan)
+        return cls(around, lane, forward, initial, begun, np.zeros(len(lane), dtype=np.intp))
+
+    def closed(
+        self, who: Lanes, origin: Array, pieces: Array, reached: Array
+    ) -> list[tuple[np.intp, Period]]:
+        """Walkers that have come round, of those whose last pieces brought them from an origin to what is reached."""
+        if not self.around.kinematics.path.turns:
+            return []
+        places = self._place(who, self.passed[who])
+        passing = self.forward[who] * (reached - places) >= 0.0
+        if not passing.any():
+            return []
+        who, places, last = who[passing], places[passing], pieces[passing]
+        ways = np.ascontiguousarray(last[:, :, -1].T)
+        share = share_at(ways, np.arange(len(who)), places - origin[passing])
+        return self._met(who, places, total(last * (share[:, None] ** np.arange(6))[:, :, None])[:, :-1])
+
+    def _met(self, who: Lanes, places: Array, foretold: Array) -> list[tuple[np.intp, Period]]:
+        """Walkers that stand at their next places as they stood at their first; the next places move on."""
+        lane, turns = self.lane[who], self.passed[who]
+        self.passed[who] += 1
+        before = self.around.before(places, lane)
+        system = self.around.system(needed(self.around.equations, before), lane)
+        found = newton(system, system.righted(foretold))
+        state = np.where(found.found[:, None], found.state, np.nan)
+        first = turns == 0
+        self.begun[who[first]] = state[first]
+        grown = state - self.begun[who]
+        whole = np.zeros(grown.shape)
+        angles = slice(grown.shape[1] - system.turning, None)
+        whole[:, angles] = tau * np.round(grown[:, angles] / tau)
+        with np.errstate(invalid="ignore"):
+            met = np.max(np.abs(grown - whole) * system.weights(), axis=1) <= SMALL
+        met &= ~first & self._alike(before, self.around.before(self._place(who, 0 * turns), lane), lane)
+        return [(who[k], Period(tau * float(turns[k]), whole[k])) for k in np.nonzero(met)[0]]
+
+    def _place(self, who: Lanes, turns: Lanes) -> Array:
+        return np.asarray(self.initial + self.forward[who] * (BEHIND + tau * turns), dtype=np.float64)
+
+    def _alike(self, one: Positions, other: Positions, lane: Lanes) -> Mask:
+        """Where everything before the group stands alike, but for what Newton's method does not tell apart."""
+        over = 1.0 / self.around.kinematics.taken(lane).numbers.scale
+        gap = np.zeros(len(lane))
+        for name, place in one.points.items():
+            for x, y in zip(place, other.points[name], strict=True):
+                gap = np.maximum(gap, np.abs(x - y) * over)
+        for name, pose in one.poses.items():
+            for part, vector in pose._asdict().items():
+                unit = over if part == "origin" else 1.0
+                for x, y in zip(vector, getattr(other.poses[name], part), strict=True):
+                    gap = np.maximum(gap, np.abs(x - y) * unit)
+        return np.asarray(gap <= SMALL)
+
+
+def repeated(event: Event, tracks: CurveTracks, extent: tuple[float, float]) -> list[Event]:
+    """An event of the first round of a closed curve on all rounds of an extent; any other alone."""
+    side = int(event.at > tracks.initial)
+    period, away = float(tracks.period[event.lane, side]), abs(event.at - tracks.initial)
+    if not np.isfinite(period):
+        return [event]
+    if away > period:
+        return []  # found behind the end of the round, it is one of its beginning
+    rounds = int(max(0.0, abs(extent[side] - tracks.initial) - away) // period)
+    step = period if side else -period
+    return [replace(event, at=event.at + k * step) for k in range(rounds + 1)]
+
 
 FIRST, GREATEST, CAUTIOUS, LEAST = 0.02, 0.4, 0.005, 1e-9
 """Steps of the arc, in rad and in the greatest length: the first, the greatest, the one from which on a group may
@@ -50,7 +367,7 @@ class Walkers:
     lane: Lanes
     forward: Array
     end: Array
-    here: Places
+    here: CurvePlaces
     step: Array
     sense: Array
     last: Array
@@ -75,7 +392,7 @@ def trace(
     extent: tuple[float, float],
     reaches: Array,
     smooth: bool,
-) -> tuple[Tracks, list[Event]]:
+) -> tuple[CurveTracks, list[Event]]:
     """Tracks of a group from the states (lanes, width) in the initial position, and the events on the way.
 
     `reaches` (lanes, 2) are the nearest limits of the groups before it, where what it stands on ends.
@@ -96,7 +413,7 @@ def trace(
             and abs(trail.pieces[-1].last - stop) <= AT_A_STOP * around.unit
         ):
             trail.end, trail.limit = "limit", float(stop)
-    tracks = Tracks.of(initial, walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1])
+    tracks = CurveTracks.of(initial, walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1])
     return tracks, [other for event in events for other in repeated(event, tracks, extent)]
 
 
@@ -113,7 +430,7 @@ def _setting_out(around: Surroundings, start: Array, initial: float, extent: tup
     direction[:, -1] = forward
     weight = np.full(numbers.shape, 1.0 / around.unit)
     weight[:, :-1] = around.blank(both).weights()
-    base = Places(numbers, direction, direction, along, forward, weight)
+    base = CurvePlaces(numbers, direction, direction, along, forward, weight)
     found = reach(around, both, base, along, parameter, state)
     here = found.places
     width = start.shape[1] + 1
@@ -160,7 +477,7 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     return events
 
 
-def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: Places) -> tuple[Array, Array]:
+def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: CurvePlaces) -> tuple[Array, Array]:
     """Parameters and states a step ahead, by the last pieces, or by Taylor's polynomial at the start."""
     step = walkers.step[who][:, None]
     taylor = step * (here.first + step * here.second)
@@ -182,7 +499,9 @@ def _shorten(walkers: Walkers, who: Lanes) -> None:
         walkers.stop(walker, lost=True)
 
 
-def _go_on(walkers: Walkers, who: Lanes, here: Places, there: Reached, passed: Array, smooth: bool) -> None:
+def _go_on(
+    walkers: Walkers, who: Lanes, here: CurvePlaces, there: ReachedPlace, passed: Array, smooth: bool
+) -> None:
     """Leave pieces to the places reached, and stand there."""
     pieces = quintic(here, there)
     for k, walker in enumerate(who):
@@ -191,7 +510,7 @@ def _go_on(walkers: Walkers, who: Lanes, here: Places, there: Reached, passed: A
             parts.insert(1, float(passed[k]))
         for number, (first, last) in enumerate(pairwise(parts)):
             sense = float(walkers.sense[walker] * walkers.forward[walker]) * (-1.0) ** number
-            trail.pieces.append(Piece(pieces[k], float(here.parameter[k]), first, last, sense))
+            trail.pieces.append(CurvePiece(pieces[k], float(here.parameter[k]), first, last, sense))
             if number == 0 and len(parts) == 3 and not smooth:
                 walkers.stop(walker, lost=True)
                 break
@@ -213,7 +532,7 @@ def _go_on(walkers: Walkers, who: Lanes, here: Places, there: Reached, passed: A
 
 
 def _turn_back(
-    around: Surroundings, walkers: Walkers, who: Lanes, here: Places, there: Reached
+    around: Surroundings, walkers: Walkers, who: Lanes, here: CurvePlaces, there: ReachedPlace
 ) -> list[Event]:
     """Limits between places and those found beyond them; the walkers stop there."""
     limit = limits(around, walkers.lane[who], here, there)
@@ -227,7 +546,7 @@ def _turn_back(
         walkers.stop(walker)
         sense = float(walkers.sense[walker] * walkers.forward[walker])
         start = float(here.parameter[k])
-        trail.pieces.append(Piece(pieces[k], start, start, at, sense))
+        trail.pieces.append(CurvePiece(pieces[k], start, start, at, sense))
         trail.end, trail.limit, trail.margin = "limit", at, float(limit.margin[k])
         trail.state = limit.reached.places.state[k]
         backwards = bool(walkers.forward[walker] < 0.0)

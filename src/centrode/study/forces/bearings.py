@@ -11,8 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import InputError, NotComputedYet
-from centrode.kinematics.dataset import labels_of, named
-from centrode.kinematics.motion import motion
+from centrode.kinematics.motion import labels_of, motion, named
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 

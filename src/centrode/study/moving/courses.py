@@ -12,9 +12,9 @@ import xarray as xr
 
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
-from centrode.kinematics.ready import Ready, ready
+from centrode.kinematics.path import INSIDE, span_at
+from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import solve
-from centrode.kinematics.spans import INSIDE, span_at
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 

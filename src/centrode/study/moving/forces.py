@@ -15,9 +15,9 @@ from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import State, length_unit
 from centrode.dynamics.wrenches import Wrench
-from centrode.kinematics.ready import ready
+from centrode.kinematics.path import span_at
+from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import solve
-from centrode.kinematics.spans import span_at
 from centrode.model.mechanism import FRAME, Mechanism
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -1,0 +1,218 @@
+"""The motions of many mechanisms as machine code where that pays, to the bits of `solve`.
+
+What is not rounded alike everywhere, the arc tangent, stays with NumPy. So a result does not tell how many
+mechanisms were computed with it; only what groups of higher class give, and what stands on them, is rounded otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra import machine_code
+from centrode.algebra.executors import MACHINE_CODE
+from centrode.algebra.graph_arrays import evaluate
+from centrode.algebra.graphs import Graph
+from centrode.errors import Status
+from centrode.kinematics.compiled.event_screening import EventScreening, ScreenedEvents
+from centrode.kinematics.compiled.events import Eventful
+from centrode.kinematics.compiled.path_following import SURE, Walking, Way, beginnings, way_of
+from centrode.kinematics.compiled.trace import Traced, Untraceable, traced
+from centrode.kinematics.compiled.variables import (
+    SCALE,
+    TURN,
+    Varied,
+    boxed,
+    centre_of,
+    inputs_of,
+    taken,
+    varied_of,
+    whole_turns,
+    winding_of,
+)
+from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, solved_of, streams_of
+from centrode.kinematics.mesh import mesh_of
+from centrode.kinematics.path import SampleGrid
+from centrode.kinematics.plan_evaluation import Branches, branches_at_start
+from centrode.kinematics.prepared import Ready
+from centrode.kinematics.sampling import CLOSED, Kept
+from centrode.kinematics.solve import CHUNK, Progress, Solved, check_size, solve
+from centrode.structure.dimensions import Dimensions
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Nodes: TypeAlias = npt.NDArray[Any]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+
+WORTH_COMPILING = 200_000
+"""Samples, or nodes of the mesh if they are more, of all mechanisms from which on compiling pays."""
+WORTH_WALKING = 0.5
+"""Share of mechanisms with groups of higher class that have to be clear: arrays compute the others anyway."""
+AT_ONCE = 256
+"""Mechanisms between two reports of progress."""
+SLACK = "slack"
+
+
+def solve_many(
+    ready: Ready, span: SampleGrid, numbers: Dimensions, lanes: int, progress: Progress | None = None
+) -> Solved:
+    """Motion of a batch at the samples of a span: what `solve` gives."""
+    places = max(len(span.parameter), len(mesh_of(ready.kinematics.path, span.parameter)))
+    if lanes * places < WORTH_COMPILING or not machine_code.PRESENT:
+        return solve(ready, span, numbers, lanes, progress)
+    varied = varied_of(numbers, {})
+    try:
+        plan = traced(ready, span, varied)
+    except Untraceable:
+        return solve(ready, span, numbers, lanes, progress)
+    check_size(plan.solved.layout, lanes, len(span.parameter))
+    names = tuple(dict.fromkeys([*varied.names, SCALE]))
+    judging = EventScreening(plan, span.parameter, names, tuple(plan.turning), MACHINE_CODE)
+    values = varied.values(numbers)
+    writer = Writer(nodes_of(plan), inputs_of(ready.kinematics.path, span), MACHINE_CODE)
+    if not values or not (plan.steps or writer.alike):
+        return solve(ready, span, numbers, lanes, progress)
+    if plan.steps:
+        values |= beginnings(ready, numbers, lanes)
+    judged = judging.judge(values)
+    if plan.steps and np.mean(judged.clear) < WORTH_WALKING:
+        return solve(ready, span, numbers, lanes, progress)
+    return _Many(ready, span, numbers, lanes, varied, values | judged.values, plan, judging, judged).solved(
+        progress
+    )
+
+
+@dataclass(frozen=True)
+class _Many:
+    ready: Ready
+    span: SampleGrid
+    numbers: Dimensions
+    lanes: int
+    varied: Varied
+    values: Mapping[str, Array]
+    plan: Traced
+    judging: EventScreening
+    judged: ScreenedEvents
+
+    def solved(self, progress: Progress | None) -> Solved:
+        writer = Writer(self._outputs(), self._inputs, MACHINE_CODE)
+        room = writer.room(self.lanes)
+        sure = self._write(writer, room, progress)
+        found = writer.placed(room)
+        residual = found["residual"]
+        clear = sure & (residual.max(axis=1) <= 0.5 * CLOSED)
+        if SLACK in found:
+            clear &= found[SLACK].min(axis=1) > 0.0
+        if SINES in found:
+            self._angles(found["angles"], found[SINES])
+        status = np.full(residual.shape, Status.OK, dtype=np.int8)
+        branches = self._branches()
+        left = np.nonzero(~clear)[0]
+        if len(left):
+            self._fill(left, found, status, branches)
+        solved = solved_of(
+            self.plan.solved, found, status, ready=self.ready, span=self.span, branches=branches
+        )
+        return replace(solved, worst_constraint=self._worst(residual))
+
+    def _outputs(self) -> dict[str, Nodes]:
+        found = nodes_of(self.plan)
+        slack = self.judging.slack_at_samples
+        return found if slack is None else {**found, SLACK: boxed([slack]).reshape(1, 1)}
+
+    @cached_property
+    def _inputs(self) -> dict[str, Array]:
+        return inputs_of(self.ready.kinematics.path, self.span)
+
+    def _write(self, writer: Writer, room: Array, progress: Progress | None) -> Mask:
+        """All samples of all mechanisms, but where none of some is clear; which of them are sure to be right."""
+        sure = self.judged.clear.copy()
+        walking = Walking(self.judging.walk, outputs=writer.graph.outputs) if self.plan.steps else None
+        for rows in self._parts():
+            if sure[rows].any():
+                some = {name: row[rows] for name, row in self.values.items()}
+                if walking is None:
+                    writer.write(some, room[:, rows])
+                else:
+                    at_end = walking.written(self._way, some, MACHINE_CODE, 1, room[:, rows])
+                    sure[rows] &= at_end[SURE] > 0.0
+            if progress is not None:
+                progress(rows.stop, self.lanes)
+        return sure
+
+    @cached_property
+    def _way(self) -> Way:
+        return way_of(self.ready.kinematics.path, self._inputs)
+
+    def _parts(self) -> Iterator[slice]:
+        for first in range(0, self.lanes, AT_ONCE):
+            yield slice(first, min(first + AT_ONCE, self.lanes))
+
+    def _angles(self, angles: Array, sines: Array) -> None:
+        """Angles with their turns where their cosines stand."""
+        layout, values = self.plan.solved.layout, self.judged.values
+        drives = evaluate(Graph.of(self.plan.winders), self._inputs)
+        for k, link in enumerate(self.plan.turning):
+            for rows in self._parts():
+                if not self.judged.clear[rows].any():
+                    continue
+                angle = angles[0, rows, :, layout.angles.index(link)]
+                np.arctan2(sines[rows, :, k], angle, out=angle)
+                middle = values[centre_of(link)][rows, None]
+                for drive, value in drives.items():
+                    middle = middle + values[winding_of(link, drive)][rows, None] * value
+                turns = whole_turns(middle, angle)
+                angle += TURN * turns
+
+    def _branches(self) -> Branches:
+        start = self.ready.assembled
+        smooth = self.ready.mechanism.assembly.continuation == "smooth"
+        return branches_at_start(self.ready.kinematics.path, start.signs, start.angles, smooth, self.lanes)
+
+    def _some(self, lanes: Lanes) -> Solved:
+        """Some mechanisms by arrays."""
+        return solve(self.ready, self.span, taken(self.numbers, lanes), len(lanes))
+
+    def _fill(
+        self, left: Lanes, found: dict[str, Array], status: npt.NDArray[np.int8], branches: Branches
+    ) -> None:
+        """Fill in the mechanisms that have events."""
+        for lanes, some in self._with_events(left):
+            for name in ROOMS:
+                if name in found:
+                    streams_of(name, found[name])[..., lanes, :] = streams_of(name, getattr(some, name))
+            status[lanes] = some.status
+            branches.events += [replace(event, lane=int(lanes[event.lane])) for event in some.branches.events]
+
+    def _with_events(self, left: Lanes) -> Iterator[tuple[Lanes, Solved]]:
+        if self.plan.steps or len(left) * self._places < WORTH_COMPILING:
+            some = self._some(left)
+            opened = (some.status == Status.OPEN).any(axis=1)
+            self._events.unclosed.update(left[opened].tolist())  # nobody has looked
+            yield left, some
+        else:
+            yield from self._events.solved(self.numbers, left)
+
+    @cached_property
+    def _events(self) -> Eventful:
+        return Eventful(self.ready, self.span, self.varied, self.plan, MACHINE_CODE)
+
+    @property
+    def _places(self) -> int:
+        return max(len(self.span.parameter), len(self.judging.mesh))
+
+    def _worst(self, residual: Array) -> Kept:
+        """The constraint that is worst of all, as `solve` finds it: in the first of its parts that has the worst."""
+        size = max(1, CHUNK // self._places)
+        worst = np.fmax.reduce(residual, axis=1)
+        lanes = np.nonzero(worst == np.fmax.reduce(worst))[0]
+        first = int(lanes[0]) // size * size if len(lanes) else 0
+        # what does not close counts as well, though it has no residual any more
+        chosen = np.union1d(lanes, sorted(self._events.unclosed)).astype(np.intp)
+        chosen = chosen[(chosen >= first) & (chosen < first + size)]
+        return self._some(chosen if len(chosen) else np.zeros(1, dtype=np.intp)).worst_constraint

@@ -1,0 +1,277 @@
+"""Which mechanisms of a batch have no events: judged on the mesh of events, along the path where that is needed.
+
+A mechanism is clear where every radicand stays above zero all over each cell of the mesh, and every divisor off it,
+by the bounds of `algebra.bends`: the search of `events` would find nothing. Behind a group of higher class nothing is
+bounded; there no sign change and no low minimum is enough. Then no sign flips, nothing is cut off, and the formulas of
+`traced` are the whole motion. What is not clear is left to the arrays; to call a clear mechanism unclear costs time and
+nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.expression_functions import EXPRESSIONS
+from centrode.algebra.expressions import Node, Operand, as_node, variable
+from centrode.algebra.jets import Jet
+from centrode.algebra.reductions import Reduction, together
+from centrode.kinematics.change_points import WINDOW
+from centrode.kinematics.compiled.bends import DIVISOR, RADICAND, bends_of
+from centrode.kinematics.compiled.path_following import SURE, Walk, Walking, way_of
+from centrode.kinematics.compiled.trace import Traced
+from centrode.kinematics.compiled.variables import (
+    AWAY,
+    FIRST,
+    INFINITE,
+    MOST,
+    PARAMETER,
+    TURN,
+    Pass,
+    centre_of,
+    greatest,
+    least,
+    least_of,
+    places_of,
+    whole_turns,
+    winding_of,
+)
+from centrode.kinematics.mesh import LOW, mesh_of
+from centrode.kinematics.path import Path
+from centrode.kinematics.sampling import ORDERS, SUSPECT
+
+# Where the angles of links stand: each stays within half a turn of a centre, which may run on with a drive.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+Values: TypeAlias = dict[str, Array]
+
+m = EXPRESSIONS
+SPARSE = 4
+"""Angles are followed at every fourth node of the mesh: 2 degrees of an angle drive."""
+START = "start"
+
+
+@dataclass(frozen=True)
+class Centring:
+    """How centres are found for the angles of some links of a traced plan."""
+
+    traced: Traced
+    links: tuple[str, ...]
+    mesh: Array
+    names: tuple[str, ...]
+
+    @property
+    def path(self) -> Path:
+        """The path of the drives."""
+        return self.traced.solved.ready.kinematics.path
+
+    def centres(self, values: Mapping[str, Array], kernels: str, threads: int) -> tuple[Mask, Values]:
+        """The mechanisms whose links all stay near enough to their centres; these with their windings."""
+        found, further = self._over_nodes.run(values, kernels, threads), Values()
+        near = [self._centred(link, found, further) for link in self.links]
+        return np.logical_and.reduce(near), further
+
+    @cached_property
+    def _sparse(self) -> Values:
+        """Every fourth node, the one nearest to the initial position among them."""
+        start = int(np.argmin(np.abs(self.mesh - self.path.initial)))
+        nodes = np.arange(len(self.mesh))
+        chosen = np.unique(np.concatenate([nodes[start % SPARSE :: SPARSE], nodes[[0, -1]]]))
+        return {
+            **places_of(self.path, self.mesh[chosen], ORDERS - 1),
+            START: (chosen == start).astype(np.float64),
+            FIRST: (chosen == 0).astype(np.float64),
+        }
+
+    @cached_property
+    def _over_nodes(self) -> Pass:
+        return Pass(self._of_angles, self.names, self._sparse)
+
+    @cached_property
+    def _of_angles(self) -> Reduction:
+        """States: each angle run on from node to node, its jumps, its ends less those of some turns of the drive."""
+        parts = [Reduction({}, {})]
+        for link in self.links:
+            cosine, sine = self.traced.turning[link]
+            raw, before = m.atan2(sine, cosine), variable(f"angle {link}")
+            angle = as_node(raw + TURN * whole_turns(before, raw))
+            jump = m.where(m.equal(variable(FIRST), 1.0), 0.0, m.abs(angle - before))
+            there = m.where(m.equal(variable(START), 1.0), angle, variable(f"at start {link}"))
+            parts.append(
+                Reduction(
+                    {f"angle {link}": angle, f"at start {link}": as_node(there)},
+                    {f"angle {link}": 0.0, f"at start {link}": 0.0},
+                )
+            )
+            parts.append(greatest(f"jump {link}", as_node(jump)))
+            for k, winding in enumerate(self._windings):
+                rest = angle
+                for drive, turns in winding.items():
+                    rest = as_node(rest - turns * self.traced.winders[drive])
+                parts += [greatest(f"high {k} {link}", rest), least(f"low {k} {link}", rest)]
+        return together(*parts)
+
+    def _centred(self, link: str, found: Values, further: Values) -> Mask:
+        """Where an angle stays within half a turn of a centre; the centre and its winding are added."""
+        start = self.traced.solved.ready.assembled.angles[link]
+        whole = np.round((start - found[f"at start {link}"]) / TURN)
+        off = np.abs(start - found[f"at start {link}"] - TURN * whole)
+        kinds = range(len(self._windings))
+        halves = np.stack([found[f"high {k} {link}"] - found[f"low {k} {link}"] for k in kinds]) / 2.0
+        best = np.argmin(np.where(np.isnan(halves), INFINITE, halves), axis=0)
+        middles = np.stack([found[f"high {k} {link}"] + found[f"low {k} {link}"] for k in kinds]) / 2.0
+        lanes = np.arange(len(best))
+        for drive in self.traced.winders:
+            of_each = np.array([winding.get(drive, 0.0) for winding in self._windings])
+            further[winding_of(link, drive)] = of_each[best]
+        further[centre_of(link)] = middles[best, lanes] + TURN * whole
+        jump = found[f"jump {link}"]
+        fits: Mask = halves[best, lanes] + jump < np.pi - AWAY
+        return fits & (jump < MOST) & (off < np.pi - AWAY)
+
+    @cached_property
+    def _windings(self) -> list[dict[str, float]]:
+        """Turns that a link may make for one of a drive: none, or one to either side for one of the drives."""
+        return [{}, *[{drive: sense} for drive in self.traced.winders for sense in (1.0, -1.0)]]
+
+
+SAFE = 2.0
+"""Margins of the search are kept this many times over: the last bits may differ from those of the arrays."""
+ROOM = 1.0 + 1e-6
+"""How much more than their bounds numbers may stray: the search's own comparisons are rounded otherwise."""
+SLACK, GAP = "slack", "gap"
+
+
+@dataclass(frozen=True)
+class ScreenedEvents:
+    """Of mechanisms (lanes,): which are clear, and further variables of their formulas."""
+
+    clear: Mask
+    values: Values
+
+
+@dataclass(frozen=True)
+class EventScreening:
+    """How mechanisms of a traced plan are judged; `links` are those whose turns are asked for."""
+
+    traced: Traced
+    samples: Array
+    names: tuple[str, ...]
+    links: tuple[str, ...]
+    executor: str
+    threads: int = 1
+
+    @cached_property
+    def mesh(self) -> Array:
+        """The nodes on which the arrays look for events."""
+        return mesh_of(self._path, self.samples)
+
+    @property
+    def _path(self) -> Path:
+        return self.traced.solved.ready.kinematics.path
+
+    def _places(self, parameter: Array) -> Values:
+        return places_of(self._path, parameter, ORDERS - 1)
+
+    @cached_property
+    def _centring(self) -> Centring:
+        return Centring(self.traced, self.links, self.mesh, self.names)
+
+    @cached_property
+    def walk(self) -> Walk:
+        """What is handed on along the path, where there are groups of higher class."""
+        return Walk(self.traced, self.links)
+
+    def judge(self, values: Mapping[str, Array]) -> ScreenedEvents:
+        """Judge the mechanisms of a batch; with groups of higher class `values` have where walks begin.
+
+        What a walk along the samples finds out about these groups themselves is not looked at here.
+        """
+        found = self._events(values)
+        lanes = len(next(iter(values.values())))
+        clear = np.ones(lanes, dtype=bool)
+        for slack in {SLACK, SURE} & found.keys():
+            clear &= found[slack] > 0.0
+        for group in self.traced.divisors:
+            if f"least {group}" in found:
+                clear &= (found[f"least {group}"] > 0.0) | (found[f"most {group}"] < 0.0)
+        further = {name: array for name, array in found.items() if name.startswith("largest")}
+        if self.links and not self.traced.steps:
+            near, centres = self._centring.centres(values, self.executor, self.threads)
+            clear &= near
+            further |= centres
+        return ScreenedEvents(clear, further)
+
+    def _events(self, values: Mapping[str, Array]) -> Values:
+        walk = Walk(self.traced)
+        if walk.moves(list(self._of_events.state.values())):
+            way = way_of(self._path, {PARAMETER: self._near})
+            return Walking(walk, self._of_events).reduced(way, values, self.executor, self.threads)
+        return self._over_nodes.run(values, self.executor, self.threads)
+
+    @property
+    def _near(self) -> Array:
+        """The nodes on which an event would matter to a sample, or to the way from the initial position to it."""
+        path = self._path
+        ends = np.append(self.samples, path.initial)
+        beyond = WINDOW * path.unit + 2.0 * path.step
+        near: Array = self.mesh[(self.mesh >= ends.min() - beyond) & (self.mesh <= ends.max() + beyond)]
+        return near
+
+    @cached_property
+    def _over_nodes(self) -> Pass:
+        return Pass(self._of_events, self.names, self._nodes)
+
+    @cached_property
+    def _nodes(self) -> Values:
+        """The mesh; with several drives also how far from each node the next one may be."""
+        gaps = np.diff(self.mesh)
+        either = np.maximum(np.append(gaps, 0.0), np.append(0.0, gaps))
+        found = self._places(self.mesh) | bends_of(self._path, self.mesh)
+        return found | ({GAP: either} if self._path.by_time else {})
+
+    @cached_property
+    def _of_events(self) -> Reduction:
+        """States: how far the worst radicand is from what the search would look into; ends of divisors."""
+        step = variable(GAP) if self._path.by_time else self._path.step
+        slacks, parts = [], []
+        for group, radicand in self.traced.radicands.items():
+            value, slope = _with_slope(radicand)
+            bent = self.traced.bends.get((RADICAND, group))
+            if bent is None:
+                # a minimum next to a node lies no deeper than its tangent reaches in one step
+                slacks.append(as_node(value * (1.0 - SAFE * LOW) - m.abs(slope) * step))
+            else:
+                slacks.append(as_node(bent.value - ROOM * bent.strays))
+            parts.append(greatest(f"largest {group}", as_node(m.abs(value))))
+        for group, divisor in self.traced.divisors.items():
+            bent = self.traced.bends.get((DIVISOR, group))
+            if bent is None:
+                value = as_node(_with_slope(divisor)[0])
+                parts += [greatest(f"most {group}", value), least(f"least {group}", value)]
+            else:
+                slacks.append(as_node(m.abs(bent.value) - ROOM * bent.strays))
+        if slacks:
+            parts.append(least(SLACK, least_of(slacks)))
+        return together(*parts)
+
+    @cached_property
+    def slack_at_samples(self) -> Node | None:
+        """Positive where no radicand comes near enough to zero to be compared with its rounding error."""
+        slacks = []
+        for group, radicand in self.traced.radicands.items():
+            value = _with_slope(radicand)[0]
+            slacks.append(as_node(value - SAFE * SUSPECT * variable(f"largest {group}")))
+        return least_of(slacks) if slacks else None
+
+
+def _with_slope(number: object) -> tuple[Operand, Operand]:
+    if isinstance(number, Jet):
+        return number.coefficients[0], number.coefficients[1]
+    return number, 0.0  # type: ignore[return-value]

@@ -1,0 +1,472 @@
+"""Closed forms of the groups of class II, over any algebra.
+
+Each takes the positions known before it and adds its own; where a formula has several answers, it asks the
+`Choices` it is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol, TypeAlias
+
+from centrode.geometry.plane import (
+    Circle,
+    Line,
+    Pose,
+    Vector,
+    add,
+    along,
+    place,
+    pose_with_point,
+    reversed_rotor,
+    rotor_of,
+    subtract,
+    turned,
+)
+from centrode.geometry.space import Curve, Root
+from centrode.geometry.space import Pose as AnyPose
+from centrode.structure.constraints import FRAME, GearRatio, NoSlip, Positions
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.gearing import Straight
+from centrode.structure.groups import (
+    Aim,
+    AngleEquation,
+    AngleGiven,
+    Arm,
+    Following,
+    Group,
+    Locus,
+    Meet,
+    Meshed,
+    Newton,
+    Rail,
+    RigidPoint,
+    Rod,
+    Rolled,
+    Rolloff,
+    Slot,
+    Stop,
+    Stroke,
+    Touch,
+    Train,
+    TurnedLink,
+    Turning,
+    TwoPointLink,
+)
+
+# Closed forms of gears and rolling wheels, over any algebra: angles that follow, loci, trains.
+#
+# Angles run on over turns, so that ratios that are no whole numbers keep their meaning.
+
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+Continued: TypeAlias = Callable[[str, Number], Number]
+PointAndDirection: TypeAlias = tuple[Vector, Vector]
+
+
+def bearing_key(rolling: str) -> str:
+    """Name under which the direction of a wheel's centre about its circle is counted over turns."""
+    return f"rolling/{rolling}"  # no link has a slash in its name
+
+
+def meshed_angle(turning: Meshed, link: str, numbers: Dimensions, at: Positions) -> Number:
+    """Angle [rad] of one link of a gear from those of the other two."""
+    gear = turning.gear
+    ratio, phase = numbers.gearing.ratio[gear.gear], numbers.gearing.phase[gear.gear]
+    first, second = numbers.gearing.shares.get(gear.gear, (1.0, 1.0))
+    if link == gear.carrier:
+        return (at.angles[gear.second] - ratio * at.angles[gear.first] - phase) / (second - ratio * first)
+    carrier = at.angles[gear.carrier]
+    if link == gear.second:
+        return second * carrier + (phase + ratio * (at.angles[gear.first] - first * carrier))
+    return first * carrier + (at.angles[gear.second] - second * carrier - phase) / ratio
+
+
+def rolled_turn(
+    rolling: NoSlip, m: Namespace, numbers: Dimensions, at: Positions, continued: Continued
+) -> Number:
+    """Angle [rad] of a wheel against the body it rolls on, from where its centre is."""
+    gearing, phase = numbers.gearing, numbers.gearing.phase[rolling.rolling]
+    if isinstance(gearing.track[rolling.rolling], Straight):
+        return phase - rolling.slide(numbers, at) / gearing.radius[rolling.rolling]
+    key = bearing_key(rolling.rolling)
+    bearing = at.angles[key] = continued(key, rolling.bearing(m, numbers, at))
+    return phase + gearing.spin(rolling.rolling) * bearing
+
+
+def followed(
+    turning: Meshed | Rolled,
+    link: str,
+    m: Namespace,
+    numbers: Dimensions,
+    at: Positions,
+    continued: Continued,
+) -> tuple[Vector, Number | None]:
+    """Rotor and angle of a link that a gear or a rolling contact turns; no angle where its turns are not known."""
+    if isinstance(turning, Meshed):
+        angle = meshed_angle(turning, link, numbers, at)
+        return rotor_of(m, angle), angle
+    on = turning.rolling.on
+    turn = rolled_turn(turning.rolling, m, numbers, at, continued)
+    rotor = turned(at.poses[on].rotor, rotor_of(m, turn))
+    return rotor, at.angles[on] + turn if on in at.angles else None
+
+
+def touched_circle(locus: Touch, numbers: Dimensions, at: Positions, rotor: Vector | None) -> Vector:
+    """Centre of the circle on which a wheel's centre is, or the carriage's origin where the track is carried."""
+    centre = numbers.gearing.track[locus.contact.rolling].centre  # type: ignore[union-attr]
+    if locus.carried and rotor is not None:
+        return subtract(at.points[locus.point], turned(centre, rotor))
+    return place(at.poses[locus.contact.on], centre)
+
+
+def touched_line(locus: Touch, numbers: Dimensions, at: Positions, rotor: Vector | None) -> PointAndDirection:
+    """Line on which a wheel's centre is, a radius to the left of the track; or the carriage's origin."""
+    through, direction = beside_track(locus.contact.rolling, numbers)
+    if locus.carried and rotor is not None:
+        return subtract(at.points[locus.point], turned(through, rotor)), turned(direction, rotor)
+    pose = at.poses[locus.contact.on]
+    return place(pose, through), turned(direction, pose.rotor)
+
+
+def beside_track(rolling: str, numbers: Dimensions) -> PointAndDirection:
+    """The parallel of a straight track on which the wheel's centre is, in the axes of the body that carries it."""
+    track = numbers.gearing.track[rolling]
+    assert isinstance(track, Straight)
+    left, (x, y) = numbers.gearing.radius[rolling], track.direction
+    return add(track.through, (-left * y, left * x)), track.direction
+
+
+def rolloff_line(
+    locus: Rolloff, turn: Number, numbers: Dimensions, at: Positions, rotor: Vector | None
+) -> PointAndDirection:
+    """Line square to the track where a wheel turned by `turn` [rad] puts its centre; or the carriage's origin."""
+    rolling = locus.rolling.rolling
+    slide = (numbers.gearing.phase[rolling] - turn) * numbers.gearing.radius[rolling]
+    track = numbers.gearing.track[rolling]
+    assert isinstance(track, Straight)
+    foot, (x, y) = along(track.through, track.direction, slide), track.direction
+    if locus.carried and rotor is not None:
+        return subtract(at.points[locus.point], turned(foot, rotor)), turned((-y, x), rotor)
+    pose = at.poses[locus.rolling.on]
+    return place(pose, foot), turned((-y, x), pose.rotor)
+
+
+def solve_train(group: Train, m: Namespace, numbers: Dimensions, at: Positions, continued: Continued) -> None:
+    """Add angles, poses and points of a train."""
+    rows = [equation_at(equation, m, numbers, at, continued) for equation in group.equations]
+    at.angles.update(solved_angles(group, rows, at))
+    place_train(group, m, numbers, at)
+
+
+def place_train(group: Train, m: Namespace, numbers: Dimensions, at: Positions) -> None:
+    """Add poses and points of a train whose angles are known."""
+    for link, pivot in group.places:
+        local = numbers.local[link]
+        at.poses[link] = pose_at(link, pivot, rotor_of(m, at.angles[link]), m, numbers, at)
+        for point, bringing in group.brought:
+            if bringing == link:
+                at.points[point] = numbers.space.place(m, at.poses[link], local[point])
+
+
+def pose_at(
+    link: str, pivot: str, rotor: Vector, m: Namespace, numbers: Dimensions, at: Positions
+) -> AnyPose:
+    """Pose of a link about a known point whose angle has a rotor: in the plane the angle of its own axes."""
+    inside, place_of_pivot, reference = numbers.local[link][pivot], at.points[pivot], numbers.reference(link)
+    if reference is None:
+        return pose_with_point(inside, place_of_pivot, rotor)
+    base = at.poses[numbers.gearing.measured.get(link, FRAME)]
+    return numbers.space.turned_pose(m, base, rotor, inside, place_of_pivot, reference)
+
+
+def solved_angles(
+    group: Train, rows: list[tuple[Mapping[str, Number], Number]], at: Positions
+) -> dict[str, Number]:
+    """Angles of a train's links from its equations: factors by link, and right sides."""
+    unknown = group.links
+    table = [{link: row[link] for link in unknown if link in row} for row, _right in rows]
+    right: list[Number] = []
+    for row, value in rows:
+        for link, factor in row.items():
+            if link not in unknown:
+                value = value - factor * at.angles[link]
+        right.append(value)
+    for k, (i, link) in enumerate(group.pivots):
+        for j, _column in group.pivots[k + 1 :]:
+            if link in table[j]:
+                share = table[j].pop(link) / table[i][link]
+                for other, factor in table[i].items():
+                    if other != link:
+                        table[j][other] = table[j].get(other, 0.0) - share * factor
+                right[j] = right[j] - share * right[i]
+    angles: dict[str, Number] = {}
+    for i, link in reversed(group.pivots):
+        value = right[i]
+        for other, factor in table[i].items():
+            if other in angles:
+                value = value - factor * angles[other]
+        angles[link] = value / table[i][link]
+    return angles
+
+
+def equation_at(
+    equation: AngleEquation, m: Namespace, numbers: Dimensions, at: Positions, continued: Continued
+) -> tuple[Mapping[str, Number], Number]:
+    """Factors of the angles in an equation by link, and its right side."""
+    gearing = numbers.gearing
+    if isinstance(equation, GearRatio):
+        return equation.weights(numbers), gearing.phase[equation.gear]
+    if isinstance(equation, NoSlip):
+        return {equation.link: 1.0, equation.on: -1.0}, rolled_turn(equation, m, numbers, at, continued)
+    if isinstance(equation, Arm):
+        rolling = equation.rolling
+        spin = gearing.spin(rolling.rolling)
+        right = gearing.phase[rolling.rolling] + spin * arm_angle(equation, m, numbers)
+        return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}, right
+    given = _given(equation, m, numbers, at)
+    if numbers.reference(equation.link) is not None:  # on the sphere the angle is that between the two
+        return {equation.link: 1.0}, given
+    return {equation.link: 1.0, equation.relative_to: -1.0}, given
+
+
+def arm_angle(arm: Arm, m: Namespace, numbers: Dimensions) -> Number:
+    """Direction [rad] from the circle's centre to the wheel's in the axes of the arm."""
+    local = numbers.local[arm.link]
+    x, y = subtract(local[arm.rolling.centre], local[arm.pivot])
+    return m.atan2(y, x)
+
+
+def _given(equation: AngleGiven, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
+    if equation.drive is not None:
+        return at.drives[equation.drive]
+    rotor = numbers.turn[equation.guide or ""]
+    return m.atan2(rotor[1], rotor[0])
+
+
+# Rotors and angles of links that a drive, a guide, a gear or rolling turns, over any algebra.
+
+
+def difference_of(turning: Turning, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
+    """Rotor from the body that a turning is relative to, to its link."""
+    if turning.drive is not None:
+        return rotor_of(m, at.drives[turning.drive])
+    return numbers.turn[turning.guide or ""]
+
+
+def turn_link(
+    turning: Turning | Following,
+    link: str,
+    m: Namespace,
+    numbers: Dimensions,
+    at: Positions,
+    continued: Continued,
+) -> Vector:
+    """Rotor of a link whose angle follows, in the plane; the angle is added where it is known with its turns."""
+    if isinstance(turning, Turning):
+        add_angle(turning, link, numbers, at)
+        return turning_rotor(turning, link, m, numbers, at)
+    rotor, angle = followed(turning, link, m, numbers, at, continued)
+    if angle is not None:
+        at.angles[link] = angle
+    return rotor
+
+
+def add_angle(turning: Turning, link: str, numbers: Dimensions, at: Positions) -> None:
+    """Add the angle of a driven link with its turns, if that of the other link is known."""
+    if turning.drive is not None and numbers.reference(turning.link) is not None:
+        # on the sphere the angle is that between the two links itself, and tells nothing of the other one's
+        if link == turning.link:
+            at.angles[link] = at.drives[turning.drive]
+        return
+    other = turning.relative_to if link == turning.link else turning.link
+    if turning.drive is not None and other in at.angles:
+        value = at.drives[turning.drive]
+        at.angles[link] = value + at.angles[other] if link == turning.link else at.angles[other] - value
+
+
+def turning_rotor(turning: Turning, link: str, m: Namespace, numbers: Dimensions, at: Positions) -> Vector:
+    """Rotor of a link whose angle a drive or a guide gives against a body that is known, in the plane."""
+    difference = difference_of(turning, m, numbers, at)
+    if link == turning.link:
+        return turned(at.poses[turning.relative_to].rotor, difference)
+    return turned(at.poses[turning.link].rotor, reversed_rotor(difference))
+
+
+class Choices(Protocol):
+    """What decides where a formula has several answers."""
+
+    def root(self, radicand: Number) -> Number:
+        """The signed root of a radicand: the sign is the branch."""
+
+    def divisor(self, divisor: Number) -> Number:
+        """A number that is divided by, as it is: its zero is a place the group cannot pass."""
+
+    def continued(self, key: str, angle: Number) -> Number:
+        """An angle in (-pi, pi] with the turns that its path has made; `key` names it."""
+
+    def higher(self, m: Namespace, at: Positions) -> None:
+        """Add what the group gives, if it is of higher class."""
+
+
+def solve_group(group: Group, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> None:
+    """Add the places of a group's points and links to the positions."""
+    if isinstance(group, RigidPoint):
+        local = numbers.local[group.link][group.point]
+        at.points[group.point] = numbers.space.place(m, at.poses[group.link], local)
+    elif isinstance(group, TwoPointLink):
+        _two_points(group.link, group.first, group.second, m, numbers, at)
+    elif isinstance(group, TurnedLink):
+        at.poses[group.link] = _turned_link(group, m, numbers, at, choices)
+    elif isinstance(group, Aim):
+        _aim(group, m, numbers, at, choices.root)
+    elif isinstance(group, Meet):
+        _meet(group, m, numbers, at, choices)
+    elif isinstance(group, Train):
+        solve_train(group, m, numbers, at, choices.continued)
+    elif isinstance(group, Newton):
+        choices.higher(m, at)
+
+
+def _turned_link(
+    group: TurnedLink, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices
+) -> AnyPose:
+    turning = group.turning
+    if not isinstance(turning, Turning):
+        rotor = turn_link(turning, group.link, m, numbers, at, choices.continued)
+        return pose_at(group.link, group.pivot, rotor, m, numbers, at)
+    add_angle(turning, group.link, numbers, at)
+    rotor, reference = difference_of(turning, m, numbers, at), numbers.reference(turning.link)
+    base = turning.relative_to
+    if group.link != turning.link:  # it is the base that is unknown
+        rotor, base = reversed_rotor(rotor), turning.link
+        reference = reference and reference[2:] + reference[:2]
+    local = numbers.local[group.link][group.pivot]
+    return numbers.space.turned_pose(m, at.poses[base], rotor, local, at.points[group.pivot], reference)
+
+
+def _two_points(link: str, first: str, second: str, m: Namespace, numbers: Dimensions, at: Positions) -> None:
+    local = numbers.local[link]
+    at.poses[link] = numbers.space.pose_by_two_points(
+        m, local[first], local[second], at.points[first], at.points[second]
+    )
+
+
+def aim_curve(group: Aim, numbers: Dimensions) -> Curve:
+    """Curve of the aimed link on which the target lies, in the link's axes."""
+    if group.contact is not None:
+        return beside_track(group.contact.rolling, numbers)
+    if group.block is None or group.sliding is None:
+        return numbers.curve(group.guide)
+    # the block keeps its angle to the aimed link, so its pivot runs on a parallel of the guide
+    through, direction = numbers.through[group.guide], numbers.direction[group.guide]
+    inside = numbers.local[group.block]
+    shift = subtract(inside[group.target], inside[group.sliding])
+    return add(through, turned(shift, numbers.turn[group.guide])), direction
+
+
+def _aim(group: Aim, m: Namespace, numbers: Dimensions, at: Positions, root: Root) -> None:
+    pivot, target = at.points[group.pivot], at.points[group.target]
+    local, curve = numbers.local[group.link][group.pivot], aim_curve(group, numbers)
+    pose = numbers.space.aim(m, local, pivot, curve, target, root)
+    at.poses[group.link] = pose
+    if group.block is not None and group.sliding is not None:
+        rotor = turned(pose.rotor, numbers.turn[group.guide])
+        block = pose_with_point(numbers.local[group.block][group.target], at.points[group.target], rotor)
+        at.poses[group.block] = block
+        at.points[group.sliding] = place(block, numbers.local[group.block][group.sliding])
+
+
+def _carriage_rotor(
+    group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices
+) -> Vector | None:
+    if group.carriage is None or group.turning is None:
+        return None
+    rotor = turn_link(group.turning, group.carriage, m, numbers, at, choices.continued)
+    rolls = [locus.rolling for locus in group.loci if isinstance(locus, Rolloff)]
+    if group.carriage not in at.angles and any(group.carriage in (r.link, r.on) for r in rolls):
+        at.angles[group.carriage] = choices.continued(group.carriage, m.atan2(rotor[1], rotor[0]))
+    return rotor
+
+
+def _arms(group: Meet, numbers: Dimensions, rotor: Vector | None) -> dict[str, Vector]:
+    """Vectors from the group's unknown vector to each of its points."""
+    if group.carriage is None or rotor is None:
+        return {point: (0.0, 0.0) for point in group.points}
+    local = numbers.local[group.carriage]
+    return {point: turned(local[point], rotor) for point in group.points}
+
+
+def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> list[Any]:
+    """The two loci of a group's unknown vector, circles of links first."""
+    rotor = _carriage_rotor(group, m, numbers, at, choices)
+    arms = _arms(group, numbers, rotor)
+    return [_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci]
+
+
+def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> None:
+    rotor = _carriage_rotor(group, m, numbers, at, choices)
+    arms = _arms(group, numbers, rotor)
+    one, other = (_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci)
+    vector = numbers.space.meet(one, other, choices.root, choices.divisor)
+    if group.carriage is not None and rotor is not None:
+        at.poses[group.carriage] = Pose(vector, rotor)
+    for point in group.points:
+        at.points[point] = vector if rotor is None else add(vector, arms[point])
+    for rod in group.rods:
+        _two_points(rod.link, rod.centre, rod.point, m, numbers, at)
+
+
+def _locus(
+    locus: Locus,
+    m: Namespace,
+    numbers: Dimensions,
+    at: Positions,
+    arms: dict[str, Vector],
+    rotor: Vector | None,
+) -> Any:
+    """Locus of the group's unknown vector: that of the point, moved back by the point's arm on the carriage."""
+    if isinstance(locus, Stroke | Touch | Rolloff):
+        found = _driven_or_rolled(locus, numbers, at, rotor)
+    else:
+        found = _of_point(locus, m, numbers, at, rotor)
+    if rotor is None:
+        return found
+    arm = arms.get(locus.point, (0.0, 0.0))
+    if isinstance(found, Circle):
+        return Circle(subtract(found.centre, arm), found.radius)
+    return Line(subtract(found.through, arm), found.direction)
+
+
+def _of_point(
+    locus: Rod | Rail | Slot | Stop, m: Namespace, numbers: Dimensions, at: Positions, rotor: Vector | None
+) -> Any:
+    """Locus of a point of the group; of the unknown vector itself, if it is a slot of the carriage."""
+    if isinstance(locus, Rod):
+        local = numbers.local[locus.link]
+        return numbers.space.circle(m, at.points[locus.centre], local[locus.centre], local[locus.point])
+    if isinstance(locus, Slot):
+        assert rotor is not None
+        arm = turned(numbers.through[locus.guide], rotor)
+        direction = turned(numbers.direction[locus.guide], rotor)
+        return Line(subtract(at.points[locus.point], arm), direction)
+    assert isinstance(locus, (Rail, Stop))
+    pose, curve = at.poses[locus.on], numbers.curve(locus.guide)
+    if isinstance(locus, Rail):
+        return numbers.space.rail(m, pose, curve)
+    return numbers.space.stop(m, pose, curve, at.drives[locus.drive])
+
+
+def _driven_or_rolled(
+    locus: Stroke | Touch | Rolloff, numbers: Dimensions, at: Positions, rotor: Vector | None
+) -> Circle | Line:
+    """Locus of a point at a cylinder or a track; of the unknown vector itself, if the carriage holds the track."""
+    if isinstance(locus, Stroke):
+        return Circle(at.points[locus.centre], at.drives[locus.drive])
+    if isinstance(locus, Rolloff):
+        turn = at.angles[locus.rolling.link] - at.angles[locus.rolling.on]
+        return Line(*rolloff_line(locus, turn, numbers, at, rotor))
+    if locus.letter == "R":
+        reach = numbers.gearing.reach(locus.contact.rolling)
+        return Circle(touched_circle(locus, numbers, at, rotor), reach)
+    return Line(*touched_line(locus, numbers, at, rotor))

@@ -1,0 +1,187 @@
+"""Groups of higher class at any places: from their tracks, with derivatives or bounds as the algebra wants."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jet_functions import JetFunctions
+from centrode.algebra.jets import Jet
+from centrode.algebra.rounding import RoundedFunctions
+from centrode.kinematics.higher_class.newton import newton, step_at
+from centrode.kinematics.higher_class.system import (
+    GroupSystem,
+    Linear,
+    Surroundings,
+    flattened,
+    needed,
+    plain,
+    shaped,
+)
+from centrode.kinematics.higher_class.tracing import CurveTracks
+from centrode.structure.constraints import Positions
+from centrode.structure.dimensions import Dimensions
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Lanes: TypeAlias = npt.NDArray[np.intp]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+
+LEAST_PART = 1.0 / 64
+"""Part of the way from the description's dimensions to a batch's below which the way is given up."""
+NEAR = 0.3
+"""Greatest first Newton step of a part of that way, in rad or in the greatest length."""
+
+
+@dataclass(frozen=True)
+class ConvergedPlaces:
+    """Where a group is open, where it stands at a limit, and where Newton's method did not converge."""
+
+    opened: Mask
+    limit: Mask
+    lost: Mask
+
+
+def close(
+    around: Surroundings,
+    tracks: CurveTracks,
+    m: Namespace,
+    at: Positions,
+    parameter: Array,
+    lanes: Lanes | None,
+    rough: bool = False,
+) -> ConvergedPlaces:
+    """Add the group's points and links to positions at parameters: (n,) for all lanes, or one lane for each.
+
+    Rough positions are those of the track, after one Newton step where derivatives are wanted as well.
+    """
+    shape = (tracks.lanes, parameter.shape[-1]) if lanes is None else parameter.shape
+    flat = np.broadcast_to(parameter, shape).reshape(-1)
+    which = np.repeat(np.arange(tracks.lanes), shape[-1]) if lanes is None else lanes
+    numbers = around.kinematics.taken(which).numbers
+    group = around.equations
+    known = flattened(needed(group, at), shape)
+    system = GroupSystem(group, numbers, known.mapped(plain), len(flat))
+    foretold = tracks.foretell(flat, which)
+    start = system.righted(foretold.state)
+    with np.errstate(all="ignore"):
+        if rough:
+            right, state, linear = ~(foretold.beyond | foretold.limit), start, None
+            if isinstance(m, JetFunctions):
+                linear = system.linear(system.at(ARRAYS, system.known, state))
+                state = system.moved(state, step_at(system, state, linear)[0])
+        else:
+            found = newton(system, start)
+            linear = system.linear(system.at(ARRAYS, system.known, found.state))
+            right = found.found & (np.sign(np.linalg.det(linear.matrix)) == foretold.sense)
+            state = np.where(right[:, None], found.state, np.nan)
+        state[foretold.limit] = foretold.state[foretold.limit]
+        shaped(_lifted(system, m, known, state, linear), group, shape, at)
+    lost = ~(right | foretold.limit | foretold.beyond)
+    return ConvergedPlaces(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))
+
+
+def follow(
+    around: Surroundings, tracks: CurveTracks, at: Positions, parameter: Array, lanes: Lanes, steps: int
+) -> None:
+    """Add the group's points and links along ways of complex parameters, NaN from where Newton's method fails.
+
+    The ways stand one after the other, of so many steps each, and begin with a real parameter.
+    """
+    group = around.equations
+    known = flattened(needed(group, at), parameter.shape)
+    system = GroupSystem(group, around.kinematics.taken(lanes).numbers, known, len(parameter))
+    first = np.arange(0, len(parameter), steps)
+    state: Any = tracks.foretell(parameter[first].real, lanes[first]).state + 0j
+    state = system.taken(first).righted(state)
+    states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
+    for k in range(steps):
+        found = newton(system.taken(first + k), state)
+        state = np.where(found.found[:, None], found.state, np.nan)
+        states[first + k] = state
+    shaped(system.at(ARRAYS, known, states), group, parameter.shape, at)
+
+
+def _lifted(
+    system: GroupSystem, m: Namespace, known: Positions, state: Array, linear: Linear | None
+) -> Positions:
+    """Converged states over the algebra of the known positions."""
+    if linear is None:
+        return system.at(m, known, state)
+    if isinstance(m, JetFunctions):
+        order = max((jet.order for jet in _jets(known)), default=0)
+        motion = system.jets(known, state, linear, order) if order else None
+        return system.at(m, known, state, motion)
+    if isinstance(m, RoundedFunctions):
+        return system.at(m, known, state, system.bounds(known, state, linear))
+    return system.at(m, known, state)
+
+
+def _jets(known: Positions) -> Iterator[Jet]:
+    yield from (x for x in known.drives.values() if isinstance(x, Jet))
+    yield from (x for v in known.points.values() for x in v if isinstance(x, Jet))
+    yield from (x for pose in known.poses.values() for v in pose for x in v if isinstance(x, Jet))
+
+
+def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial: float, lanes: int) -> Array:
+    """States (lanes, width) in the initial position; those of a batch by way of the description's own dimensions.
+
+    NaN where the way fails, or crosses a position in which the group is singular.
+    """
+    group = around.equations
+    own = GroupSystem(group, nominal, start, 1)
+    state = np.repeat(own.state_of(start), lanes, axis=0)
+    if all(isinstance(x, float) for x in numbers_of(around.kinematics.numbers)):
+        return state
+    sense = sense_of(own, state[:1])
+    done, part = np.zeros(lanes), np.ones(lanes)
+    while (going := np.nonzero((done < 1.0) & (part >= LEAST_PART))[0]).size:
+        aim = np.minimum(done[going] + part[going], 1.0)
+        numbers = around.kinematics.taken(going).numbers
+        between = around.with_numbers(blended(nominal, numbers, aim), going)
+        everyone = np.arange(len(going))
+        known = between.known_at(np.full(len(going), initial), everyone)
+        system = between.system(known, everyone)
+        with np.errstate(all="ignore"):
+            found = newton(system, state[going])
+            good = found.found & (sense_of(system, found.state) == sense) & (found.sizes[0] < NEAR)
+        state[going[good]] = found.state[good]
+        done[going[good]] = aim[good]
+        part[going] *= np.where(good, 2.0, 0.5)
+    state[done < 1.0] = np.nan
+    return state
+
+
+def sense_of(system: GroupSystem, state: Array) -> Array:
+    """Sign of the determinant of the equations at states."""
+    matrix = system.linear(system.at(ARRAYS, system.known, state)).matrix
+    return np.asarray(np.sign(np.linalg.det(matrix)), dtype=np.float64)
+
+
+def numbers_of(numbers: Dimensions) -> list[Number]:
+    """Every number of the dimensions, in one order."""
+    found: list[Number] = []
+
+    def note(x: Number) -> Number:
+        found.append(x)
+        return x
+
+    numbers.mapped(note)
+    return found
+
+
+def blended(first: Dimensions, second: Dimensions, part: Array) -> Dimensions:
+    """Dimensions (lanes,) part of the way from the first to the second, exactly these at the end."""
+    from_first = iter(numbers_of(first))
+
+    def between(x: Number) -> Number:
+        y = next(from_first)
+        return x if isinstance(x, float) else np.where(part == 1.0, x, y + part * (x - y))
+
+    return second.mapped(between)

@@ -1,0 +1,250 @@
+"""The initial position of a group of higher class: the description's initial angles say which of many is meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import cos, radians, remainder, sin, tau
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.rounding import ROUNDED, Rounded
+from centrode.errors import InputError
+from centrode.kinematics.assembly_mode import is_measured
+from centrode.kinematics.higher_class.newton import newton
+from centrode.kinematics.higher_class.system import GroupSystem, within
+from centrode.kinematics.plan_evaluation import rotor_of_angle
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.structure.assur import name_of
+from centrode.structure.constraints import Positions
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.groups import Newton
+
+# Starting places for groups that no chain of initial angles reaches, such as a platform on three cylinders.
+#
+# Their links know their angles and no place. So the first of them is tried at many places about what is
+# known; of
+# what closes, the positions count that have the angles given.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+RINGS, SPOKES = (0.25, 0.6, 1.0), 12
+"""Places are tried on rings about every known point, in the greatest length."""
+POINTS = 8
+"""Known points about which places are tried."""
+NEAR = radians(5.0)
+"""How far the angles of a position may be from those given."""
+CLEARLY = 0.2
+"""A position is meant if its angles are off by less than this share of what the next position's are."""
+SAME = 1e-6
+"""Positions closer than this, in the greatest length and in rad, are the same."""
+
+
+def scattered(numbers: Dimensions, at: Positions, origin: Sequence[float]) -> Iterator[Any]:
+    """Places on rings about the known points; about the origin where only guides hold the group."""
+    for known in list(at.points.values())[:POINTS] or [origin]:
+        for ring in RINGS:
+            for k in range(SPOKES):
+                reach, turn = ring * numbers.scale, tau * k / SPOKES
+                yield numbers.space.moved_point(ARRAYS, known, (reach * cos(turn), reach * sin(turn)))
+
+
+def closing(mechanism: Mechanism, system: GroupSystem, starts: Sequence[Array], steps: int) -> list[Array]:
+    """The states near the initial angles to which Newton's method leads from the starts.
+
+    One if its angles are much nearer to those given than the angles of all others.
+    """
+    many = GroupSystem(system.group, system.numbers, system.known, len(starts))
+    with np.errstate(all="ignore"):
+        found = newton(many, np.concatenate(starts), steps)
+    states: list[Array] = []
+    for k in np.nonzero(found.found)[0]:
+        state = found.state[k : k + 1]
+        if all(_apart(system, state, other) > SAME for other in states):
+            states.append(state)
+    near = [(_misfit(mechanism, system, state), state) for state in states]
+    near = sorted((pair for pair in near if pair[0] <= NEAR), key=lambda pair: pair[0])
+    if len(near) > 1 and near[0][0] < CLEARLY * near[1][0]:
+        near = near[:1]
+    return [state for _off, state in near]
+
+
+def _apart(system: GroupSystem, one: Array, other: Array) -> float:
+    return float(np.max(np.abs(one - other))) / max(1.0, float(system.numbers.scale))
+
+
+def _misfit(mechanism: Mechanism, system: GroupSystem, state: Array) -> float:
+    """Greatest difference of a link's angle from the one given [rad]."""
+    at = system.at(ARRAYS, system.known, state)
+    given = {link: mechanism.links[link].angle for link in system.group.links if link in at.angles}
+    angles = {link: float(np.reshape(at.angles[link], -1)[0]) for link in given}
+    return max(
+        (abs(angles[link] - angle) for link, angle in given.items() if angle is not None),
+        default=0.0,
+    )
+
+
+Number: TypeAlias = Any
+
+STEPS = 30
+"""Newton steps from the initial angles to the initial position."""
+SINGULAR = 1e-9
+"""Smallest over greatest singular value of a group that stands at a limit or a change point."""
+
+
+def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> GroupSystem:
+    """Add a group's initial position to what is known before it; returns the system it solves.
+
+    Raises InputError where an initial angle is missing, where nothing closes near the angles given, and where
+    the group is singular.
+    """
+    system = GroupSystem(group, numbers, at.copied(), 1)
+    start = _start(mechanism, system, at)
+    with np.errstate(all="ignore"):
+        found = newton(system, start, STEPS)
+        if not found.found[0]:
+            raise _does_not_close(system, start)
+        closed = system.at(ARRAYS, at, found.state)
+        values = np.linalg.svd(system.linear(closed).matrix[0], compute_uv=False)
+    if values[-1] <= SINGULAR * values[0]:
+        raise InputError(
+            name_of(group),
+            _("it stands at a limit or a change point in the initial position"),
+            _("start the drive elsewhere"),
+        )
+    closed = closed.mapped(_floating)
+    for name in group.points:
+        at.points[name] = closed.points[name]
+    for name in group.links:
+        at.poses[name] = closed.poses[name]
+        if name in closed.angles:
+            at.angles[name] = closed.angles[name]
+    return system
+
+
+def bound_higher(system: GroupSystem, at: Positions, bounded: Positions) -> None:
+    """Add a group's initial position to what is known before it with bounds of rounding errors."""
+    state = system.state_of(at)
+    linear = system.linear(system.at(ARRAYS, system.known, state))
+    known = bounded.mapped(
+        lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x
+    )
+    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).mapped(within(_single))
+    bounded.points.update(found.points)
+    bounded.poses.update(found.poses)
+    bounded.angles.update(found.angles)
+
+
+def _floating(x: Number) -> float:
+    return float(x if np.ndim(x) == 0 else x[0])
+
+
+def _single(x: Number) -> Number:
+    """One number from an array of one."""
+    return x if np.ndim(x) == 0 else x[0]
+
+
+def _start(mechanism: Mechanism, system: GroupSystem, at: Positions) -> Array:
+    """The state from which Newton's method starts."""
+    starts = [system.state_of(guess) for guess in guesses(mechanism, system.numbers, system.group, at)]
+    if len(starts) == 1:
+        return starts[0]
+    states = closing(mechanism, system, starts, STEPS)
+    if len(states) > 1:
+        raise InputError(
+            name_of(system.group),
+            _("{n} positions that close lie near the initial angles").format(n=len(states)),
+            _("hinge a link of known angle to it, or start the drives elsewhere"),
+        )
+    return states[0] if states else starts[0]
+
+
+def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> list[Positions]:
+    """Where the initial angles put the group's links: in one way, or in many where they know angles and no place."""
+    guess, left = _chained(mechanism, numbers, group.links, at.copied())
+    if not left and all(point in guess.points for point in group.points):
+        return [guess]
+    if _adrift(mechanism, left) is None:
+        raise _missing(mechanism, group, left or list(group.links))
+    found = []
+    origin = (0.0, 0.0) if mechanism.space == "plane" else (1.0, 0.0, 0.0)
+    for place in scattered(numbers, at, origin):
+        trial, rest = guess.copied(), left
+        while (link := _adrift(mechanism, rest)) is not None:  # several, where guides alone join them
+            trial.points[next(iter(numbers.local[link]))] = place
+            trial, after = _chained(mechanism, numbers, rest, trial)
+            if after == rest:
+                break
+            rest = after
+        carried = {point for link in group.links for point in numbers.local[link]}
+        for point in group.points:
+            if point not in carried:  # of a slider that only guides hold
+                trial.points.setdefault(point, place)
+        if rest or any(point not in trial.points for point in group.points):
+            raise _missing(mechanism, group, rest or left)
+        found.append(trial)
+    return found
+
+
+def _adrift(mechanism: Mechanism, links: Sequence[str]) -> str | None:
+    """The first of links whose initial angle is known; None where there is none."""
+    return next((link for link in links if mechanism.initial_angle(link) is not None), None)
+
+
+def _chained(
+    mechanism: Mechanism, numbers: Dimensions, links: Sequence[str], guess: Positions
+) -> tuple[Positions, list[str]]:
+    """A guess with links put by their initial angles, link by link from what is known; and those left over."""
+    left = list(links)
+    while ready := [link for link in left if _put(mechanism, numbers, link, guess)]:
+        left = [link for link in left if link not in ready]
+    return guess, left
+
+
+def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions) -> bool:
+    """Pose a link by its initial angle and a known point, or by two known points."""
+    local, space = numbers.local[link], numbers.space
+    known = [point for point in local if point in guess.points]
+    angle, pose = mechanism.initial_angle(link), None
+    if angle is not None and is_measured(numbers, guess, link):
+        towards = [guess.points[point] for point in numbers.ends[link]]
+        at = [guess.points.get(point) for point in local]
+        pose = space.pose_at_angle(ARRAYS, angle, list(local.values()), at, towards)
+    elif angle is None and len(known) > 1:
+        first, second = known[:2]
+        ends = local[first], local[second], guess.points[first], guess.points[second]
+        pose = space.righted(ARRAYS, space.pose_by_two_points(ARRAYS, *ends))
+    if pose is None:
+        return False
+    guess.poses[link] = pose
+    if link in numbers.ends and is_measured(numbers, guess, link):
+        cosine, sine = rotor_of_angle(ARRAYS, numbers, guess, link)
+        near = angle or 0.0
+        guess.angles[link] = near + remainder(float(np.arctan2(sine, cosine)) - near, tau)
+    for point, at_rest in local.items():
+        if point not in guess.points:
+            guess.points[point] = space.place(ARRAYS, pose, at_rest)
+    return True
+
+
+def _missing(mechanism: Mechanism, group: Newton, left: list[str]) -> InputError:
+    without = [link for link in left if mechanism.initial_angle(link) is None]
+    return InputError(
+        name_of(group),
+        _("it is of higher class: its initial angles say which of its positions is meant"),
+        _("give the initial angle of {links}").format(links=", ".join(without or left)),
+    )
+
+
+def _does_not_close(system: GroupSystem, start: Array) -> InputError:
+    gap = system.gap(start)[0] * system.numbers.scale
+    return InputError(
+        name_of(system.group),
+        _("no position that closes lies near the initial angles: they leave a gap of {gap}").format(
+            gap=f"{float(gap):.3g} {system.numbers.space.unit}"
+        ),
+        _("correct the initial angles, a length, or the start of the drive"),
+    )

@@ -1,0 +1,553 @@
+"""The path along which a mechanism is driven: the values of all drives as functions of one parameter.
+
+With one drive the parameter is the drive's own value, so results do not depend on its law; with several it
+is time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from math import dist, frexp, isfinite, tau
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jet_functions import JetFunctions
+from centrode.algebra.jets import Jet
+from centrode.errors import InputError
+from centrode.kinematics.law_jumps import Jump, first_jump
+from centrode.laws import Law, ShaftLaw
+from centrode.locale import _
+from centrode.model import limits
+from centrode.model.chain import chain_of
+from centrode.model.mechanism import Drive, Mechanism
+from centrode.model.motion_parameter import MotionParameter
+
+# How fast several drives move together: the unit of time on which events are looked for, stretch by stretch.
+#
+# Stretches of time are counted from zero and double in length (dyadic), whatever range is asked for, so that
+# the
+# mesh belongs to the mechanism: a longer range adds nodes, and moves none.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+
+NODES_PER_TURN = 720
+"""Mesh on which events are looked for: two events closer than half a degree may be missed."""
+OFF_GRID = 0.37
+"""Mesh nodes stand this share of a step away from the initial position: events like to lie at round values."""
+RATES = 1000
+"""Times at which the rates of the drives are compared on one stretch."""
+SHORTEST, LONGEST = -40, 20
+"""Powers of two [s] between which the first stretch is chosen."""
+
+
+@dataclass(frozen=True)
+class TimeScale:
+    """Units of time in which the fastest drive moves 1 rad, or the mechanism's greatest length.
+
+    Attributes
+    ----------
+    rates : times [s] -> the fastest drive's rate at each, in units (1 rad, the greatest length) per second
+    base : float [s]
+        Length of the first stretch, a power of two: the drives move at most a turn on it.
+    """
+
+    rates: Callable[[Array], Array]
+    base: float
+    _units: dict[int, float] = field(default_factory=dict, compare=False, repr=False)
+
+    @classmethod
+    def of(cls, rates: Callable[[Array], Array]) -> TimeScale:
+        """The pace of drives with these rates."""
+        powers = 2.0 ** np.arange(SHORTEST, LONGEST + 1)
+        times = powers[:, None] * np.linspace(0.5, 1.0, RATES // 4)
+        fastest = np.maximum.accumulate(
+            np.max(_finite(rates(times.reshape(-1))).reshape(times.shape), axis=1)
+        )
+        with np.errstate(over="ignore"):  # a law may grow without bound long after any range
+            slow = np.nonzero(fastest * powers <= tau)[0]
+        return cls(rates, float(powers[slow[-1]] if len(slow) else powers[0]))
+
+    def unit_at(self, time: float) -> float:
+        """Unit of time [s] of the stretch that a time lies in."""
+        return self._unit(self._stretch(time))
+
+    def finest(self, low: float, high: float) -> float:
+        """The least unit of the stretches between two times."""
+        return min(self._unit(k) for k in self._stretches(low, high))
+
+    def turns(self, low: float, high: float) -> float:
+        """How many turns of the fastest drive, at its greatest rate on each stretch, lie between two times."""
+        total = 0.0
+        for k in self._stretches(low, high):
+            first, last = _ends(k, self.base)
+            total += max(0.0, min(high, last) - max(low, first)) / (tau * self._unit(k))
+        return total
+
+    def beyond(self, low: float, high: float, units: float) -> tuple[float, float]:
+        """A range with so many units added at both ends; those of the next stretches count where they are near."""
+        return self._moved(low, -units), self._moved(high, units)
+
+    def nodes(self, low: float, high: float) -> Array:
+        """Mesh nodes from the last one below `low` to the first one above `high`."""
+        found = []
+        for k in self._stretches(self._moved(low, -0.1), self._moved(high, 0.1)):
+            first, last = _ends(k, self.base)
+            step = self._unit(k) * tau / NODES_PER_TURN
+            least = max(0, int(np.floor((low - first) / step)) - 2)
+            most = int(np.ceil((min(high, last) - first) / step)) + 2
+            nodes = first + (np.arange(least, most + 1, dtype=np.float64) + OFF_GRID) * step
+            found.append(nodes[nodes < last])
+        return np.concatenate(found)
+
+    def _moved(self, time: float, units: float) -> float:
+        here = self._stretch(time)
+        there = here + (1 if units > 0.0 else -1)
+        reached = time + units * self._unit(here)
+        return (
+            min(reached, time + units * self._unit(there))
+            if units < 0.0
+            else max(reached, time + units * self._unit(there))
+        )
+
+    def _stretch(self, time: float) -> int:
+        """Number of the stretch: 0 from zero to the base, then doubling; -1 the base before zero, doubling too."""
+        ratio = abs(time) / self.base
+        power = max(frexp(ratio)[1], 0) if ratio >= 1.0 else 0
+        if time >= 0.0:
+            return power
+        # a stretch holds its lower end, so a power of two before zero belongs to the stretch nearer to zero
+        return -power if frexp(ratio)[0] == 0.5 and ratio >= 1.0 else -power - 1
+
+    def _stretches(self, low: float, high: float) -> range:
+        return range(self._stretch(low), self._stretch(high) + 1)
+
+    def _unit(self, stretch: int) -> float:
+        if stretch not in self._units:
+            first, last = _ends(stretch, self.base)
+            fastest = float(np.max(_finite(self.rates(np.linspace(first, last, RATES)))))
+            length = last - first
+            # drives at rest tell nothing: then the stretch itself has to do
+            self._units[stretch] = 1.0 / fastest if fastest * length > 1.0 else length
+        return self._units[stretch]
+
+
+def _ends(stretch: int, base: float) -> tuple[float, float]:
+    """First and last time of a stretch."""
+    if stretch < 0:
+        last, first = _ends(-1 - stretch, base)
+        return -first, -last
+    return (base * 2.0 ** (stretch - 1) if stretch else 0.0), base * 2.0**stretch
+
+
+def _finite(rates: Array) -> Array:
+    """Rates with those that do not exist counted as rest."""
+    return np.where(np.isfinite(rates), rates, 0.0)
+
+
+def nearest_node(mesh: Array, parameter: Array) -> npt.NDArray[np.intp]:
+    """Number of the mesh node nearest to each parameter."""
+    return np.searchsorted(0.5 * (mesh[1:] + mesh[:-1]), parameter)
+
+
+Number: TypeAlias = Any
+Namespace: TypeAlias = Any
+
+JETS = JetFunctions(ARRAYS)
+
+
+@dataclass(frozen=True)
+class DrivenBy:
+    """A drive with its law: value(t) = start + law(t)."""
+
+    drive: Drive
+    law: Law
+    start: float
+
+    def value(self, m: Namespace, time: Number) -> Number:
+        """The drive's value at a time [s], over any algebra."""
+        return self.law.jet(m, time) + self.start
+
+    @property
+    def initial(self) -> float:
+        """The drive's value at time zero: where the initial position is."""
+        return float(self.value(ARRAYS, 0.0))
+
+
+@dataclass(frozen=True)
+class Path:
+    """How the drives move.
+
+    Attributes
+    ----------
+    initial : float
+        Parameter of the initial position.
+    parameter : MotionParameter
+        What the path is run along: time or the value of the one drive.
+    forward : +1.0 or -1.0
+        Sense in which the parameter runs from there.
+    unit : float
+        Change of the parameter that counts as large (1 rad, the mechanism's scale, or a time).
+    scale : float [m]
+        The mechanism's greatest length.
+    pace : TimeScale
+        Of several drives: what time counts as large, stretch by stretch.
+    held : drive -> its value, constant along the path; of a batch of paths arrays (lanes, 1)
+    """
+
+    driven: tuple[DrivenBy, ...]
+    parameter: MotionParameter
+    initial: float
+    forward: float
+    unit: float
+    scale: float = 1.0
+    pace: TimeScale | None = None
+    held: Mapping[str, Number] = field(default_factory=dict)
+
+    @property
+    def by_time(self) -> bool:
+        """Whether the parameter is time."""
+        return self.parameter.by_time
+
+    @property
+    def turns(self) -> bool:
+        """Whether the parameter is an angle."""
+        return self.parameter.turns
+
+    @property
+    def step(self) -> float:
+        """Distance of mesh nodes."""
+        return self.unit * tau / NODES_PER_TURN
+
+    def unit_at(self, parameter: float) -> float:
+        """What counts as large near a parameter."""
+        return self.unit if self.pace is None else self.pace.unit_at(parameter)
+
+    def within(self, low: float, high: float) -> Path:
+        """The same path with the unit that is fit for all of a range."""
+        return self if self.pace is None else replace(self, unit=self.pace.finest(low, high))
+
+    def taken(self, take: Callable[[Number], Number]) -> Path:
+        """The paths of chosen mechanisms of a batch."""
+        if not self.held:
+            return self
+        return replace(self, held={drive: take(value) for drive, value in self.held.items()})
+
+    def drive_values(self, m: Namespace, parameter: Number) -> dict[str, Number]:
+        """Values of all drives at a parameter, over any algebra."""
+        if not self.by_time:
+            return {self.driven[0].drive.id: parameter, **self.held}
+        return {one.drive.id: one.value(m, parameter) for one in self.driven}
+
+    def impossible(self, parameter: Any) -> Any:
+        """Where a cylinder would be shorter than zero: the mechanism is open there, whatever its formulas say."""
+        found = np.zeros(np.shape(parameter), dtype=bool)
+        if any(one.drive.kind == "distance" for one in self.driven):
+            values = self.drive_values(ARRAYS, parameter)
+            for one in self.driven:
+                if one.drive.kind == "distance":
+                    found |= values[one.drive.id] <= 0.0
+        return found
+
+
+def path_of(mechanism: Mechanism, scale: float) -> Path:
+    """The path that a description's drives take; `scale` is the mechanism's greatest length [m]."""
+    driven = tuple(_driven_by(mechanism, drive) for drive in mechanism.drives)
+    parameter = mechanism.motion_parameter
+    if parameter.by_time:
+        pace = TimeScale.of(lambda times: _fastest(driven, scale, times))
+        return Path(driven, parameter, 0.0, 1.0, pace.unit_at(0.0), scale, pace)
+    unit = unit_of(driven[0].drive, scale)
+    return Path(driven, parameter, driven[0].initial, _sense_at_start(driven[0]), unit, scale)
+
+
+def unit_of(drive: Drive, scale: float) -> float:
+    """Change of a drive's value that counts as large: 1 rad, or the mechanism's greatest length."""
+    return 1.0 if drive.kind == "angle" else scale
+
+
+def _sense_at_start(driven: DrivenBy) -> float:
+    """Sense in which the drive sets out: that of its first derivative that is not zero."""
+    with np.errstate(all="ignore"):
+        jet = driven.value(JETS, Jet.variable(np.float64(0.0), 6))
+    if isinstance(jet, Jet):
+        for order in range(1, jet.order + 1):
+            slope = float(jet.derivative(order))
+            if isfinite(slope) and slope != 0.0:
+                return 1.0 if slope > 0.0 else -1.0
+    return 1.0
+
+
+def _fastest(driven: tuple[DrivenBy, ...], scale: float, times: Array) -> Array:
+    """The greatest rate of several drives at times, in their units per second."""
+    fastest = np.zeros(len(times))
+    with np.errstate(all="ignore"):
+        for one in driven:
+            value = one.value(JETS, Jet.variable(times, 1))
+            if isinstance(value, Jet):
+                fastest = np.fmax(fastest, np.abs(value.derivative(1)) / unit_of(one.drive, scale))
+    return fastest
+
+
+def _driven_by(mechanism: Mechanism, drive: Drive) -> DrivenBy:
+    law = drive.motion_law
+    at_zero = _at_zero(drive, law)
+    drawn = _drawn_value(mechanism, drive)
+    if drive.kind == "distance":
+        return DrivenBy(drive, law, _start_of_cylinder(drive, drawn, at_zero))
+    if drive.start is None:
+        return DrivenBy(drive, law, (0.0 if drawn is None else drawn) - at_zero)
+    _check_agreement(drive, drive.start + at_zero, drawn)
+    return DrivenBy(drive, law, drive.start)
+
+
+def _at_zero(drive: Drive, law: Law) -> float:
+    """The law's value in the initial position."""
+    with np.errstate(all="ignore"):
+        value = float(law.jet(ARRAYS, np.float64(0.0)))
+    if not isfinite(value):
+        raise InputError(
+            f"[[drives]] {drive.id}",
+            _("its law has no finite value at t = 0, where the initial position is"),
+            _("correct the law"),
+        )
+    return value
+
+
+def _drawn_value(mechanism: Mechanism, drive: Drive) -> float | None:
+    """The value that the links' initial angles say a drive has: of an angle, or of a cylinder they reach."""
+    if drive.distance is not None:
+        known = chain_of(mechanism).points
+        reached = [known[point] for point in drive.distance if point in known]
+        return dist(*reached) if len(reached) == 2 else None
+    if drive.link is None:
+        return None
+    angle = mechanism.links[drive.link].angle
+    if mechanism.links[drive.link].reference is not None:
+        return angle  # it is measured where the drive's is
+    reference = 0.0 if drive.relative_to == "frame" else mechanism.initial_angle(drive.relative_to)
+    return None if angle is None or reference is None else angle - reference
+
+
+def _start_of_cylinder(drive: Drive, drawn: float | None, at_zero: float) -> float:
+    """Start of a cylinder, by itself or by the initial angles; its length at t = 0 has to be positive."""
+    if drive.start is None and drawn is None:
+        raise InputError(
+            f"[[drives]] {drive.id}",
+            _("nothing says how long the cylinder is in the initial position"),
+            _("give start, or the initial angles of the links between its points"),
+        )
+    start = drive.start if drive.start is not None else (drawn or 0.0) - at_zero
+    if not start + at_zero > 0.0:
+        raise InputError(
+            f"[[drives]] {drive.id}",
+            _("a cylinder shorter than zero: its length at t = 0 is {value:g} m").format(
+                value=start + at_zero
+            ),
+            _("give the distance of the points as start"),
+        )
+    return start
+
+
+def _check_agreement(drive: Drive, value: float, drawn: float | None) -> None:
+    if drawn is None:
+        return
+    difference = (value - drawn + tau / 2) % tau - tau / 2
+    if abs(difference) > 1e-9:
+        raise InputError(
+            _("drive of link {link}").format(link=drive.link),
+            _("it starts at {value:.9g} rad, but the initial angle says {drawn:.9g} rad").format(
+                value=value, drawn=drawn
+            ),
+            _("leave out one of the two"),
+        )
+
+
+# Which samples a motion is asked at: values of the drive, or times where the drive is a law.
+
+MAX_TURNS = 500.0
+INSIDE = 0.005
+"""Share of the reachable range left out at both ends if none is asked for: there speeds are infinite."""
+
+LEAST_JUMP = 1e-9
+"""Jumps of a law are told down to this share of 1 rad, or of the greatest length."""
+
+
+@dataclass(frozen=True)
+class SampleGrid:
+    """Samples of a path: times, the path's parameter there, and its first two derivatives by time."""
+
+    time: Array
+    parameter: Array
+    rate: Array
+    second_rate: Array
+
+    @property
+    def accelerates(self) -> bool:
+        """Whether the parameter has a second derivative by time anywhere."""
+        return bool(self.second_rate.any())
+
+
+def span_of(
+    path: Path,
+    samples: int,
+    start: float | None,
+    stop: float | None,
+    reach: tuple[float, float],
+    reachable: bool = False,
+) -> SampleGrid:
+    """Evenly spaced samples from start to stop: values of the drive [rad or m], or times [s] where the drive is a law.
+
+    `reach` are the nearest limits: the range of a displacement drive where none is asked for, and that of any drive
+    where the `reachable` range is.
+    """
+    if isinstance(samples, bool) or not 1 <= samples <= limits.SAMPLES:
+        raise InputError(
+            _("samples"),
+            _("{samples} samples were asked for").format(samples=samples),
+            _("ask for 1 to {most}").format(most=limits.SAMPLES),
+        )
+    for name, value in (("from", start), ("to", stop)):
+        if value is not None and not np.isfinite(value):
+            raise InputError(name, _("the range must be finite"))
+    if path.parameter.is_uniform:
+        span = _at_values(path, np.linspace(*_range(path, start, stop, reach, reachable), samples))
+    elif reachable and None in (start, stop):
+        raise InputError(
+            "[study] range",
+            _("the reachable range is that of one drive at constant speed; here the range is one of time"),
+            _("give from and to, or --from and --to"),
+        )
+    else:
+        span = _even_times(path, samples, start, stop)
+    _check_extent(path, span)
+    return span
+
+
+def span_at(path: Path, places: Array) -> SampleGrid:
+    """Samples at given places: values of the drive [rad or m], or times [s] where the drive is a law."""
+    if places.ndim != 1 or not 1 <= len(places) <= limits.SAMPLES or not np.isfinite(places).all():
+        raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
+    span = _at_values(path, places) if path.parameter.is_uniform else _at_times(path, places)
+    _check_extent(path, span)
+    return span
+
+
+def _check_extent(path: Path, span: SampleGrid) -> None:
+    """Refuse a law that jumps or has no value, and what a mesh of nodes cannot cover: ends too far from the start."""
+    for one in path.driven:
+        jump = _jump(path, one, span.time)
+        if jump is not None and np.isfinite(jump.after):
+            what = _("its law jumps at t = {time:.9g} s, from {before:.9g} to {after:.9g}")
+            raise InputError(
+                f"[[drives]] {one.drive.id}",
+                what.format(time=jump.time, before=jump.before, after=jump.after),
+                _("no drive can jump: join the parts by a ramp or by segments, or ask for another range"),
+            )
+        if not all(np.isfinite(part).all() for part in _derivatives(one, span.time)):
+            raise InputError(
+                f"[[drives]] {one.drive.id}",
+                _("its law has no finite value with two derivatives everywhere in the range"),
+                _("correct the law, or ask for another range"),
+            )
+        if jump is not None:
+            raise InputError(
+                f"[[drives]] {one.drive.id}",
+                _("its law has no finite value at t = {time:.9g} s").format(time=jump.time),
+                _("correct the law, or ask for another range"),
+            )
+    if path.pace is not None:
+        ends = min(path.initial, float(np.min(span.time))), max(path.initial, float(np.max(span.time)))
+        turns = path.pace.turns(*ends)
+    else:
+        turns = float(np.max(np.abs(span.parameter - path.initial))) / (2.0 * np.pi * path.unit)
+    if turns > MAX_TURNS:
+        raise InputError(
+            _("range"),
+            _("it reaches too far: {turns:.3g} turns").format(turns=turns),
+            _("ask for at most {most:g}").format(most=MAX_TURNS),
+        )
+
+
+def _jump(path: Path, one: DrivenBy, time: Array) -> Jump | None:
+    """Where a law first jumps, or has no value, between t = 0, the initial position, and any of the times."""
+    least = LEAST_JUMP * unit_of(one.drive, path.scale)
+    return first_jump(one.law, min(0.0, float(np.min(time))), max(0.0, float(np.max(time))), least)
+
+
+def _derivatives(one: DrivenBy, time: Array) -> list[Array]:
+    """A drive's value and its first two derivatives by time."""
+    with np.errstate(all="ignore"):
+        value = one.value(JETS, Jet.variable(time, 2))
+    if not isinstance(value, Jet):
+        value = Jet((value, 0.0, 0.0))
+    return [np.broadcast_to(np.asarray(value.derivative(k), dtype=np.float64), time.shape) for k in range(3)]
+
+
+def _at_values(path: Path, values: Array) -> SampleGrid:
+    one, speed = path.driven[0], path.parameter.constant_speed
+    if not speed:
+        raise InputError(f"[[drives]] {one.drive.id}", _("its speed is zero"), _("give a speed, or a law"))
+    ones = np.ones(len(values))
+    return SampleGrid(path.parameter.times(values, one.start), values, speed * ones, 0.0 * ones)
+
+
+def _range(
+    path: Path, start: float | None, stop: float | None, reach: tuple[float, float], reachable: bool
+) -> tuple[float, float]:
+    """First and last value of the drive; what is not asked for is one turn, or the reachable range."""
+    if path.turns and not reachable:
+        first = path.initial if start is None else start
+        return first, first + path.forward * 2.0 * np.pi if stop is None else stop
+    if start is not None and stop is not None:
+        return start, stop
+    first, last = _reachable(path, reach)
+    return first if start is None else start, last if stop is None else stop
+
+
+def _reachable(path: Path, reach: tuple[float, float]) -> tuple[float, float]:
+    low, high = reach
+    if path.turns and np.isinf([low, high]).all():
+        return path.initial, path.initial + path.forward * 2.0 * np.pi
+    if path.turns:  # a limit on one side only bounds a turn
+        low, high = max(low, high - 2.0 * np.pi), min(high, low + 2.0 * np.pi)
+    if not np.isfinite(low) or not np.isfinite(high):
+        raise InputError(
+            f"[[drives]] {path.driven[0].drive.id}",
+            _("its range is unlimited"),
+            _("say from where to where: --from and --to, or [study] from and to"),
+        )
+    inside = INSIDE * (high - low)
+    return (low + inside, high - inside) if path.forward > 0 else (high - inside, low + inside)
+
+
+def _even_times(path: Path, samples: int, start: float | None, stop: float | None) -> SampleGrid:
+    spans = [one.law.span for one in path.driven if one.law.span is not None]
+    first = start if start is not None else max((span[0] for span in spans), default=0.0)
+    last = stop if stop is not None else min((span[1] for span in spans), default=None)
+    if last is None:
+        last = _one_turn(path)
+    return _at_times(path, np.linspace(first, last, samples))
+
+
+def _at_times(path: Path, time: Array) -> SampleGrid:
+    if path.by_time:
+        return SampleGrid(time, time, np.ones(len(time)), np.zeros(len(time)))
+    return SampleGrid(time, *_derivatives(path.driven[0], time))
+
+
+def _one_turn(path: Path) -> float:
+    periods = [one.law.period for one in path.driven if isinstance(one.law, ShaftLaw)]
+    speeds = [abs(one.drive.speed) for one in path.driven if one.drive.kind == "angle" and one.drive.speed]
+    if periods and not speeds:
+        return max(periods)
+    if not speeds:
+        raise InputError(
+            "[study]",
+            _("the drive is a law of time, and nothing says how long it is to run"),
+            _('give to = "2 s" under [study], or --to "2 s"'),
+        )
+    return 2.0 * np.pi / min(speeds)

@@ -1,0 +1,310 @@
+"""How far one drive can go while the others are held."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import inf, isfinite, pi, tau
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.errors import InputError
+from centrode.kinematics.assembly import Assembled
+from centrode.kinematics.change_points import BranchedPlan, Smooth
+from centrode.kinematics.events import EventScan
+from centrode.kinematics.mesh import mesh_of
+from centrode.kinematics.path import MAX_TURNS, DrivenBy, Path, TimeScale, unit_of
+from centrode.kinematics.plan_evaluation import Event, branches_at_start, layout_of
+from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.sampling import ORDERS, Samples, evaluate_columns
+from centrode.kinematics.solve import SEARCH, TURNS
+from centrode.laws import Uniform
+from centrode.locale import _
+from centrode.model.mechanism import Drive, Mechanism
+from centrode.model.problems import nearest
+from centrode.structure.assur import name_of
+from centrode.structure.groups import Newton
+
+# One drive that moves while the others are held: its path, and the position in which it starts.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Value: TypeAlias = float | str
+
+
+def named_drive(mechanism: Mechanism, name: str, where: str) -> Drive:
+    """The drive of a name; raises InputError for another."""
+    names = [drive.id for drive in mechanism.drives]
+    if name not in names:
+        raise InputError(where, _("there is no drive {name}").format(name=name), nearest(name, names))
+    return next(drive for drive in mechanism.drives if drive.id == name)
+
+
+def value_of(ready: Ready, drive: Drive, value: Value, where: str) -> float:
+    """Value of a drive [rad or m] of a number in SI, or of a text with a unit ("30 deg"); not too far away."""
+    found = ready.parameter.drive(drive.id).read(value, where)
+    way = abs(found - initial_values(ready)[drive.id]) / unit_of(drive, ready.kinematics.path.scale)
+    if way > tau * MAX_TURNS:
+        raise InputError(
+            where,
+            _("it reaches too far: {turns:.3g} turns").format(turns=way / tau),
+            _("ask for at most {most:g}").format(most=MAX_TURNS),
+        )
+    return found
+
+
+def held_values(ready: Ready, moving: tuple[str, ...], held: Mapping[str, Value] | None) -> dict[str, float]:
+    """Values of all drives but the moving ones; those not named keep their initial ones."""
+    mechanism = ready.mechanism
+    found = {name: value for name, value in initial_values(ready).items() if name not in moving}
+    for name, value in (held or {}).items():
+        drive = named_drive(mechanism, name, "hold")
+        if name in moving:
+            raise InputError(
+                "hold",
+                _("drive {name} is the one that moves").format(name=name),
+                _("hold the others"),
+            )
+        found[name] = value_of(ready, drive, value, f"hold {name}")
+        if drive.kind == "distance" and found[name] <= 0.0:
+            raise InputError(
+                f"hold {name}", _("a cylinder has a length above zero"), _("give the distance of its points")
+            )
+    return found
+
+
+def initial_values(ready: Ready) -> dict[str, float]:
+    """Values of all drives in the initial position."""
+    return {name: float(value) for name, value in ready.assembled.positions.drives.items()}
+
+
+def held_path(ready: Ready, drive: str, initial: float, held: Mapping[str, float | Array]) -> Path:
+    """The path of one drive's value; the values held may be arrays (lanes, 1)."""
+    path = ready.kinematics.path
+    one = next(one for one in path.driven if one.drive.id == drive)
+    unit, parameter = unit_of(one.drive, path.scale), path.parameter.along(drive)
+    return Path((one,), parameter, initial, 1.0, unit, path.scale, None, dict(held))
+
+
+def starting_at(ready: Ready, path: Path) -> BranchedPlan:
+    """The plan along the path of one drive, from the position in which that begins.
+
+    That is the position with the signs of the initial one. Where signs do not tell it (groups of higher class, gears,
+    rolling wheels), it is reached from the initial one by moving all drives there together, at constant speeds.
+    """
+    target: dict[str, float] = {path.driven[0].drive.id: path.initial, **path.held}
+    kinematics = replace(ready.kinematics, path=path)
+    start = ready.assembled
+    if _needs_a_way(ready) and target != initial_values(ready):
+        start = _brought(ready, target)
+    smooth = ready.mechanism.assembly.continuation == "smooth"
+    branches = branches_at_start(path, start.signs, start.angles, smooth)
+    return BranchedPlan(kinematics, branches, start.positions, kinematics.numbers)
+
+
+def _needs_a_way(ready: Ready) -> bool:
+    """Whether signs alone do not tell a position: in groups of higher class, and where turns are counted."""
+    mechanism = ready.mechanism
+    higher = any(isinstance(group, Newton) for group in ready.structure.groups)
+    return higher or bool(mechanism.gears or mechanism.rolling)
+
+
+class _Arriving(Smooth):
+    """Keeps the angles that are counted with their turns."""
+
+    def __init__(self, continuation: BranchedPlan, parameter: Array) -> None:
+        super().__init__(continuation, ARRAYS, parameter, None)
+        self.angles: dict[str, float] = {}
+
+    def continued(self, group: int, key: str, angle: Any) -> Any:
+        with_turns = super().continued(group, key, angle)
+        self.angles[key] = _one(with_turns)
+        return with_turns
+
+
+def _one(x: Any) -> float:
+    return float(np.asarray(x, dtype=np.float64).reshape(-1)[0])
+
+
+def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
+    """The position after moving all drives from their initial values to others."""
+    old = ready.kinematics.path
+    start = initial_values(ready)
+    ways = {name: target[name] - value for name, value in start.items()}
+    driven = tuple(
+        DrivenBy(one.drive, Uniform(ways[one.drive.id]), start[one.drive.id]) for one in old.driven
+    )
+    fastest = max(abs(ways[one.drive.id]) / unit_of(one.drive, old.scale) for one in driven)
+    pace = TimeScale.of(lambda times: np.full(len(times), fastest))
+    path = Path(driven, old.parameter.in_time(), 0.0, 1.0, pace.unit_at(0.0), old.scale, pace)
+    kinematics = replace(ready.kinematics, path=path)
+    smooth = ready.mechanism.assembly.continuation == "smooth"
+    first = ready.assembled
+    branches = branches_at_start(path, first.signs, first.angles, smooth)
+    continuation = BranchedPlan(kinematics, branches, first.positions, kinematics.numbers)
+    EventScan(continuation, mesh_of(path, np.ones(1))).run()
+    if branches.reach(0)[1] < 1.0:
+        raise InputError(
+            "hold",
+            _("on the straight way there from the initial position the mechanism locks"),
+            _("hold values nearer to the initial ones, or let the description begin elsewhere"),
+        )
+    arriving = _Arriving(continuation, np.ones((1, 1)))
+    positions = kinematics.positions(ARRAYS, np.ones((1, 1)), arriving).mapped(_one)
+    signs = {group: float(branches.sign(group, np.ones(1))[0, 0]) for group in branches.signs}
+    angles = {**first.angles, **positions.angles, **arriving.angles}
+    return replace(first, signs=signs, positions=positions, angles=angles)
+
+
+def check_closed(continuation: BranchedPlan) -> None:
+    """Refuse a path whose first position is open; its events are known."""
+    path, layout = continuation.kinematics.path, layout_of(continuation.kinematics)
+    at = np.array([path.initial])
+    room = np.empty((ORDERS, layout.width, 1, 1)), np.empty((ORDERS, len(layout.angles), 1, 1))
+    judged = evaluate_columns(continuation, Samples(layout, *room, np.zeros((1, 1), dtype=np.int8)), at)
+    if bool(judged.opened.any() or judged.lost.any() or path.impossible(at).any()):
+        values = {path.driven[0].drive.id: path.initial, **path.held}
+        where = ", ".join(f"{name} = {value:.6g}" for name, value in values.items())
+        raise InputError(
+            _("values of the drives"),
+            _("the mechanism does not close there ({where})").format(where=where),
+            _("choose values at which it closes"),
+        )
+
+
+@dataclass(frozen=True)
+class End:
+    """A value of a drive [rad or m] and the group at whose limit or change point it lies."""
+
+    value: float
+    group: str
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Between which values a drive can move while the others are held.
+
+    Attributes
+    ----------
+    drive : its name
+    unit : "rad" or "m"
+    about : the value from which it moves
+    held : values of the other drives [rad or m]
+    low, high : End, or None where there is no limit within two turns (four times the greatest length)
+    change_points : those between the limits
+    """
+
+    drive: str
+    unit: str
+    about: float
+    held: Mapping[str, float]
+    low: End | None
+    high: End | None
+    change_points: tuple[End, ...]
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The ends as numbers; infinite where there is no limit."""
+        return (self.low.value if self.low else -inf), (self.high.value if self.high else inf)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        ends = {name: vars(end) if end else None for name, end in (("low", self.low), ("high", self.high))}
+        return {
+            "drive": self.drive,
+            "unit": self.unit,
+            "about": self.about,
+            "held": dict(self.held),
+            **ends,
+            "change_points": [vars(end) for end in self.change_points],
+        }
+
+
+def limits(
+    mechanism: Mechanism,
+    drive: str | None = None,
+    held: Mapping[str, Value] | None = None,
+    about: Value | None = None,
+) -> Limits:
+    """Limits of one drive about a value of it, with the others held.
+
+    Parameters
+    ----------
+    drive : str
+        Which drive moves; may be left out where there is one.
+    held : drive -> value [rad or m, or a text with a unit]
+        Values of the others; those not named keep their initial ones.
+    about : float or text
+        The value from which it moves; its initial one if left out.
+
+    Returns
+    -------
+    Limits
+        Exact to rounding: the radicand of a group is followed to its zero. The assembly is that with the signs of
+        the initial position; one with a group of higher class is brought there from the initial position, all
+        drives together.
+
+    Raises
+    ------
+    InputError
+        There is no such drive, or the mechanism does not close at the values given.
+    NotComputedYet
+        As `motion` does.
+    """
+    prepared = ready(mechanism)
+    moving = chosen_drive(mechanism, drive)
+    others = held_values(prepared, (moving,), held)
+    chosen = named_drive(mechanism, moving, "drive")
+    start = initial_values(prepared)[moving]
+    start = start if about is None else value_of(prepared, chosen, about, "about")
+    return limits_about(prepared, moving, others, start)
+
+
+def chosen_drive(mechanism: Mechanism, drive: str | None) -> str:
+    """The drive that moves, the only one if none is named."""
+    names = [one.id for one in mechanism.drives]
+    if drive is not None:
+        return named_drive(mechanism, drive, "drive").id
+    if len(names) == 1:
+        return names[0]
+    raise InputError(
+        "drive",
+        _("the mechanism has {n} drives").format(n=len(names)),
+        _("say which one moves: {names}").format(names=", ".join(names)),
+    )
+
+
+def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: float) -> Limits:
+    """The same for a mechanism made ready before."""
+    path = held_path(prepared, drive, about, held)
+    continuation = starting_at(prepared, path)
+    angular = path.driven[0].drive.kind == "angle"
+    extent = 2.0 * pi * TURNS if angular else SEARCH * path.unit
+    EventScan(continuation, mesh_of(path, np.array([about - extent, about + extent]))).run()
+    check_closed(continuation)
+    low, high = continuation.branches.reach(0)
+    if path.driven[0].drive.kind == "distance":
+        low = max(low, 0.0)  # a cylinder is not shorter than zero, whatever its formulas say
+
+    def end(value: float) -> End | None:
+        if not isfinite(value):
+            return None
+        groups = _groups(prepared, continuation.branches.events, value)
+        return End(value, groups or _("cylinder {name} of no length").format(name=drive))
+
+    inside = [
+        End(event.at, name_of(prepared.structure.groups[event.group]))
+        for event in continuation.branches.events
+        if event.kind == "change point" and low <= event.at <= high and abs(event.at - about) <= extent
+    ]
+    unit = path.parameter.variable.unit
+    found = tuple(sorted(inside, key=lambda one: one.value))
+    return Limits(drive, unit, about, dict(held), end(low), end(high), found)
+
+
+def _groups(prepared: Ready, events: list[Event], value: float) -> str:
+    """Names of the groups that lock at a value."""
+    which = dict.fromkeys(event.group for event in events if event.kind == "limit" and event.at == value)
+    return ", ".join(name_of(prepared.structure.groups[group]) for group in which)
