@@ -10,15 +10,15 @@ import numpy as np
 import centrode as ct
 from centrode.algebra.jets import Jet
 from centrode.equations.derivation import Equations
-from centrode.equations.formulas import Formula
-from centrode.equations.groups import Solution
-from centrode.equations.letters import Letter
+from centrode.equations.linear import GroupSolution
+from centrode.equations.spelling import SymbolFormula
+from centrode.equations.symbols import Letter
 from centrode.kinematics.path import JETS
 
 Values = dict[Letter, Any]
 
 
-def value_of(formula: Formula, values: Values) -> float:
+def value_of(formula: SymbolFormula, values: Values) -> float:
     return float(formula.total.value(math, values.__getitem__))
 
 
@@ -40,7 +40,7 @@ def initial_values(found: Equations) -> Values:
     return values
 
 
-def work_out(solution: Solution, formulas: tuple[Formula, ...] | None, values: Values) -> None:
+def work_out(solution: GroupSolution, formulas: tuple[SymbolFormula, ...] | None, values: Values) -> None:
     """Add the unknowns of a system: by the formulas, or where these are too long by the system itself."""
     system = solution.system
 

@@ -234,7 +234,7 @@ from .study.centres import centrode_rows as centrode_rows
 from .study.centres import curvature_rows as curvature_rows
 
 # Integration, variants, words
-from .equations.integrated import integrate as integrate
+from .equations.integration import integrate as integrate
 from .study.integrating import closed_motion as closed_motion
 from .study.integrating import integration_rows as integration_rows
 from .study.integrating import integration_failure as integration_failure

@@ -237,7 +237,7 @@ def test_steps_out_of_range(step: float) -> None:
 
 def test_integrated_velocities_stand_beside_them() -> None:
     """To what every adaptive step may add."""
-    pytest.importorskip("centrode.equations.integrated", reason="equations are not integrated here")
+    pytest.importorskip("centrode.equations.integration", reason="equations are not integrated here")
     check = ct.graphic_check(ct.example("slider-between-cranks"), 1.0)
     for row in check.rows:
         assert (row.integrated is None) == (row.quantity in ("angular_acceleration", "acceleration"))

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import centrode as ct
-from centrode.equations.cauchy import CauchyForm, cauchy_form
+from centrode.equations.integration import CauchyForm, cauchy_form
 from worked_out import planar_examples
 
 TABLE = Path(__file__).parents[1] / "reference" / "planar-slider-rocker-table.csv"

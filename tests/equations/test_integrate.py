@@ -14,10 +14,7 @@ import xarray as xr
 from hypothesis import assume, given, settings
 
 import centrode as ct
-from centrode.equations.cauchy import cauchy_form
-from centrode.equations.courses import STRIDE
-from centrode.equations.integrated import Scaled
-from centrode.equations.integration import NUDGE, adaptive_steps
+from centrode.equations.integration import NUDGE, STRIDE, Scaled, adaptive_steps, cauchy_form
 from centrode.kinematics.prepared import ready
 from growing import descriptions, mechanism_of
 from mechanisms import EPS, four_bar

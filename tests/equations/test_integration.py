@@ -131,7 +131,7 @@ def test_one_row() -> None:
 
 
 def test_too_many_steps_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(integration, "MOST_STEPS", 10)
+    monkeypatch.setattr(integration, "MOST_ADAPTIVE_STEPS", 10)
     with pytest.raises(InputError, match="more than 10 steps"):
         adaptive_steps(TURNING, turn(4), 1e-10)
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 
 import centrode as ct
 from centrode.equations.derivation import Equations
-from centrode.equations.sphere_board import SphereBoard
+from centrode.equations.sphere_chains import SphereBoard
 from growing_sphere import Growing, Vector, angle_at, mechanisms
 from mechanisms import EPS
 from samples import few

@@ -11,12 +11,8 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from centrode.equations.expressions import expression
-from centrode.equations.formulas import formula_of
-from centrode.equations.letters import Angle, Letter
-from centrode.equations.merging import merged
-from centrode.equations.spelling import Spelling, parts_of, spelled, spelled_sum
-from centrode.equations.sums import Sum, Term
+from centrode.equations.spelling import Spelling, formula_of, parts_of, spelled, spelled_sum
+from centrode.equations.symbols import Angle, Letter, Sum, SumTerm, expression, merged
 
 ANGLES = [Letter(i, f"phi{i}") for i in range(1, 4)]
 LENGTHS = [Letter(100 + i, f"l{i}") for i in range(1, 4)]
@@ -142,15 +138,15 @@ def test_right_angles_are_signs_and_other_functions() -> None:
 
 def test_formulas_are_written_as_in_textbooks() -> None:
     l1, l2, phi = LENGTHS[0], LENGTHS[1], sin((2, 1)).terms
-    under = Term(((l2, 1),), next(iter(phi)).waves)
+    under = SumTerm(((l2, 1),), next(iter(phi)).waves)
     single = formula_of((length(1) * cos((1, 1))).divided(under).scaled(-1))
     assert str(single) == "-(l₁/l₂) cos φ₁/sin φ₂"
     several = formula_of((length(1) * cos((1, 1)) + length(3) * cos((2, 1))).divided(under))
     assert str(several) == "(l₁ cos φ₁ + l₃ cos φ₂)/(l₂ sin φ₂)"
     assert str(formula_of(Sum({}))) == "0"
     assert str(formula_of(Sum.number(Fraction(-1, 2)))) == "-1/2"
-    assert str(formula_of(Sum({Term(((l1, -1),)): 3}))) == "3/l₁"
-    assert str(formula_of(Sum({Term(((l1, 2),)): 1}))) == "l₁²"
+    assert str(formula_of(Sum({SumTerm(((l1, -1),)): 3}))) == "3/l₁"
+    assert str(formula_of(Sum({SumTerm(((l1, 2),)): 1}))) == "l₁²"
     difference = formula_of(-sin((1, 1), (2, -1)) * cos((3, 1)))
     assert spelled(difference, Spelling(), turned=True) == "cos φ₃ sin(φ₂ - φ₁)"
     assert spelled(difference, Spelling(), differences_first=True) == "-sin(φ₁ - φ₂) cos φ₃"

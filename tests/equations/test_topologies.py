@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.equations.cauchy import cauchy_form
+from centrode.equations.integration import cauchy_form
 
 EPS = np.finfo(float).eps
 

@@ -11,8 +11,8 @@ import mpmath
 import pytest
 
 import centrode as ct
-from centrode.equations.letters import Letter, Parts, Wave
 from centrode.equations.spelling import Spelling
+from centrode.equations.symbols import Letter, Parts, Wave
 from centrode.locale import speaking
 from centrode.present.equations.page import Relation, Section, System, sections
 from centrode.present.equations.typst import TypstSpelling, decimal, quoted, word

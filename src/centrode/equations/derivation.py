@@ -7,25 +7,152 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from centrode.equations.alphabet import Meaning
-from centrode.equations.board import Board
-from centrode.equations.draft import Draft, Unknown
-from centrode.equations.formulas import Formula, formula_of
-from centrode.equations.given import Given, given_of
-from centrode.equations.groups import GroupEquations, Solution
-from centrode.equations.laying import laid
-from centrode.equations.lettering import Lettering
-from centrode.equations.letters import Letter
-from centrode.equations.points import PointVelocity, velocity_of
-from centrode.equations.sphere_board import SphereBoard
-from centrode.equations.sphere_laying import laid_on_sphere
-from centrode.equations.sums import Sum
-from centrode.equations.systems import LinearSystem, system_of
+from centrode.equations.chain_assembly import laid
+from centrode.equations.linear import (
+    Draft,
+    GroupEquations,
+    GroupSolution,
+    LinearSystem,
+    Place,
+    Unknown,
+    system_of,
+)
+from centrode.equations.spelling import SymbolFormula, formula_of
+from centrode.equations.sphere_chains import SphereBoard, SpherePlace, laid_on_sphere
+from centrode.equations.symbol_table import Lettering, SymbolTable
+from centrode.equations.symbols import ZERO, Letter, Meaning, Sum
 from centrode.errors import InputError
 from centrode.kinematics.prepared import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import assur_groups, roman
+from centrode.structure.constraints import FRAME
+
+# What the drives give: their letters, and where time itself can be written for one of them.
+
+
+@dataclass(frozen=True)
+class Drivenness:
+    """A letter that a drive gives, with its derivatives.
+
+    `law` is "t" where it is time itself, "uniform" at constant speed, else "law".
+    """
+
+    letter: Letter
+    rate: Letter
+    second: Letter
+    drive: str
+    law: str
+    start: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class Given:
+    """What the drives give.
+
+    `names` has letters that are written otherwise (phi1 as t), `values` rates that are numbers (omega1 = 1).
+    """
+
+    drives: tuple[Drivenness, ...]
+    names: Mapping[Letter, Letter]
+    values: Mapping[Letter, Sum]
+
+    def put(self, total: Sum) -> Sum:
+        """A sum with what is given put in."""
+        return total.replaced(self.values).renamed(self.names)
+
+
+def given_of(board: Lettering) -> Given:
+    """What the drives of a mechanism give; with one drive at 1 rad/s from 0 its angle is time."""
+    found, names, values = [], {}, {}
+    parameter = board.ready.parameter
+    path = {one.drive.id: one for one in board.ready.kinematics.path.driven}
+    for letter, drive in board.driven.items():
+        rate = board.alphabet.rates[letter]
+        second = board.alphabet.seconds[rate]
+        coordinate, start = parameter.drive(drive), path[drive].start
+        word, speed = "law", 0.0
+        if coordinate.speed is not None:
+            word, speed = "uniform", coordinate.speed
+            values[second] = Sum({})
+            if (start, speed, len(path)) == (0.0, 1.0, 1) and coordinate.turns:
+                word = "t"
+                names[letter] = Letter(letter.rank, "t")
+                values[rate] = Sum.number(1)
+        found.append(Drivenness(letter, rate, second, drive, word, start, speed))
+    return Given(tuple(found), names, values)
+
+
+# Velocities of points as formulas.
+
+
+@dataclass(frozen=True)
+class PointVelocity:
+    """Velocity of a point.
+
+    Attributes
+    ----------
+    point : str
+    place : its coordinates in symbols
+    x, y, z : components along the frame's axes, in the rates; z on the sphere alone
+    along : for a point on a guide of the frame, the component in the guide's direction
+    closed_x, closed_y, closed_z, closed_along : the same in time and unknowns alone, where one product comes out
+    """
+
+    point: str
+    place: Place | SpherePlace
+    x: SymbolFormula
+    y: SymbolFormula
+    z: SymbolFormula | None
+    along: SymbolFormula | None
+    closed_x: SymbolFormula | None
+    closed_y: SymbolFormula | None
+    closed_z: SymbolFormula | None
+    closed_along: SymbolFormula | None
+
+    @cached_property
+    def squared(self) -> SymbolFormula:
+        """Square of the speed."""
+        components = [one.total for one in (self.x, self.y, self.z) if one is not None]
+        return formula_of(sum((one * one for one in components), ZERO))
+
+    @cached_property
+    def expressions(self) -> tuple[Any, ...]:
+        """All components as SymPy expressions."""
+        both = [(self.closed_x or self.x).expression, (self.closed_y or self.y).expression]
+        return (*both, (self.closed_z or self.z).expression) if self.z is not None else tuple(both)
+
+
+def velocity_of(
+    point: str,
+    place: Place | SpherePlace,
+    board: SymbolTable | SphereBoard,
+    given: Given,
+    closed: Mapping[Letter, Sum],
+) -> PointVelocity:
+    """Velocity of a point by the shortest chain to it, rates in `closed` put in where that is shorter."""
+    rates = [given.put(total.rate(board.moves)) for total in place]
+    x, y, *more = (formula_of(total) for total in rates)
+    z = more[0] if more else None
+    along = _along(point, Place(*rates), board) if isinstance(board, SymbolTable) else None
+
+    def short(formula: SymbolFormula | None) -> SymbolFormula | None:
+        if formula is None or not formula.total.letters & closed.keys():
+            return formula if formula is None or formula.single else None
+        found = formula_of(formula.total.replaced(closed))
+        return found if found.single else None
+
+    return PointVelocity(point, place, x, y, z, along, short(x), short(y), short(z), short(along))
+
+
+def _along(point: str, rates: Place, board: SymbolTable) -> SymbolFormula | None:
+    """The component along a guide of the frame in which a point runs."""
+    heading = next(
+        (board.heading(line) for line in board.guides if line.point == point and line.on == FRAME), None
+    )
+    return None if heading is None else formula_of(rates.along(heading))
+
 
 TOGETHER = 3
 """Unknowns of the largest mechanism whose groups are also solved as one system, as the textbooks do."""
@@ -50,9 +177,9 @@ class Equations:
     legend: tuple[Meaning, ...]
     given: Given
     groups: tuple[GroupEquations, ...]
-    together: Solution | None
+    together: GroupSolution | None
     sliding: tuple[str, ...]
-    board: Board | SphereBoard
+    board: SymbolTable | SphereBoard
 
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
@@ -153,8 +280,8 @@ def _seconds(board: Lettering, draft: Draft, given: Given, closed: Mapping[Lette
     )
 
 
-def _solution(system: LinearSystem, letter: Letter) -> Solution:
-    return Solution(system, system.solved(letter), letter)
+def _solution(system: LinearSystem, letter: Letter) -> GroupSolution:
+    return GroupSolution(system, system.solved(letter), letter)
 
 
 def _group(
@@ -182,7 +309,7 @@ def _group(
     )
 
 
-def _closed(solution: Solution, closed: Mapping[Letter, Sum]) -> tuple[Formula | None, ...]:
+def _closed(solution: GroupSolution, closed: Mapping[Letter, Sum]) -> tuple[SymbolFormula | None, ...]:
     """Rates with those of earlier groups put in, where one product comes out."""
     if solution.formulas is None or solution.lettered:
         return (None,) * len(solution.letters)
@@ -195,7 +322,7 @@ def _closed(solution: Solution, closed: Mapping[Letter, Sum]) -> tuple[Formula |
     return tuple(found)
 
 
-def _together(board: Lettering, drafts: tuple[Draft, ...], given: Given) -> Solution | None:
+def _together(board: Lettering, drafts: tuple[Draft, ...], given: Given) -> GroupSolution | None:
     count = sum(len(draft.unknowns) for draft in drafts)
     if len(drafts) < 2 or count > TOGETHER:
         return None

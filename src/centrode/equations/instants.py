@@ -16,20 +16,71 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
-from centrode.equations.board import Board
 from centrode.equations.derivation import Equations
-from centrode.equations.draft import Unknown
-from centrode.equations.formulas import Formula
-from centrode.equations.groups import Solution
-from centrode.equations.letters import Letter
-from centrode.equations.standing import Standing
-from centrode.equations.sums import Sum
-from centrode.equations.systems import LinearSystem
+from centrode.equations.linear import GroupSolution, LinearSystem, Unknown
+from centrode.equations.spelling import SymbolFormula
+from centrode.equations.symbol_table import SymbolLine, SymbolRod, SymbolTable, lines_of, rods_of
+from centrode.equations.symbols import Letter, Sum
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.mechanism import FRAME
 
 if TYPE_CHECKING:
     import xarray as xr
+
+# The letters that move, read off one sample of a motion: angles, bearings, lengths of cylinders,
+# displacements.
+
+
+@dataclass(frozen=True)
+class NumericValues:
+    """What moves, as it stands at a sample of a motion."""
+
+    board: SymbolTable
+    motion: xr.Dataset
+    sample: int
+
+    def values(self) -> dict[Letter, float]:
+        """Number of every letter that moves [rad, m]."""
+        lines = {line.name: line for line in lines_of(self.board.ready)}
+        rods = {rod.name: rod for rod in rods_of(self.board.ready)}
+        found = {}
+        for letter in self.board.alphabet.rates:
+            meaning = self.board.alphabet.meanings[letter]
+            if meaning.kind == "link angle":
+                found[letter] = self._angle(meaning.names[0])
+            elif meaning.kind == "relative angle":
+                found[letter] = self._angle(meaning.names[0]) - self._angle(meaning.names[1])
+            elif meaning.kind in ("bearing", "cylinder"):
+                found[letter] = float(np.angle(self._way(rods[meaning.names[0]])))
+            elif meaning.kind == "stroke":
+                found[letter] = abs(self._way(rods[meaning.names[0]]))
+            else:
+                found[letter] = self._slide(lines[meaning.names[0]])
+        return found
+
+    def _angle(self, link: str) -> float:
+        return 0.0 if link == FRAME else float(self.motion["angle"].sel(link=link)[self.sample])
+
+    def _at(self, point: str) -> complex:
+        return complex(*self.motion["position"].sel(point=point).to_numpy()[self.sample])
+
+    def _world(self, body: str, local: tuple[float, float]) -> complex:
+        if body == FRAME:
+            return complex(*local)
+        name, own = next(iter(self.board.local(body).items()))
+        arm = complex(*local) - complex(*own)
+        return self._at(name) + arm * complex(np.exp(1j * self._angle(body)))
+
+    def _way(self, rod: SymbolRod) -> complex:
+        first = self._at(rod.first) if isinstance(rod.first, str) else self._world(*rod.first)
+        return self._at(rod.second) - first
+
+    def _slide(self, line: SymbolLine) -> float:
+        away = self._at(line.point) - self._world(line.on, line.through)
+        heading = complex(*line.direction) * complex(np.exp(1j * self._angle(line.on)))
+        return (away * heading.conjugate()).real
+
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -79,9 +130,9 @@ class Instant:
     accelerations: tuple[SolvedSystem, ...]
     together: SolvedSystem | None
 
-    def number(self, what: Sum | Formula) -> float:
+    def number(self, what: Sum | SymbolFormula) -> float:
         """The number that a sum or a formula is here."""
-        total = what.total if isinstance(what, Formula) else what
+        total = what.total if isinstance(what, SymbolFormula) else what
         with np.errstate(all="ignore"):
             return float(total.value(np, self.values.__getitem__))
 
@@ -92,11 +143,11 @@ def instant_of(equations: Equations, motion: xr.Dataset, sample: int, length: fl
     Raises InputError on the sphere, where the letters have other places.
     """
     board = equations.board
-    if not isinstance(board, Board):
+    if not isinstance(board, SymbolTable):
         raise InputError("space", _("letters are told their numbers in the plane only"))
     meanings = board.alphabet.meanings
     units = {letter: length if one.unit == "m" else 1.0 for letter, one in meanings.items()}
-    values = dict(board.alphabet.values) | Standing(board, motion, sample).values()
+    values = dict(board.alphabet.values) | NumericValues(board, motion, sample).values()
     values = {letter: x * units[letter] for letter, x in values.items()}
     for one in equations.given.drives:
         driven = next(by for by in board.ready.kinematics.path.driven if by.drive.id == one.drive)
@@ -170,7 +221,7 @@ def _pairs(
             yield one, order, instant.values[letter] / size, float(own)
 
 
-def _solve(solution: Solution, values: dict[Letter, float]) -> SolvedSystem:
+def _solve(solution: GroupSolution, values: dict[Letter, float]) -> SolvedSystem:
     """A system as numbers; its solution and its determinant are added to the values."""
     system: LinearSystem = solution.system
     matrix = np.array([[_value(entry, values) for entry in row] for row in system.matrix], dtype=np.float64)

@@ -1,21 +1,45 @@
-"""Integration of equations in Cauchy form: fixed steps of the classical Runge-Kutta method, or adaptive ones.
-
-It knows nothing of closed forms: how far the motion goes is judged by the equations alone.
-"""
+"""The motion of a mechanism by integration of its differential equations, beside the motion in closed form."""
 
 from __future__ import annotations
 
 import functools
 import importlib
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+import xarray as xr
 
-from centrode.errors import InputError
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jet_functions import JetFunctions
+from centrode.algebra.jets import Jet
+from centrode.equations.chain_assembly import laid
+from centrode.equations.linear import LinearSystem, Place, Unknown, system_of
+from centrode.equations.symbols import Letter, Sum
+from centrode.errors import InputError, Status
+from centrode.kinematics.motion import (
+    attributes_of,
+    coordinates_of,
+    dataset_of,
+    judgements_of,
+    labels_of,
+    named,
+)
+from centrode.kinematics.path import DrivenBy
+from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
+from centrode.model.mechanism import FRAME, Mechanism
+from centrode.model.problems import nearest, shown
 from centrode.numerics.search import bisect
+from centrode.structure.dimensions import Dimensions
+
+# Integration of equations in Cauchy form: fixed steps of the classical Runge-Kutta method, or adaptive ones.
+#
+# It knows nothing of closed forms: how far the motion goes is judged by the equations alone.
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -24,7 +48,7 @@ _scipy = functools.partial(importlib.import_module, "scipy.integrate")
 
 FINE = 1e-10
 """Tolerance of the adaptive method with which a fixed step is judged."""
-MOST_STEPS = 20_000
+MOST_ADAPTIVE_STEPS = 20_000
 """Adaptive steps after which an integration is refused."""
 FAR = 1e6
 """Change of an unknown, in its own measure, beyond which it goes to infinity: steps would become ever smaller there."""
@@ -38,7 +62,7 @@ LOST = 0.01
 """Drift, as a part of the greatest length or in radians, beyond which a state is no position of the mechanism."""
 
 
-class Equations(Protocol):
+class CauchyEquations(Protocol):
     """What is integrated: equations in Cauchy form with the constraints they were derived from.
 
     Times are numbers or (...), states (..., unknowns): many states are computed at once.
@@ -85,7 +109,7 @@ class Trajectory:
     steps: int
 
 
-def fixed_steps(equations: Equations, times: Array) -> Trajectory:
+def fixed_steps(equations: CauchyEquations, times: Array) -> Trajectory:
     """Classical fourth-order Runge-Kutta, one step from each time to the next.
 
     An adaptive integration goes before it and tells where the determinant is zero; rows behind that are left out,
@@ -106,13 +130,13 @@ def fixed_steps(equations: Equations, times: Array) -> Trajectory:
     return Trajectory(state, _rates(equations, times, state), judge.stop, when, len(times) - 1)
 
 
-def adaptive_steps(equations: Equations, times: Array, tolerance: float) -> Trajectory:
+def adaptive_steps(equations: CauchyEquations, times: Array, tolerance: float) -> Trajectory:
     """Dormand and Prince's method of eighth order with error control; rows come from its dense output."""
     found = _followed(equations, times, tolerance)
     return Trajectory(found.state, _rates(equations, times, found.state), found.stop, None, found.steps)
 
 
-def determinant(equations: Equations, time: Any, state: Array) -> Array:
+def determinant(equations: CauchyEquations, time: Any, state: Array) -> Array:
     """Determinant of the Jacobian of the constraints by the unknowns (...), NaN where there are not as many of both."""
     columns = []
     for shift in NUDGE * np.diag(equations.sizes):
@@ -124,7 +148,7 @@ def determinant(equations: Equations, time: Any, state: Array) -> Array:
     return np.asarray(np.linalg.det(matrix))
 
 
-def _runge_kutta(equations: Equations, time: float, step: float, state: Array) -> Array:
+def _runge_kutta(equations: CauchyEquations, time: float, step: float, state: Array) -> Array:
     first = equations.rates(time, state)
     second = equations.rates(time + step / 2, state + step / 2 * first)
     third = equations.rates(time + step / 2, state + step / 2 * second)
@@ -139,7 +163,7 @@ class _Followed:
     steps: int
 
 
-def _followed(equations: Equations, times: Array, tolerance: float) -> _Followed:
+def _followed(equations: CauchyEquations, times: Array, tolerance: float) -> _Followed:
     """States at the times by adaptive steps, as far as the determinant keeps its sign.
 
     Raises InputError where too many steps would be needed.
@@ -158,7 +182,7 @@ def _followed(equations: Equations, times: Array, tolerance: float) -> _Followed
             equations.rates, first, initial, last, rtol=tolerance, atol=tolerance * equations.sizes,
             max_step=LONGEST * abs(last - first),
         )  # fmt: skip
-        for steps in range(1, MOST_STEPS + 1):
+        for steps in range(1, MOST_ADAPTIVE_STEPS + 1):
             if solver.step() is not None or not np.isfinite(solver.y).all():
                 return _Followed(state, float(solver.t), steps)
             if (np.abs(solver.y - initial) > FAR * equations.sizes).any():
@@ -171,7 +195,7 @@ def _followed(equations: Equations, times: Array, tolerance: float) -> _Followed
                 return _Followed(state, stop, steps)
     raise InputError(
         "",
-        _("the integration needs more than {most} steps").format(most=MOST_STEPS),
+        _("the integration needs more than {most} steps").format(most=MOST_ADAPTIVE_STEPS),
         _("ask for a shorter range, or a coarser tolerance"),
     )
 
@@ -184,7 +208,7 @@ def _fill(state: Array, times: Array, course: Any, stop: float) -> None:
         state[inside] = course(times[inside]).T
 
 
-def _pole(equations: Equations, first: float, initial: Array, solver: Any) -> float:
+def _pole(equations: CauchyEquations, first: float, initial: Array, solver: Any) -> float:
     """Where an unknown that is very great goes to infinity: near a simple pole y/y' is what is left."""
     moved = solver.y - initial
     most = int(np.argmax(np.abs(moved) / equations.sizes))
@@ -193,7 +217,7 @@ def _pole(equations: Equations, first: float, initial: Array, solver: Any) -> fl
     return float(solver.t) + (left if abs(left) <= NEAR_POLE * abs(solver.t_bound - first) else 0.0)
 
 
-def _crossing(equations: Equations, course: Any) -> float:
+def _crossing(equations: CauchyEquations, course: Any) -> float:
     """Where the determinant changes its sign within a step, by bisection: it may be anything but smooth there."""
     low, high = np.array([course.t_old]), np.array([course.t])
     sign = np.sign(determinant(equations, float(low[0]), course(low[0])))
@@ -210,7 +234,9 @@ def _beyond(times: Array, stop: float | None) -> npt.NDArray[np.bool_]:
     return np.asarray(np.sign(times[-1] - times[0]) * (times - stop) > 0)
 
 
-def _lost(equations: Equations, times: Array, state: Array, beyond: npt.NDArray[np.bool_]) -> int | None:
+def _lost(
+    equations: CauchyEquations, times: Array, state: Array, beyond: npt.NDArray[np.bool_]
+) -> int | None:
     """First row that is no position of the mechanism any more, or one of another assembly."""
     rows = np.flatnonzero(~beyond)
     if not rows.size or not state.shape[1]:
@@ -223,7 +249,7 @@ def _lost(equations: Equations, times: Array, state: Array, beyond: npt.NDArray[
     return int(rows[np.argmax(wrong)]) if wrong.any() else None
 
 
-def _rates(equations: Equations, times: Array, state: Array) -> Array:
+def _rates(equations: CauchyEquations, times: Array, state: Array) -> Array:
     """Rates at the rows that have a state."""
     found = np.full(state.shape, np.nan)
     rows = np.isfinite(state).all(axis=1)
@@ -231,3 +257,476 @@ def _rates(equations: Equations, times: Array, state: Array) -> Array:
         with np.errstate(all="ignore"):
             found[rows] = equations.rates(times[rows], state[rows])
     return found
+
+
+# The equations of a mechanism in Cauchy normal form, as numbers: rates of its unknowns from time and state.
+#
+# They come from the differentiated chain equations alone, not from the closed forms of positions, so that
+# what is
+# integrated is a second way to the same motion.
+
+JETS = JetFunctions(ARRAYS)
+
+
+@dataclass(frozen=True)
+class CauchyForm:
+    """d state/dt = rates(time, state), with what the chains say of a state.
+
+    Attributes
+    ----------
+    names : of the unknowns of all groups in the order of the plan: "angle.AC", "slide.C", "bearing.wheel";
+        the angle of a cylinder is "angle.K-A"
+    symbols : their letters, "phi2"
+    initial : (n,) state at t = 0 [rad, m], angles as in the initial position, with their turns
+    constraint_names : "y_C", "x_D", ..., as many as unknowns
+
+    `time` is a number or (...), a state is (..., n): many states are computed at once.
+    """
+
+    names: tuple[str, ...]
+    symbols: tuple[str, ...]
+    initial: Array
+    constraint_names: tuple[str, ...]
+    unknowns: tuple[Unknown, ...]
+    systems: tuple[LinearSystem, ...]
+    residuals: tuple[Sum, ...]
+    places: Mapping[str, Place]
+    constants: Mapping[Letter, float]
+    drives: tuple[tuple[Letter, Letter, DrivenBy], ...]
+
+    def rates(self, time: Any, state: npt.ArrayLike) -> Array:
+        """Derivatives of the state by time [rad/s, m/s], (..., n); NaN where a group's determinant is zero."""
+        values = self._values(time, state)
+        found: list[Array] = []
+        for system in self.systems:
+            shape = np.shape(next(iter(values.values())))
+            matrix = np.array(
+                [[self._number(entry, values, shape) for entry in row] for row in system.matrix]
+            )
+            right = np.array([self._number(entry, values, shape) for entry in system.right])
+            solved = _solved(np.moveaxis(matrix, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1))
+            for i, letter in enumerate(system.unknowns):
+                values[letter] = solved[..., i]
+                found.append(solved[..., i])
+        return np.stack(found, axis=-1) if found else np.zeros((*np.shape(time), 0))
+
+    def positions(self, time: Any, state: npt.ArrayLike) -> dict[str, Array]:
+        """Places of all points by their chains [m]: name -> (..., 2)."""
+        values = self._values(time, state)
+        shape = np.shape(next(iter(values.values()), 0.0))
+        return {
+            name: np.stack([self._number(at.x, values, shape), self._number(at.y, values, shape)], axis=-1)
+            for name, at in self.places.items()
+        }
+
+    def constraints(self, time: Any, state: npt.ArrayLike) -> Array:
+        """Left sides less right sides [m, rad], (..., n): how far a state has drifted off the constraints."""
+        values = self._values(time, state)
+        shape = np.shape(next(iter(values.values()), 0.0))
+        found = [self._number(one, values, shape) for one in self.residuals]
+        return np.stack(found, axis=-1) if found else np.zeros((*shape, 0))
+
+    def _values(self, time: Any, state: npt.ArrayLike) -> dict[Letter, Any]:
+        state = np.asarray(state, dtype=np.float64)
+        values: dict[Letter, Any] = {}
+        time = np.asarray(time, dtype=np.float64)
+        shape = np.broadcast_shapes(time.shape, state.shape[:-1])
+        for i, one in enumerate(self.unknowns):
+            values[one.letter] = np.broadcast_to(state[..., i], shape)
+        for letter, rate, driven in self.drives:
+            jet = driven.value(JETS, Jet.variable(time, 1))
+            value, speed = (jet.value, jet.derivative(1)) if isinstance(jet, Jet) else (jet, 0.0)
+            values[letter], values[rate] = np.broadcast_to(value, shape), np.broadcast_to(speed, shape)
+        return values | {letter: np.float64(x) for letter, x in self.constants.items()}
+
+    @staticmethod
+    def _number(total: Sum, values: Mapping[Letter, Any], shape: tuple[int, ...]) -> Array:
+        return np.broadcast_to(total.value(np, values.__getitem__), shape).astype(np.float64)
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """Solutions of many systems; NaN where one is singular."""
+    with np.errstate(all="ignore"):
+        try:
+            return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
+        except np.linalg.LinAlgError:
+            if matrix.ndim == 2:
+                return np.full(right.shape, np.nan)
+            flat = [_solved(a, b) for a, b in zip(matrix, right, strict=True)]
+            return np.stack(flat)
+
+
+def cauchy_form(mechanism: Mechanism) -> CauchyForm:
+    """The normal form of a mechanism.
+
+    Raises InputError on the sphere, and what `motion` raises for a mechanism that does not assemble.
+    """
+    return form_of(ready(mechanism))
+
+
+def form_of(made: Ready) -> CauchyForm:
+    """The normal form of a mechanism made ready."""
+    if made.mechanism.space != "plane":
+        raise InputError(
+            "space",
+            _("the normal form is integrated in the plane, not on the sphere"),
+            _("compute the motion: centrode run; equations in symbols: centrode equations"),
+        )
+    board, drafts = laid(made)
+    letters = board.alphabet
+    systems = tuple(
+        system_of(
+            [one.rate(board.moves) for one in draft.conditions],
+            [one.rate for one in draft.unknowns],
+            [one.pair for one in draft.conditions],
+        )
+        for draft in drafts
+    )
+    unknowns = tuple(one for draft in drafts for one in draft.unknowns)
+    conditions = [one for draft in drafts for one in draft.conditions]
+    values = letters.values
+    driven = {one.drive.id: one for one in made.kinematics.path.driven}
+    return CauchyForm(
+        names=tuple(one.name for one in unknowns),
+        symbols=tuple(one.letter.name for one in unknowns),
+        initial=np.array([values[one.letter] for one in unknowns], dtype=np.float64),
+        constraint_names=tuple(one.name for one in conditions),
+        unknowns=unknowns,
+        systems=systems,
+        residuals=tuple(one.residual for one in conditions),
+        places=dict(board.points),
+        constants={letter: x for letter, x in values.items() if letter not in letters.rates},
+        drives=tuple(
+            (letter, letters.rates[letter], driven[drive]) for letter, drive in board.driven.items()
+        ),
+    )
+
+
+# From integrated states to angles, places and displacements with their rates, as a motion has them.
+
+STENCIL = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
+WEIGHTS = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60
+STRIDE = 0.01
+"""Step of the sixth-order differences along the rates [rad]: both errors stay near 1e-14 of a great value."""
+
+
+@dataclass(frozen=True)
+class IntegratedCourse:
+    """Rows of an integrated motion.
+
+    `angles` and `spins` (n, links), `points` and `velocities` (n, points, 2), `slides` and `slips` (n, guides);
+    NaN where there is no state, or where the equations say nothing of a point.
+    """
+
+    angles: Array
+    spins: Array
+    points: Array
+    velocities: Array
+    slides: Array
+    slips: Array
+
+
+def course_of(prepared: Ready, closed: xr.Dataset, form: CauchyForm, found: Trajectory) -> IntegratedCourse:
+    """Everything a state tells; names and their order are those of the motion in closed form."""
+    times = closed["time"].to_numpy()
+    angles, spins = (
+        _turning(prepared.mechanism, form, columns, closed[name].to_numpy())
+        for name, columns in (("angle", found.state), ("angular_velocity", found.rates))
+    )
+    names = [str(name) for name in closed["point"].to_numpy()]
+    places = _places(form, names, prepared.kinematics.numbers)
+    reached = np.isfinite(found.state).all(axis=1)
+    points, velocities = np.full((2, len(times), len(names), 2), np.nan)
+    if reached.any():
+        points[reached] = places(times[reached], found.state[reached])
+        rates = found.rates[reached]
+        step = STRIDE / _pace(prepared, form, rates)
+        velocities[reached] = _speeds(places, times[reached], found.state[reached], rates, step)
+    seen = _Seen(prepared.mechanism, prepared.kinematics.numbers, names, angles, spins, points, velocities)
+    slides, slips = np.full((2, len(times), len(prepared.mechanism.guides)), np.nan)
+    for column, guide in enumerate(prepared.mechanism.guides):
+        if f"slide.{guide.id}" in form.names:
+            which = form.names.index(f"slide.{guide.id}")
+            slides[:, column], slips[:, column] = found.state[:, which], found.rates[:, which]
+        else:
+            slides[:, column], slips[:, column] = seen.along(guide.id, guide.point)
+    return IntegratedCourse(angles, spins, points, velocities, slides, slips)
+
+
+def _turning(mechanism: Mechanism, form: CauchyForm, columns: Array, closed: Array) -> Array:
+    """Angles of all links, or their rates.
+
+    What is no unknown turns against another body as its drive says, or not at all: that difference is taken from the
+    motion in closed form, where it is the law itself.
+    """
+    names = mechanism.link_names
+    found: dict[str, Array] = {FRAME: np.zeros(len(columns))}
+    reached = np.where(np.isfinite(columns).all(axis=1), 0.0, np.nan)
+
+    def angle(link: str) -> Array:
+        if link not in found:
+            if f"angle.{link}" in form.names:
+                found[link] = columns[:, form.names.index(f"angle.{link}")]
+            else:
+                base = base_of(mechanism, link)
+                known = 0.0 if base == FRAME else closed[:, names.index(base)]
+                found[link] = angle(base) + closed[:, names.index(link)] - known + reached
+        return found[link]
+
+    return np.stack([angle(link) for link in names], axis=1)
+
+
+def base_of(mechanism: Mechanism, link: str) -> str:
+    """The body against which a link's angle is given: by its drive, or by a guide that keeps it from turning."""
+    for drive in mechanism.drives:
+        if drive.link == link:
+            return drive.relative_to
+    return next((guide.on for guide in mechanism.guides if guide.link == link), FRAME)
+
+
+Places: TypeAlias = Callable[[Array, Array], Array]
+
+
+def _places(form: CauchyForm, names: list[str], numbers: Dimensions) -> Places:
+    """Places of all points of states, in the order of the names; those of the frame stand still."""
+    frame = {name: np.array(place) for name, place in numbers.frame.items()}
+    nowhere = np.full(2, np.nan)
+
+    def places(times: Array, states: Array) -> Array:
+        known = form.positions(times, states)
+        every = [known.get(name, frame.get(name, nowhere)) for name in names]
+        return np.stack([np.broadcast_to(one, (len(times), 2)) for one in every], axis=1)
+
+    return places
+
+
+def _pace(prepared: Ready, form: CauchyForm, rates: Array) -> Array:
+    """How fast the mechanism moves at rows of rates [rad/s, and parts of the greatest length]: (n,).
+
+    A law of time may rest and yet turn within a second, so that with one a second is the longest time.
+    """
+    scale = float(prepared.kinematics.numbers.scale)
+    sizes = np.array([scale if name.startswith("slide.") else 1.0 for name in form.names])
+    speed, least = prepared.parameter.constant_speed, 1.0
+    if speed:
+        least = abs(speed) / (1.0 if prepared.parameter.turns else scale)
+    return np.asarray(np.maximum(least, (np.abs(rates) / sizes).max(axis=1, initial=0.0)))
+
+
+def _speeds(places: Places, times: Array, states: Array, rates: Array, step: Array) -> Array:
+    """Velocities of all points: derivatives of their places along the rates, by steps of time."""
+    moved = sum(
+        weight * places(times + shift * step, states + (shift * step)[:, None] * rates)
+        for shift, weight in zip(STENCIL, WEIGHTS, strict=True)
+    )
+    return np.asarray(moved / step[:, None, None])
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """What displacements along guides are measured by."""
+
+    mechanism: Mechanism
+    numbers: Dimensions
+    names: list[str]
+    angles: Array
+    spins: Array
+    points: Array
+    velocities: Array
+
+    def along(self, guide: str, point: str) -> tuple[Array, Array]:
+        """Displacement and its rate of a point along the line of a guide."""
+        body = self.numbers.bodies[guide]
+        direction, through = np.array(self.numbers.direction[guide]), np.array(self.numbers.through[guide])
+        at, velocity = self._point(point)
+        if body == FRAME:
+            return (at - through) @ direction, velocity @ direction
+        link = self.mechanism.link_names.index(body)
+        turn, spin = self.angles[:, link], self.spins[:, link]
+        axis, across = _turned(turn, direction), _turned(turn, np.array([-direction[1], direction[0]]))
+        pole, local = next(iter(self.numbers.local[body].items()))
+        start, start_velocity = self._point(pole)
+        arm = _turned(turn, through - np.array(local))
+        away = at - start - arm
+        away_velocity = velocity - start_velocity - spin[:, None] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+        slide = np.sum(away * axis, axis=1)
+        return slide, np.sum(away_velocity * axis, axis=1) + spin * np.sum(away * across, axis=1)
+
+    def _point(self, name: str) -> tuple[Array, Array]:
+        column = self.names.index(name)
+        return self.points[:, column], self.velocities[:, column]
+
+
+def _turned(angles: Array, vector: Array) -> Array:
+    """A vector turned by angles: (n, 2)."""
+    cosine, sine = np.cos(angles), np.sin(angles)
+    return np.stack([cosine * vector[0] - sine * vector[1], sine * vector[0] + cosine * vector[1]], axis=1)
+
+
+METHODS = ("rk4", "adaptive")
+MOST_STEPS = 100_000
+TOLERANCES = (1e-13, 1e-2)
+"""Finest and coarsest tolerance of the adaptive method: below the first it would be rounding that is controlled."""
+
+
+def integrate(
+    mechanism: Mechanism,
+    method: str = "rk4",
+    steps: int = 100,
+    tolerance: float = FINE,
+    stop: float | None = None,
+) -> xr.Dataset:
+    """The motion from t = 0 by integration of the equations in Cauchy form, with its difference from the closed forms.
+
+    Parameters
+    ----------
+    method : "rk4" or "adaptive"
+        Fixed steps of the classical Runge-Kutta method, or Dormand and Prince's of eighth order with error control.
+    steps : int
+        Number of fixed steps; of either method the result has steps + 1 rows, evenly spaced in time.
+    tolerance : float
+        Of the adaptive method, relative and absolute, for each step: rad, and parts of the greatest length.
+    stop : float [rad or m, or s]
+        Last value of the drive, a time where the drive is a law or there are several; one turn if left out.
+
+    Returns
+    -------
+    Dataset
+        Variables as `motion` names them, `drift` of the constraints, `angle_difference` and `position_difference`
+        from the closed forms (docs: integration). Rows that the integration does not reach are NaN with the status
+        `open`; those that fixed steps carry away from the mechanism, `unconverged`.
+
+    Raises
+    ------
+    InputError
+        As `motion` and `equations` do, or method, steps or tolerance do not exist.
+    """
+    _check(method, steps, tolerance)
+    prepared = ready(mechanism)
+    form = form_of(prepared)
+    start = prepared.kinematics.path.initial if prepared.parameter.is_uniform else 0.0
+    solved = solve(prepared, asked_span(prepared, steps + 1, start, stop))
+    scaled = Scaled(form, float(prepared.kinematics.numbers.scale))
+    times = solved.span.time
+    if method == "rk4":
+        found = fixed_steps(scaled, times)
+    else:
+        found = adaptive_steps(scaled, times, tolerance)
+    told = {"method": method, "steps": steps, "steps_taken": found.steps}
+    if method == "adaptive":
+        told["tolerance"] = tolerance
+    return _dataset(prepared, solved, form, scaled, found, told)
+
+
+def _check(method: object, steps: object, tolerance: object) -> None:
+    if method not in METHODS:
+        what = _("there is no method {name}").format(name=shown(method))
+        raise InputError("method", what, nearest(str(method), METHODS))
+    if isinstance(steps, bool) or not isinstance(steps, int) or not 1 <= steps <= MOST_STEPS:
+        what = _("{steps} steps were asked for").format(steps=shown(steps))
+        raise InputError("steps", what, _("ask for 1 to {most}").format(most=MOST_STEPS))
+    low, high = TOLERANCES
+    if isinstance(tolerance, bool) or not isinstance(tolerance, int | float) or not low <= tolerance <= high:
+        what = _("{value} is no tolerance").format(value=shown(tolerance))
+        raise InputError("tolerance", what, _("ask for {low:g} to {high:g}").format(low=low, high=high))
+
+
+@dataclass(frozen=True)
+class Scaled:
+    """Equations whose constraints are compared with the greatest length."""
+
+    form: CauchyForm
+    scale: float
+
+    @property
+    def initial(self) -> Array:
+        return self.form.initial
+
+    @property
+    def sizes(self) -> Array:
+        return np.array([self.scale if name.startswith("slide.") else 1.0 for name in self.form.names])
+
+    def rates(self, time: Any, state: Array) -> Array:
+        return np.asarray(self.form.rates(time, state), dtype=np.float64)
+
+    def constraints(self, time: Any, state: Array) -> Array:
+        return np.asarray(self.form.constraints(time, state), dtype=np.float64) / self._units
+
+    @cached_property
+    def _units(self) -> Array:
+        """What each constraint is compared with: those of wheels are angles."""
+        angular = ("gear ", "rolling ")
+        return np.array(
+            [1.0 if name.startswith(angular) else self.scale for name in self.form.constraint_names]
+        )
+
+
+def _dataset(
+    prepared: Ready,
+    solved: Solved,
+    form: CauchyForm,
+    scaled: Scaled,
+    found: Trajectory,
+    told: Mapping[str, Any],
+) -> xr.Dataset:
+    closed = dataset_of(solved)
+    times = solved.span.time
+    status = _status(found, times)
+    course = course_of(prepared, closed, form, found)
+    drift = np.full((len(status), len(form.constraint_names)), np.nan)
+    rows = status == Status.OK
+    drift[rows] = scaled.constraints(times[rows], found.state[rows])
+    off = course.angles - closed["angle"].to_numpy()
+    apart = np.linalg.norm(course.points - closed["position"].to_numpy(), axis=-1)
+    judged = judgements_of(solved, ())["status"]
+    variables = {
+        "angle": named("angle", ("sample", "link"), course.angles),
+        "angular_velocity": named("angular_velocity", ("sample", "link"), course.spins),
+        "position": named("position", ("sample", "point", "axis"), course.points),
+        "velocity": named("velocity", ("sample", "point", "axis"), course.velocities),
+        "slide": named("slide", ("sample", "guide"), course.slides),
+        "slide_velocity": named("slide_velocity", ("sample", "guide"), course.slips),
+        "drift": named("drift", ("sample", "constraint"), drift),
+        "angle_difference": named("angle_difference", ("sample", "link"), off),
+        "position_difference": named("position_difference", ("sample", "point"), apart),
+        "status": (judged[0], status, judged[2]),
+        **{name: closed[name] for name in ("event_value", "event_kind", "event_group")},
+    }
+    coordinates = {**coordinates_of(solved), "constraint": labels_of(form.constraint_names)}
+    attributes = {name: told for name, told in attributes_of(solved).items() if "residual" not in name}
+    attributes |= {
+        **told,
+        "stop_time": _or_nan(found.stop),
+        "lost_time": _or_nan(found.lost),
+        "return_difference": _apart(course.angles, course.points, scaled.scale),
+        "closed_return_difference": _apart(
+            closed["angle"].to_numpy(), closed["position"].to_numpy(), scaled.scale
+        ),
+    }
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _or_nan(time: float | None) -> float:
+    return float("nan") if time is None else time
+
+
+def _status(found: Trajectory, times: Array) -> npt.NDArray[np.int8]:
+    """Ok where there is a state; behind a stop open, from a row that is lost on unconverged."""
+    status = np.where(np.isfinite(found.state).all(axis=1), Status.OK, Status.OPEN).astype(np.int8)
+    forward = np.sign(times[-1] - times[0])
+    if found.lost is not None:
+        end = times[-1] if found.stop is None else found.stop
+        status[(forward * times >= forward * found.lost) & (forward * times <= forward * end)] = (
+            Status.UNCONVERGED
+        )
+    return status
+
+
+def _apart(angles: Array, points: Array, scale: float) -> float:
+    """How far the last row is from the first: angles modulo turns [rad], places over the greatest length.
+
+    NaN where one of them does not exist.
+    """
+    turned = np.abs(np.remainder(angles[-1] - angles[0] + np.pi, 2 * np.pi) - np.pi)
+    moved = np.abs(points[-1] - points[0]) / scale
+    return float(np.max(np.concatenate([turned.ravel(), moved.ravel()]), initial=0.0))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Protocol
+from functools import cached_property
+from math import gcd, lcm
+from typing import Any, Protocol
 
-from centrode.equations.letters import Letter, Parts, Wave
-from centrode.equations.sums import Coefficient, Sum, Term
+from centrode.equations.symbols import Coefficient, Letter, Parts, Sum, SumTerm, Wave, expression, merged
 
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "epsilon": "ε", "theta": "θ", "kappa": "κ", "rho": "ρ",
@@ -29,7 +30,7 @@ class Factored(Protocol):
     def number(self) -> Coefficient: ...
 
     @property
-    def product(self) -> Term: ...
+    def product(self) -> SumTerm: ...
 
     @property
     def rest(self) -> Sum: ...
@@ -131,13 +132,13 @@ class Spelling:
         return self.bracket(self.fraction(above, below))
 
 
-def order_of(term: Term) -> tuple[object, ...]:
+def order_of(term: SumTerm) -> tuple[object, ...]:
     """Where a term stands in a sum: by its angles, then by its letters."""
     waves = [(one.parts, one.kind) for one, _power in sorted(term.waves, key=lambda wave: wave[0].order)]
     return (bool(waves), [parts for parts, _kind in waves], term.letters, waves)
 
 
-def ordered(total: Sum) -> list[Term]:
+def ordered(total: Sum) -> list[SumTerm]:
     """Terms in the order in which they are written; those without angles begin with a positive one."""
     order = sorted(total.terms, key=order_of)
     if not any(term.waves for term in order):
@@ -166,7 +167,7 @@ def spelled(
     """
     if not formula.number:
         return spelling.number(0)
-    if formula.product == Term() and abs(formula.number) == 1 and not formula.single:
+    if formula.product == SumTerm() and abs(formula.number) == 1 and not formula.single:
         return spelled_sum(formula.total, spelling)
     rest = None if formula.single else formula.rest
     other = _turnable(formula) if turned and formula.number < 0 else None
@@ -191,7 +192,7 @@ class _Product:
     differences_first: bool = False
     turned: Wave | None = None
 
-    def text(self, size: Fraction, term: Term, rest: Sum | None) -> str:
+    def text(self, size: Fraction, term: SumTerm, rest: Sum | None) -> str:
         spelling = self.spelling
         above, below = self._letters(term, 1), self._letters(term, -1)
         if size.numerator != 1:
@@ -208,7 +209,7 @@ class _Product:
             return spelling.times(front, spelling.fraction(top, bottom) if bottom else spelling.join(top))
         return spelling.fraction([*above, *top], [*below, *bottom])
 
-    def _letters(self, term: Term, sign: int) -> list[str]:
+    def _letters(self, term: SumTerm, sign: int) -> list[str]:
         spelling = self.spelling
         return [
             spelling.power(spelling.letter(letter), abs(power))
@@ -216,7 +217,7 @@ class _Product:
             if power * sign > 0
         ]
 
-    def _waves(self, term: Term, sign: int) -> list[str]:
+    def _waves(self, term: SumTerm, sign: int) -> list[str]:
         chosen = [(one, abs(power)) for one, power in term.waves if power * sign > 0]
         chosen.sort(key=lambda wave: wave[0].order)
         if self.differences_first:
@@ -233,3 +234,90 @@ class _Product:
 def size_of(number: Coefficient) -> Fraction:
     """A number without its sign."""
     return abs(Fraction(number))
+
+
+# Formulas in the form of textbooks: what all terms share in front, over what they are divided by.
+
+
+@dataclass(frozen=True)
+class SymbolFormula:
+    """A number, a product and a sum whose terms share nothing; `expression` is the same for SymPy.
+
+    The product holds what the formula is divided by, with negative exponents.
+    """
+
+    number: Coefficient
+    product: SumTerm
+    rest: Sum
+
+    @property
+    def total(self) -> Sum:
+        """The same as one sum."""
+        return Sum({self.product: self.number}) * self.rest if self.number else Sum({})
+
+    @property
+    def single(self) -> bool:
+        """Whether it is one product."""
+        return len(self.rest.terms) <= 1
+
+    @property
+    def size(self) -> int:
+        """Number of terms."""
+        return len(self.rest.terms)
+
+    @cached_property
+    def expression(self) -> Any:
+        """SymPy expression (the extra `symbols`)."""
+        return (
+            expression(Sum({self.product: self.number})) * expression(self.rest)
+            if self.number
+            else expression(Sum({}))
+        )
+
+    def renamed(self, names: Mapping[Letter, Letter]) -> SymbolFormula:
+        """The same with letters written otherwise."""
+        return formula_of(self.total.renamed(names))
+
+    def __str__(self) -> str:
+        return spelled(self, Spelling())
+
+
+def formula_of(total: Sum) -> SymbolFormula:
+    """The textbook form of a sum: over a common denominator, pairs of waves taken together, factors in front."""
+    whole, shared = _apart(total)
+    taken, again = _apart(merged(whole))
+    number, rest = _number(taken)
+    return SymbolFormula(number, shared.times(again), rest)
+
+
+def _apart(total: Sum) -> tuple[Sum, SumTerm]:
+    """A sum whose terms share no factor and are divided by nothing, and the product that was in front of it."""
+    terms = list(total.terms)
+    if not terms:
+        return total, SumTerm()
+    letters = [dict(term.letters) for term in terms]
+    waves = [dict(term.waves) for term in terms]
+    shared = SumTerm(
+        tuple(sorted(_least(letters).items())),
+        tuple(sorted(_least(waves).items())),
+    )
+    return total.divided(shared), shared
+
+
+def _least(powers: list[dict[Any, int]]) -> dict[Any, int]:
+    every = {factor for one in powers for factor in one}
+    least = {factor: min(one.get(factor, 0) for one in powers) for factor in every}
+    return {factor: power for factor, power in least.items() if power}
+
+
+def _number(total: Sum) -> tuple[Coefficient, Sum]:
+    """The number in front of a sum, with the sign of its first term."""
+    if not total:
+        return 0, Sum.number(1)
+    numbers = [Fraction(x) for x in total.terms.values()]
+    size = Fraction(gcd(*(x.numerator for x in numbers)), lcm(*(x.denominator for x in numbers)))
+    first = ordered(total)[0]
+    number: Coefficient = size if total.terms[first] > 0 else -size
+    if number.denominator == 1:
+        number = int(number)
+    return number, total.scaled(1 / Fraction(number))

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 
-from centrode.equations.formulas import Formula
-from centrode.equations.letters import Letter, Parts, Wave
-from centrode.equations.spelling import spelled
-from centrode.equations.sums import Term
+from centrode.equations.spelling import SymbolFormula, spelled
+from centrode.equations.symbols import Letter, Parts, SumTerm, Wave
 from centrode.present.equations.typst import LONG, TypstSpelling, unbracketed
 from centrode.render.document.numbers import Numbers
 
@@ -77,7 +75,7 @@ def _guarded(text: str) -> str:
 
 
 def with_numbers(
-    formula: Formula,
+    formula: SymbolFormula,
     values: Mapping[Letter, float],
     numbers: Numbers,
     differences_first: bool = False,
@@ -95,7 +93,7 @@ def with_numbers(
     return spelled(formula, NumberSpelling(values, numbers), differences_first, turned)
 
 
-def _count(term: Term) -> int:
+def _count(term: SumTerm) -> int:
     return len(term.letters) + sum(len(one.parts) for one, _power in term.waves)
 
 

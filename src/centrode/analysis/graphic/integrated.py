@@ -16,7 +16,7 @@ STEPS = 100
 """Rows of an integration; of them only the last is asked for."""
 
 # the equations in symbols are heavy, and needed by this column alone
-_integrated = functools.partial(importlib.import_module, "centrode.equations.integrated")
+_integrated = functools.partial(importlib.import_module, "centrode.equations.integration")
 
 
 def integrated_rates(mechanism: Mechanism, exact: xr.Dataset) -> Mapping[tuple[str, str], float]:

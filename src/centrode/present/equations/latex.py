@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.equations.letters import Letter, Wave
 from centrode.equations.spelling import Spelling, parts_of
+from centrode.equations.symbols import Letter, Wave
 from centrode.locale import _
 from centrode.present.equations.page import Entry, Note, Relation, Symbols, System, sections
 from centrode.present.equations.text import split_at_signs

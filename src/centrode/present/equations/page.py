@@ -6,19 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.equations.formulas import Formula, formula_of
-from centrode.equations.letters import Letter
-from centrode.equations.spelling import Spelling, spelled, spelled_sum
-from centrode.equations.sums import Sum
+from centrode.equations.spelling import Spelling, SymbolFormula, formula_of, spelled, spelled_sum
+from centrode.equations.symbols import Letter, Sum
 from centrode.locale import _
 from centrode.present.equations.velocities import velocity_lines
 from centrode.present.equations.words import meaning_text, value_text
 
 if TYPE_CHECKING:
-    from centrode.equations.derivation import Equations
-    from centrode.equations.draft import Condition, Unknown
-    from centrode.equations.given import Drivenness
-    from centrode.equations.groups import GroupEquations, Solution
+    from centrode.equations.derivation import Drivenness, Equations
+    from centrode.equations.linear import Condition, GroupEquations, GroupSolution, Unknown
 
 
 @dataclass(frozen=True)
@@ -159,7 +155,7 @@ def _given(one: Drivenness, spelling: Spelling) -> list[Entry]:
     return [Relation((value, way)), Relation((rate, spelling.decimal(one.speed)))]
 
 
-def _solved(solution: Solution, spelling: Spelling) -> list[Entry]:
+def _solved(solution: GroupSolution, spelling: Spelling) -> list[Entry]:
     system = solution.system
     unknowns = tuple(spelling.letter(letter) for letter in system.unknowns)
     matrix = tuple(tuple(_entry(entry, spelling) for entry in row) for row in system.matrix)
@@ -225,8 +221,8 @@ def _seconds(group: GroupEquations, spelling: Spelling) -> list[Entry]:
 
 
 def _with_formulas(
-    unknowns: Sequence[Unknown], formulas: Sequence[Formula] | None
-) -> list[tuple[Unknown, Formula | None]]:
+    unknowns: Sequence[Unknown], formulas: Sequence[SymbolFormula] | None
+) -> list[tuple[Unknown, SymbolFormula | None]]:
     """Unknowns with their formulas, None for those too long to be read."""
     if formulas is None:
         return [(unknown, None) for unknown in unknowns]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from centrode.equations.letters import Letter, Wave
 from centrode.equations.spelling import Spelling, parts_of
+from centrode.equations.symbols import Letter, Wave
 from centrode.locale import decimal_mark
 
 GREEK = frozenset(

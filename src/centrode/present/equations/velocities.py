@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.equations.formulas import Formula
-from centrode.equations.letters import Letter
-from centrode.equations.spelling import Spelling, spelled, spelled_sum
-from centrode.equations.sums import Sum, Term
+from centrode.equations.spelling import Spelling, SymbolFormula, spelled, spelled_sum
+from centrode.equations.symbols import Letter, Sum, SumTerm
 
 if TYPE_CHECKING:
-    from centrode.equations.points import PointVelocity
+    from centrode.equations.derivation import PointVelocity
 
 Line: TypeAlias = tuple[str, ...]
 
@@ -52,7 +50,7 @@ def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
     return lines
 
 
-def _line(name: str, formula: Formula, closed: Formula | None, spelling: Spelling) -> Line:
+def _line(name: str, formula: SymbolFormula, closed: SymbolFormula | None, spelling: Spelling) -> Line:
     parts = [spelling.letter(Letter(0, name)), spelled(formula, spelling, turned=formula.single)]
     if closed is not None:
         short = spelled(closed, spelling, turned=True)
@@ -60,7 +58,7 @@ def _line(name: str, formula: Formula, closed: Formula | None, spelling: Spellin
     return tuple(parts)
 
 
-def _is_square(formula: Formula) -> bool:
+def _is_square(formula: SymbolFormula) -> bool:
     return (
         formula.single
         and formula.number == 1
@@ -69,12 +67,12 @@ def _is_square(formula: Formula) -> bool:
     )
 
 
-def _root(formula: Formula, spelling: Spelling) -> str:
+def _root(formula: SymbolFormula, spelling: Spelling) -> str:
     """Square root of a product of squares; rates may be negative, so they stand between bars."""
     halves = [(letter, power // 2) for letter, power in formula.product.letters]
     texts = []
     for letter, power in halves:
-        factor = spelled(Formula(1, Term(((letter, power),)), Sum.number(1)), spelling)
+        factor = spelled(SymbolFormula(1, SumTerm(((letter, power),)), Sum.number(1)), spelling)
         rate = letter.name.startswith("omega") or letter.name.endswith("_dot")
         texts.append((rate, spelling.bars(factor) if rate else factor))
     return spelling.join([text for _rate, text in sorted(texts, key=lambda one: one[0])]) or spelling.number(

@@ -10,8 +10,8 @@ from centrode.model.spoken import GEAR, ROLLING
 from centrode.quantities import display_unit
 
 if TYPE_CHECKING:
-    from centrode.equations.alphabet import Meaning
     from centrode.equations.derivation import Equations
+    from centrode.equations.symbols import Meaning
     from centrode.model.mechanism import Display
 
 

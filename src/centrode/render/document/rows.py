@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from centrode.equations.letters import Letter
+from centrode.equations.symbols import Letter
 from centrode.locale import _
 from centrode.present.equations.typst import TypstSpelling, decimal
 from centrode.render.document.blocks import Table, shown

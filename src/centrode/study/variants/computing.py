@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.equations.integrated import integrate
+from centrode.equations.integration import integrate
 from centrode.errors import InputError
 from centrode.kinematics.prepared import ready
 from centrode.locale import _, mark, ngettext, speaking

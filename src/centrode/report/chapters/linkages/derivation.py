@@ -7,10 +7,10 @@ from math import degrees
 
 import numpy as np
 
-from centrode.equations.formulas import Formula as Equation
-from centrode.equations.groups import GroupEquations, Solution
 from centrode.equations.instants import Instant, SolvedSystem, instant_of, rates_compared
-from centrode.equations.letters import Letter
+from centrode.equations.linear import GroupEquations, GroupSolution
+from centrode.equations.spelling import SymbolFormula as Equation
+from centrode.equations.symbols import Letter
 from centrode.locale import _
 from centrode.present.equations.page import index_of
 from centrode.present.equations.typst import TypstSpelling
@@ -109,7 +109,7 @@ class _Numbers:
         lines += [(SPELLING.letter(one.letter), self.value(one.letter)) for one in equations.unknowns]
         return Formula(tuple(lines))
 
-    def solved(self, solution: Solution, solved: SolvedSystem) -> Iterator[Block]:
+    def solved(self, solution: GroupSolution, solved: SolvedSystem) -> Iterator[Block]:
         """The system and its determinants."""
         system = solution.system
         unknowns = tuple(SPELLING.letter(letter) for letter in system.unknowns)

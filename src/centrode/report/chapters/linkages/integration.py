@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from centrode.equations.integrated import integrate
+from centrode.equations.integration import integrate
 from centrode.locale import _
 from centrode.present.integrations import integration_figures
 from centrode.render.document.blocks import Block, Chapter, Check, Section

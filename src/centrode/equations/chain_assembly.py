@@ -1,22 +1,30 @@
-"""Gears and rolling wheels as equations between angles: phi2 - u phi1 = C."""
+"""From a mechanism made ready to its unknowns and constraints in symbols, group by group."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import combinations
 from typing import TypeAlias
 
-from centrode.equations.alphabet import BEARING, LENGTH, RATIO
-from centrode.equations.board import Board
-from centrode.equations.draft import Condition, Draft, Unknown
-from centrode.equations.letters import Angle, Letter
-from centrode.equations.sums import ZERO, Sum, Term
+import numpy as np
+
+from centrode.equations.linear import Condition, Draft, Place, Unknown
+from centrode.equations.plane_chains import Chains, shorten
+from centrode.equations.symbol_table import SymbolTable
+from centrode.equations.symbols import BEARING, LENGTH, RATIO, ZERO, Angle, Letter, Sum, SumTerm
+from centrode.errors import InputError
+from centrode.kinematics.prepared import Ready
+from centrode.locale import _
 from centrode.structure.constraints import FRAME, GearRatio, NoSlip
 from centrode.structure.gearing import Round, Straight
+
+# Gears and rolling wheels as equations between angles: phi2 - u phi1 = C.
 
 Meshing: TypeAlias = GearRatio | NoSlip
 
 
-def meshings_of(board: Board) -> list[Meshing]:
+def meshings_of(board: SymbolTable) -> list[Meshing]:
     """Gears and wheels that do not slip."""
     structure = board.ready.structure
     return [
@@ -26,7 +34,7 @@ def meshings_of(board: Board) -> list[Meshing]:
     ]
 
 
-def mesh(board: Board, waiting: list[Meshing], draft: Draft) -> None:
+def mesh(board: SymbolTable, waiting: list[Meshing], draft: Draft) -> None:
     """Write down the equations of gears and wheels whose bodies all have their angles and places."""
     for meshing in list(waiting):
         if isinstance(meshing, GearRatio):
@@ -38,18 +46,18 @@ def mesh(board: Board, waiting: list[Meshing], draft: Draft) -> None:
             draft.conditions.append(_rolling(board, meshing, draft))
 
 
-def _stands(board: Board, wheel: NoSlip) -> bool:
+def _stands(board: SymbolTable, wheel: NoSlip) -> bool:
     return wheel.link in board.angles and wheel.centre in board.points and wheel.on in board.placed
 
 
-def _gear(board: Board, gear: GearRatio) -> Condition:
+def _gear(board: SymbolTable, gear: GearRatio) -> Condition:
     ratio = Sum.letter(_factor(board, "u", "ratio", gear.gear, float(board.numbers.gearing.ratio[gear.gear])))
     first, second, carrier = (_variable(board, board.angles[link]) for link in gear.links)
     left = second - ratio * first + (ratio - Sum.number(1)) * carrier
     return _angular(board, f"gear {gear.gear}", left)
 
 
-def _rolling(board: Board, wheel: NoSlip, draft: Draft) -> Condition:
+def _rolling(board: SymbolTable, wheel: NoSlip, draft: Draft) -> Condition:
     turn, base = (_variable(board, board.angles[link]) for link in (wheel.link, wheel.on))
     track = board.numbers.gearing.track[wheel.rolling]
     if isinstance(track, Straight):
@@ -57,7 +65,7 @@ def _rolling(board: Board, wheel: NoSlip, draft: Draft) -> Condition:
             LENGTH + 800_000, f"r_{wheel.link}", "radius", (wheel.link,),
             float(board.numbers.gearing.radius[wheel.rolling]), "m",
         )  # fmt: skip
-        way = _way(board, wheel, track).divided(Term(((radius, 1),)))
+        way = _way(board, wheel, track).divided(SumTerm(((radius, 1),)))
         return _angular(board, f"rolling {wheel.rolling}", turn - base + way)
     spin = Sum.letter(
         _factor(board, "k", "spin", wheel.rolling, float(board.numbers.gearing.spin(wheel.rolling)))
@@ -67,7 +75,7 @@ def _rolling(board: Board, wheel: NoSlip, draft: Draft) -> Condition:
     return _angular(board, f"rolling {wheel.rolling}", left)
 
 
-def _way(board: Board, wheel: NoSlip, track: Straight) -> Sum:
+def _way(board: SymbolTable, wheel: NoSlip, track: Straight) -> Sum:
     """Way of the wheel's centre along its track, up to a constant."""
     x, y = (float(v) for v in track.direction)
     turn = board.alphabet.angle(f"beta_{wheel.rolling}", "angle of guide", (wheel.rolling, wheel.on), (x, y))
@@ -77,7 +85,7 @@ def _way(board: Board, wheel: NoSlip, track: Straight) -> Sum:
     return _moving(board, at.along(board.angles[wheel.on].plus(turn)))
 
 
-def _bearing(board: Board, wheel: NoSlip, track: Round, draft: Draft) -> Angle:
+def _bearing(board: SymbolTable, wheel: NoSlip, track: Round, draft: Draft) -> Angle:
     """Direction from the circle's centre to that of the wheel: of an arm between them, else a letter of its own."""
     centre = (float(track.centre[0]), float(track.centre[1]))
     hub = next((p for p, at in board.local(wheel.on).items() if at == centre), None)
@@ -89,7 +97,7 @@ def _bearing(board: Board, wheel: NoSlip, track: Round, draft: Draft) -> Angle:
     return Angle.of(known) if known is not None else _across(board, wheel, centre, draft)
 
 
-def _across(board: Board, wheel: NoSlip, centre: tuple[float, float], draft: Draft) -> Angle:
+def _across(board: SymbolTable, wheel: NoSlip, centre: tuple[float, float], draft: Draft) -> Angle:
     """A bearing of its own for a wheel that other links keep on its circle, with the equation that gives it."""
     way = board.at(wheel.centre) - board.world(wheel.on, centre)
     name = f"psi_{wheel.rolling}"
@@ -106,14 +114,14 @@ def _across(board: Board, wheel: NoSlip, centre: tuple[float, float], draft: Dra
     return line
 
 
-def _angular(board: Board, name: str, left: Sum) -> Condition:
+def _angular(board: SymbolTable, name: str, left: Sum) -> Condition:
     """An equation between angles; its constant is what the left side is in the initial position."""
     values = board.alphabet.values
     value = left.value(math, lambda letter: values[letter])
     return Condition(name, left, left, Sum.letter(board.alphabet.constant(value, "rad")))
 
 
-def _variable(board: Board, angle: Angle) -> Sum:
+def _variable(board: SymbolTable, angle: Angle) -> Sum:
     """What moves of an angle, as a sum; the rest goes into the constant."""
     total = ZERO
     for letter, count in angle.parts:
@@ -122,15 +130,100 @@ def _variable(board: Board, angle: Angle) -> Sum:
     return total
 
 
-def _moving(board: Board, total: Sum) -> Sum:
+def _moving(board: SymbolTable, total: Sum) -> Sum:
     """A sum without its constant terms."""
     moving = board.alphabet.rates.keys()
     return Sum({term: x for term, x in total.terms.items() if Sum({term: x}).letters & moving})
 
 
-def _factor(board: Board, letter: str, kind: str, name: str, value: float) -> Letter:
+def _factor(board: SymbolTable, letter: str, kind: str, name: str, value: float) -> Letter:
     several = len(meshings_of(board)) > 1
     number = sum(one.kind == kind for one in board.alphabet.meanings.values()) + 1
     return board.alphabet.letter(
         RATIO + number, f"{letter}{number}" if several else letter, kind, (name,), value, "1"
     )
+
+
+def laid(ready: Ready) -> tuple[SymbolTable, tuple[Draft, ...]]:
+    """All chains of a planar mechanism, and the groups that have unknowns.
+
+    Raises InputError where constraints and unknowns do not match.
+    """
+    board = SymbolTable(ready)
+    chains, waiting = Chains(board), meshings_of(board)
+    groups: list[Draft] = []
+    draft = Draft()
+    for number, group in enumerate(ready.structure.groups):
+        chains.lay(group, number, draft)
+        mesh(board, waiting, draft)
+        if draft.balance > 0:
+            _take_out_repeated(board, draft)
+        if draft.balance == 0:
+            if draft.unknowns:
+                groups.append(draft)
+            draft = Draft()
+            shorten(board)
+    if draft.balance or chains.lines or chains.rods or waiting:
+        raise InputError(
+            "",
+            _("the constraints of this mechanism do not make one vector chain a group"),
+            _("leave them numerical"),
+        )
+    return board, tuple(groups)
+
+
+def _take_out_repeated(board: SymbolTable, draft: Draft) -> None:
+    """Leave out constraints that repeat others, until there are as many as unknowns.
+
+    Of a vector equation that gives one angle only, the component across the closing link stays: it never
+    degenerates, as either coordinate does.
+    """
+    moving = {one.letter for one in draft.unknowns}
+    draft.conditions = [one for one in draft.conditions if one.residual.letters & moving]
+    for pair in sorted({one.pair for one in draft.conditions if one.pair >= 0}, reverse=True):
+        if draft.balance > 0:
+            _project(draft, pair)
+    if draft.balance > 0:
+        draft.conditions = _independent(board, draft)
+
+
+def _project(draft: Draft, pair: int) -> None:
+    both = [one for one in draft.conditions if one.pair == pair]
+    if len(both) < 2 or both[0].closing is None:
+        return
+    x, y = both
+    line = both[0].closing
+    place = draft.conditions.index(x)
+    draft.conditions = [one for one in draft.conditions if one.pair != pair]
+    vector = Place(x.residual, y.residual)
+    full = Place(x.full, y.full).plus(Place(x.right, y.right), -1).across(line)
+    one = replace(
+        x,
+        name=x.name.replace("x_", "n_", 1),
+        left=vector.across(line),
+        full=full,
+        right=ZERO,
+        pair=-1,
+        vector=vector,
+    )
+    draft.conditions.insert(place, one)
+
+
+def _independent(board: SymbolTable, draft: Draft) -> list[Condition]:
+    """As many conditions as unknowns whose rows are best independent in the initial position."""
+    values = board.alphabet.values
+    rows = np.array(
+        [
+            [
+                float(one.residual.slope(x.letter).value(np, lambda letter: values[letter]))
+                for x in draft.unknowns
+            ]
+            for one in draft.conditions
+        ]
+    )
+    size = len(draft.unknowns)
+    best = max(
+        combinations(range(len(rows)), size),
+        key=lambda chosen: abs(float(np.linalg.det(rows[list(chosen)]))),
+    )
+    return [draft.conditions[i] for i in best]

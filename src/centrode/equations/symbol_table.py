@@ -4,27 +4,159 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from centrode.equations.alphabet import (
+from centrode.equations.linear import ORIGIN, Draft, Place, Unknown, polar
+from centrode.equations.symbols import (
     BEARING,
     LENGTH,
     PLACE,
     SLIDE,
     TURN,
+    Alphabet,
+    Angle,
+    Letter,
+    Sum,
     Vector,
     joined,
 )
-from centrode.equations.draft import Draft
-from centrode.equations.lettering import Lettering
-from centrode.equations.letters import Angle, Letter
-from centrode.equations.lines import Line, Rod, lines_of
-from centrode.equations.places import ORIGIN, Place, polar
-from centrode.equations.sums import Sum
+from centrode.geometry.plane import along
 from centrode.kinematics.prepared import Ready
-from centrode.structure.constraints import FRAME
+from centrode.structure.constraints import FRAME, Contact, DisplacementDrive, DistanceDrive, PointOnGuide
+from centrode.structure.gearing import Straight
+
+# What the boards of both spaces share: letters, what moves, what the drives give.
 
 
-class Board(Lettering):
+class Lettering:
+    """Letters of a mechanism, with the numbers of its initial position behind them."""
+
+    def __init__(self, ready: Ready) -> None:
+        self.ready = ready
+        self.numbers = ready.kinematics.numbers
+        self.mechanism = ready.mechanism
+        self.alphabet = Alphabet()
+        self.order = {name: i + 1 for i, name in enumerate(self.mechanism.links)}
+        self.driven: dict[Letter, str] = {}
+        """Letters that a drive gives."""
+        self.moving: list[str] = []
+        """Moving points in the order in which they were placed."""
+
+    @property
+    def moves(self) -> Mapping[Letter, Sum]:
+        """Rate of every letter that moves."""
+        return {letter: Sum.letter(rate) for letter, rate in self.alphabet.rates.items()}
+
+    @property
+    def moves_twice(self) -> Mapping[Letter, Sum]:
+        """Rates of letters and of their rates."""
+        seconds = {rate: Sum.letter(second) for rate, second in self.alphabet.seconds.items()}
+        return {**self.moves, **seconds}
+
+    @property
+    def axes_through(self) -> tuple[str, str] | None:
+        """Points of the frame that give the axes of places, where these are not the description's own."""
+        return None
+
+    def drive_value(self, drive: str) -> float:
+        """Value of a drive in the initial position."""
+        return float(self.ready.assembled.positions.drives[drive])
+
+    def sort_in(self, letter: Letter, name: str, draft: Draft, drive: str | None) -> None:
+        """Note what gives a letter that moves: a drive, or the constraints of a group."""
+        if drive is not None:
+            self.driven[letter] = drive
+            return
+        rate = self.alphabet.rates[letter]
+        draft.unknowns.append(Unknown(name, letter, rate, self.alphabet.seconds[rate]))
+
+
+# Guides, cylinders and tracks as parts of vector chains.
+
+
+@dataclass(frozen=True)
+class SymbolLine:
+    """A point stays on a line of a body: on a guide, or with a wheel's centre on the parallel of its track."""
+
+    name: str
+    point: str
+    on: str
+    through: Vector
+    direction: Vector
+    drive: str | None = None
+
+
+@dataclass(frozen=True)
+class SymbolRod:
+    """A distance that has a direction of its own: a cylinder, or the radius from a track's centre to the wheel's.
+
+    `first` is a point, or (body, coordinates) of a place that has no name.
+    """
+
+    name: str
+    first: str | tuple[str, Vector]
+    second: str
+    length: float
+    drive: str | None = None
+
+
+def lines_of(ready: Ready) -> list[SymbolLine]:
+    """Guides and straight tracks, in the order of the constraints."""
+    structure, numbers = ready.structure, ready.kinematics.numbers
+    driven = {c.guide: c.drive for c in structure.constraints if isinstance(c, DisplacementDrive)}
+    found = []
+    for constraint in structure.constraints:
+        if constraint in structure.redundant:
+            continue
+        if isinstance(constraint, PointOnGuide):
+            through, direction = numbers.curve(constraint.guide)
+            drive = driven.get(constraint.guide)
+            found.append(
+                SymbolLine(
+                    constraint.guide, constraint.point, constraint.on, _v(through), _v(direction), drive
+                )
+            )
+        if isinstance(constraint, Contact):
+            track = numbers.gearing.track[constraint.rolling]
+            if isinstance(track, Straight):
+                normal = (-track.direction[1], track.direction[0])
+                through = along(track.through, normal, numbers.gearing.reach(constraint.rolling))
+                found.append(
+                    SymbolLine(
+                        constraint.rolling, constraint.centre, constraint.on, _v(through), _v(track.direction)
+                    )
+                )
+    return found
+
+
+def rods_of(ready: Ready) -> list[SymbolRod]:
+    """Cylinders and round tracks."""
+    structure, numbers = ready.structure, ready.kinematics.numbers
+    found = []
+    for constraint in structure.constraints:
+        if constraint in structure.redundant:
+            continue
+        if isinstance(constraint, DistanceDrive):
+            length = float(ready.assembled.positions.drives[constraint.drive])
+            found.append(
+                SymbolRod(constraint.drive, constraint.first, constraint.second, length, constraint.drive)
+            )
+        if isinstance(constraint, Contact):
+            track = numbers.gearing.track[constraint.rolling]
+            if not isinstance(track, Straight):
+                reach = float(numbers.gearing.reach(constraint.rolling))
+                found.append(
+                    SymbolRod(constraint.rolling, (constraint.on, _v(track.centre)), constraint.centre, reach)
+                )
+    return found
+
+
+def _v(vector: tuple[object, ...]) -> Vector:
+    x, y = vector
+    return float(x), float(y)  # type: ignore[arg-type]
+
+
+class SymbolTable(Lettering):
     """Symbols of everything that is known so far, with the numbers of the initial position behind them."""
 
     def __init__(self, ready: Ready) -> None:
@@ -78,7 +210,7 @@ class Board(Lettering):
         self.sort_in(letter, "", draft, drive)
         return Angle.of(letter)
 
-    def slide(self, line: Line, draft: Draft) -> Letter:
+    def slide(self, line: SymbolLine, draft: Draft) -> Letter:
         """The displacement of a point along a line of a body."""
         normal = self.at(line.point) - self.world(line.on, line.through)
         turn = self.ready.assembled.positions.poses[line.on][1]
@@ -91,7 +223,7 @@ class Board(Lettering):
         self.sort_in(letter, f"slide.{line.name}", draft, line.drive)
         return letter
 
-    def bearing(self, rod: Rod, draft: Draft) -> tuple[Sum, Angle]:
+    def bearing(self, rod: SymbolRod, draft: Draft) -> tuple[Sum, Angle]:
         """Length and direction of a cylinder, or of the radius to a rolling wheel's centre."""
         first = self.at(rod.first) if isinstance(rod.first, str) else self.world(*rod.first)
         way = self.at(rod.second) - first
@@ -172,14 +304,14 @@ class Board(Lettering):
 
     # lines
 
-    def heading(self, line: Line) -> Angle:
+    def heading(self, line: SymbolLine) -> Angle:
         """Direction of a line in the frame."""
         turn = self.alphabet.angle(
             f"beta_{line.name}", "angle of guide", (line.name, line.on), line.direction
         )
         return self.angles[line.on].plus(turn)
 
-    def base(self, line: Line) -> str | None:
+    def base(self, line: SymbolLine) -> str | None:
         """The point of a body from which a line of it is measured: one it goes through, else the first."""
         if line.on == FRAME:
             return None
@@ -191,7 +323,7 @@ class Board(Lettering):
                     return name
         return next(iter(own))
 
-    def track(self, line: Line, slide: Sum) -> Place:
+    def track(self, line: SymbolLine, slide: Sum) -> Place:
         """Vector from a line's base to a displacement along it."""
         base = self.base(line)
         start = (0.0, 0.0) if base is None else self.local(line.on)[base]
@@ -205,10 +337,10 @@ class Board(Lettering):
         heading = self.heading(line)
         return polar(far + slide, heading).plus(polar(beside, heading.turned(1)))
 
-    def _apart(self, at: Vector, line: Line) -> float:
+    def _apart(self, at: Vector, line: SymbolLine) -> float:
         return math.hypot(*self._apart_along(at, line))
 
-    def _apart_along(self, at: Vector, line: Line) -> Vector:
+    def _apart_along(self, at: Vector, line: SymbolLine) -> Vector:
         (x, y), (ux, uy) = (line.through[0] - at[0], line.through[1] - at[1]), line.direction
         return x * ux + y * uy, ux * y - uy * x
 
