@@ -11,9 +11,8 @@ import numpy.typing as npt
 import xarray as xr
 
 import centrode as ct
-from centrode.analysis.graphic.board import Board
-from centrode.analysis.graphic.instant import Driven, drawing_of, driven_rates, stages
-from centrode.analysis.graphic.stage import Drawing, Stage
+from centrode.analysis.graphic.diagrams import Driven, drawing_of, driven_rates, stages
+from centrode.analysis.graphic.stage import ConstructionStage, DrawingBoard, VectorDrawing
 from centrode.geometry.plane import Pose
 from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.path import span_at
@@ -45,7 +44,7 @@ def errors_of(prepared: Ready, at: float, tries: int = 4) -> tuple[Array, Array]
     exact = dataset_of(solve(prepared, span))
     if int(exact["status"][0]) not in (ct.Status.OK, ct.Status.CUT_OFF):
         return None
-    drawing, driven = drawing_of(prepared, exact, Board()), driven_rates(prepared, span)
+    drawing, driven = drawing_of(prepared, exact, DrawingBoard()), driven_rates(prepared, span)
     found = numbers(stages(prepared.structure, drawing, driven))
     wanted = exact_numbers(exact, stages(prepared.structure, drawing, driven))
     condition = answers(prepared, drawing, driven, tries)
@@ -53,7 +52,7 @@ def errors_of(prepared: Ready, at: float, tries: int = 4) -> tuple[Array, Array]
     return apart, OPERATIONS * len(prepared.structure.groups) * EPS * condition
 
 
-def answers(prepared: Ready, drawing: Drawing, driven: Driven, tries: int) -> Array:
+def answers(prepared: Ready, drawing: VectorDrawing, driven: Driven, tries: int) -> Array:
     """Greatest change of any rate over a relative change of the measured positions, at least its size: (2,)."""
     random = np.random.default_rng(11)
     exact = numbers(stages(prepared.structure, drawing, driven))
@@ -66,7 +65,7 @@ def answers(prepared: Ready, drawing: Drawing, driven: Driven, tries: int) -> Ar
     return most
 
 
-def nudged(drawing: Drawing, random: np.random.Generator) -> Drawing:
+def nudged(drawing: VectorDrawing, random: np.random.Generator) -> VectorDrawing:
     """The same drawing with every place and direction changed by up to `STEP` of its size."""
     scale = float(drawing.numbers.scale)
 
@@ -85,12 +84,12 @@ def nudged(drawing: Drawing, random: np.random.Generator) -> Drawing:
     return replace(drawing, at=Positions(points, poses, drawing.at.drives, drawing.at.angles))
 
 
-def numbers(both: tuple[Stage, Stage]) -> tuple[Array, Array]:
+def numbers(both: tuple[ConstructionStage, ConstructionStage]) -> tuple[Array, Array]:
     """All rates of both constructions as plain numbers, in the order of their names."""
     return _plain(both[0]), _plain(both[1])
 
 
-def _plain(stage: Stage) -> Array:
+def _plain(stage: ConstructionStage) -> Array:
     points = [part for name in sorted(stage.points) for part in _parts(stage.points[name])]
     return np.array([*points, *(stage.turns[name] for name in sorted(stage.turns))])
 
@@ -99,7 +98,9 @@ def _parts(rate: complex) -> tuple[float, float]:
     return rate.real, rate.imag
 
 
-def exact_numbers(exact: xr.Dataset, both: tuple[Stage, Stage]) -> tuple[Array, Array]:
+def exact_numbers(
+    exact: xr.Dataset, both: tuple[ConstructionStage, ConstructionStage]
+) -> tuple[Array, Array]:
     """The same from the motion."""
     found = []
     for stage, (moving, turning) in zip(both, (FIRST, SECOND), strict=True):

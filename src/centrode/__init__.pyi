@@ -43,15 +43,15 @@ from .kinematics.several_inputs.coefficients import kinematic_coefficients as ki
 from .kinematics.several_inputs.limits import limits as limits
 from .kinematics.several_inputs.limits import Limits as Limits
 from .kinematics.several_inputs.region import reachable_region as reachable_region
-from .analysis.rotatability import rotatability as rotatability
-from .analysis.rotatability import Rotatability as Rotatability
-from .analysis.repair import repair as repair
-from .analysis.repair import Repair as Repair
+from .analysis.rotatability.rotatability import rotatability as rotatability
+from .analysis.rotatability.rotatability import Rotatability as Rotatability
+from .analysis.redesign.repair import repair as repair
+from .analysis.redesign.repair import Repair as Repair
 from .analysis.graphic.diagrams import velocity_diagram as velocity_diagram
 from .analysis.graphic.diagrams import acceleration_diagram as acceleration_diagram
 from .analysis.graphic.diagrams import Diagram as Diagram
-from .analysis.graphic.checking import graphic_check as graphic_check
-from .analysis.graphic.checking import GraphicCheck as GraphicCheck
+from .analysis.graphic.checks import graphic_check as graphic_check
+from .analysis.graphic.checks import GraphicCheck as GraphicCheck
 from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
@@ -217,9 +217,9 @@ from .present import equations_rows as equations_rows
 
 # Instant centres, centrodes, curvature
 from .analysis.instant_centres.centres import instant_centres as instant_centres
-from .analysis.instant_centres.cases import Case as Case
+from .analysis.instant_centres.centres import Case as Case
 from .analysis.instant_centres.kennedy import construct_centres as construct_centres
-from .analysis.instant_centres.construction import Construction as Construction
+from .analysis.instant_centres.kennedy import Construction as Construction
 from .analysis.instant_centres.kennedy import MOST_BODIES as MOST_BODIES
 from .analysis.instant_centres.centrodes import centrodes as centrodes
 from .analysis.instant_centres.curvature import curvature as curvature

@@ -10,11 +10,9 @@ import pytest
 from hypothesis import assume, given, settings
 
 import centrode as ct
-from centrode.analysis.graphic.board import Board, cross, meet, round_scale
-from centrode.analysis.graphic.diagrams import diagrams
-from centrode.analysis.graphic.instant import drawing_of, driven_rates
-from centrode.analysis.graphic.integrated import STEPS
-from centrode.analysis.graphic.stage import Edge
+from centrode.analysis.graphic.checks import STEPS
+from centrode.analysis.graphic.diagrams import diagrams, drawing_of, driven_rates
+from centrode.analysis.graphic.stage import DrawingBoard, Edge, cross, meet, round_scale
 from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.path import span_at
 from centrode.kinematics.prepared import ready
@@ -172,7 +170,7 @@ def test_reading_errors_shrink_with_the_step(step: float) -> None:
     span = span_at(prepared.kinematics.path, np.array([0.5]))
     exact = dataset_of(solve(prepared, span))
     driven = driven_rates(prepared, span)
-    condition = answers(prepared, drawing_of(prepared, exact, Board()), driven, tries=8)
+    condition = answers(prepared, drawing_of(prepared, exact, DrawingBoard()), driven, tries=8)
     true, read = (ct.velocity_diagram(press, 0.5, angle_step=one) for one in (None, step))
     apart = max(abs(read.images[name] - true.images[name]) for name in true.images)
     # random directions may miss the worst case, once in each group
@@ -230,9 +228,9 @@ def test_instants_have_to_be_within_reach(at: float) -> None:
 @pytest.mark.parametrize("step", [0.0, -1.0, 1.0, math.nan])
 def test_steps_out_of_range(step: float) -> None:
     with pytest.raises(ct.InputError, match="at most 30 deg"):
-        Board(step)
+        DrawingBoard(step)
     with pytest.raises(ct.InputError, match="at most 10 mm"):
-        Board(None, step)
+        DrawingBoard(None, step)
 
 
 def test_integrated_velocities_stand_beside_them() -> None:

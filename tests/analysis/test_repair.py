@@ -14,10 +14,8 @@ import numpy.typing as npt
 import pytest
 
 import centrode as ct
-from centrode.analysis.repair import DEFAULT_ANGLE, ENOUGH, Repair
-from centrode.analysis.repairing.candidates import Candidates
-from centrode.analysis.repairing.impossible import impossible
-from centrode.analysis.repairing.varying import varyings
+from centrode.analysis.redesign.candidates import Candidates, impossible, varyings
+from centrode.analysis.redesign.repair import DEFAULT_ANGLE, ENOUGH, Repair
 from centrode.kinematics.prepared import ready
 from mechanisms import four_bar
 

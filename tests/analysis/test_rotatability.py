@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.analysis.turning.dwells import DWELL_BAND
-from centrode.analysis.turning.swings import Swing
+from centrode.analysis.rotatability.tours import DWELL_BAND, Swing
 from growing import DYADS, grown, mechanism_of
 from mechanisms import EPS, four_bar
 from turning import assert_swings

@@ -10,26 +10,161 @@ between the normal of one and the other (PRP, RPP). Friction is left out.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from math import ceil, nan, pi
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.analysis.transmission_extremes import extreme_transmission_angles
-from centrode.analysis.transmission_on_sphere import ArcAngles
+from centrode.analysis.instant_centres.bodies import TurningBodies, pole_of, turning_bodies_of
+from centrode.analysis.rotatability.causes import least_of, transmission_at_ends, watched_dyads
+from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, course_of
 from centrode.errors import InputError
 from centrode.kinematics.motion import dataset_of, named
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.path import SampleGrid, span_at
+from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.sampling import MotionOnPath
 from centrode.kinematics.solve import asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.model.sphere import unit_vector
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet, Rail, Rod, Slot, Stop, Stroke, links_of, points_of
 
-Lines: TypeAlias = npt.NDArray[np.complex128]
+# Transmission angles on the sphere: between the arcs from a dyad's inner joint to the centres of its two
+# circles.
+#
+# A link's centre is its other hinge, a guide's the pole of its circle; of a link that aims with its guide
+# they are its
+# pivot and that pole, seen from the point aimed at.
+
 Array: TypeAlias = npt.NDArray[np.float64]
+
+
+class ArcAngles:
+    """Angles between arcs over one motion."""
+
+    def __init__(self, data: xr.Dataset) -> None:
+        self.bodies: TurningBodies = turning_bodies_of(data)
+
+    def of(self, group: Group) -> Array | None:
+        """Transmission angle of a group at every sample; None where it has none."""
+        points = self.bodies.points
+        if isinstance(group, Aim) and group.contact is None:
+            target = points[group.target]
+            return _acute_arc(_between(target, points[group.pivot], self._pole(group.guide)))
+        if not isinstance(group, Meet) or len(group.points) != 1:
+            return None
+        centres = [self._centre(locus) for locus in group.loci if isinstance(locus, (Rod, Rail))]
+        if len(centres) != 2:
+            return None
+        angle = _between(points[group.points[0]], centres[0], centres[1])
+        return angle if len(group.rods) == 2 else _acute_arc(angle)
+
+    def _centre(self, locus: Rod | Rail) -> Array:
+        return self.bodies.points[locus.centre] if isinstance(locus, Rod) else self._pole(locus.guide)
+
+    def _pole(self, name: str) -> Array:
+        """Where the pole of a guide's circle is."""
+        guide = self.bodies.mechanism.guide(name)
+        inside = np.array(unit_vector(pole_of(self.bodies.mechanism, guide)))
+        return np.asarray(self.bodies.axes[:, self.bodies.number(guide.on)] @ inside)
+
+
+def _between(at: Array, first: Array, second: Array) -> Array:
+    """Angle in a place from the arc to one other place to the arc to another, in [0, pi]."""
+    one, other = np.cross(at, first), np.cross(at, second)
+    sine = np.linalg.norm(np.cross(one, other), axis=-1)
+    return np.asarray(np.arctan2(sine, np.sum(one * other, axis=-1)))
+
+
+def _acute_arc(angle: Array) -> Array:
+    return np.asarray(np.minimum(angle, np.pi - angle))
+
+
+# Least and greatest transmission angles of dyads over the part of a motion that is reached, found as roots.
+#
+# An extreme lies where the angle's rate is zero, at an end of what is reached, where the dyad is flat (0), or
+# where
+# its lines stand square to each other (90 deg).
+
+LEAST_NODES = 720
+
+
+@dataclass(frozen=True)
+class _Stretch(DriveSweep):
+    """The part of a path between two values of its parameter, ends of a motion's samples or limits."""
+
+    first: float = nan
+    last: float = nan
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Its ends."""
+        return self.first, self.last
+
+    @property
+    def comes_round(self) -> bool:
+        """It is looked at from end to end."""
+        return False
+
+    def nodes(self) -> Array:
+        """Values at least as close as the nodes of the mesh, denser towards the ends."""
+        step = self.continuation.kinematics.path.step
+        count = max(LEAST_NODES, ceil((self.last - self.first) / step * pi / 2))
+        share = 0.5 - 0.5 * np.cos(pi * (np.arange(count) + 0.5) / count)
+        return np.asarray(self.first + (self.last - self.first) * share)
+
+
+def extreme_transmission_angles(ready: Ready, span: SampleGrid) -> dict[int, tuple[float, float]]:
+    """Least and greatest acute transmission angle [rad] of each dyad, by the number of its group.
+
+    They are those over all values between the least and the greatest parameter of the span that the mechanism
+    reaches; NaN where it reaches none.
+    """
+    with np.errstate(all="ignore"):
+        continuation = MotionOnPath.along(ready, ready.kinematics, span.parameter).continuation
+        low, high = continuation.branches.reach(0)
+        first, last = max(low, float(np.min(span.parameter))), min(high, float(np.max(span.parameter)))
+        drive = ready.kinematics.path.driven[0].drive
+        stretch = _Stretch(ready, drive, {}, continuation, low, high, last - first, first, last)
+        dyads = watched_dyads(stretch, guides=True)
+        if not first <= last:
+            return {group: (nan, nan) for _one, group in dyads}
+        course = course_of(stretch, [one for one, _group in dyads])
+        return {group: _extremes(course, k, group) for k, (_one, group) in enumerate(dyads)}
+
+
+def _extremes(course: MonitoredFunction, k: int, group: int) -> tuple[float, float]:
+    places, reached = course.turned[k]
+    turned = [
+        (float(at), float(value)) for at, value in zip(places, _acute_between_lines(reached), strict=True)
+    ]
+    least = least_of(course, k, group, turned)[0]
+    values = course.values[k][np.isfinite(course.values[k])]
+    if _passes(np.sin(values), np.cos(values)):
+        least = 0.0
+    if _passes(np.cos(values), np.sin(values)):
+        return least, pi / 2
+    ends = [angle for angle, _at in transmission_at_ends(course, k)]
+    return least, float(
+        np.max(np.concatenate([_acute_between_lines(np.append(values, reached)), ends]), initial=least)
+    )
+
+
+def _acute_between_lines(angles: Array) -> Array:
+    """Angles between lines, in [0, pi/2]."""
+    return np.asarray(np.arctan2(np.abs(np.sin(angles)), np.abs(np.cos(angles))))
+
+
+def _passes(number: Array, other: Array) -> bool:
+    """Whether a sine (or a cosine) passes zero between nodes at which the other keeps its side."""
+    return bool(((number[:-1] * number[1:] <= 0.0) & (other[:-1] * other[1:] > 0.0)).any())
+
+
+Lines: TypeAlias = npt.NDArray[np.complex128]
 
 
 def transmission_angles(

@@ -21,7 +21,7 @@ from centrode.locale import _, mark
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.analysis.instant_centres.construction import Construction
+    from centrode.analysis.instant_centres.kennedy import Construction
 
 MOST_ROWS = 300
 """Centres of one place that are printed without being asked for by name."""

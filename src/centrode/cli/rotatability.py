@@ -18,7 +18,7 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, speaking
 
 if TYPE_CHECKING:
-    from centrode.analysis.repair import Repair
+    from centrode.analysis.redesign.repair import Repair
 
 REPORT, DESCRIPTION = ".json", ".toml"
 

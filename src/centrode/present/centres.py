@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import xarray
 
     from centrode.analysis.instant_centres.bodies import Pair
-    from centrode.analysis.instant_centres.construction import Construction, Step
+    from centrode.analysis.instant_centres.kennedy import Construction, KennedyStep
     from centrode.model.mechanism import Mechanism
 
 WIDTH, HEIGHT = 8.2, 5.75  # inches: A5 across
@@ -200,7 +200,7 @@ def _order(
              transform=key.transAxes)  # fmt: skip
 
 
-def constructed(step: Step, bodies: int) -> str:
+def constructed(step: KennedyStep, bodies: int) -> str:
     """How a centre was found, in symbols where there are some."""
 
     def leg(one: int, by: int) -> str:
@@ -222,7 +222,7 @@ def constructed(step: Step, bodies: int) -> str:
     return words[step.how]
 
 
-def _elsewhere(step: Step, inside: bool) -> str:
+def _elsewhere(step: KennedyStep, inside: bool) -> str:
     """What is said of a centre that the drawing does not show."""
     if step.direction is not None:
         return f", ∞ {bearing(step.direction):.4g}°"

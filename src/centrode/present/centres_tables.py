@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.analysis.instant_centres.cases import Case
+from centrode.analysis.instant_centres.centres import Case
 from centrode.errors import Status
 from centrode.present.shown import shown_as
 from centrode.present.tables import field
@@ -15,7 +15,7 @@ from centrode.present.tables import field
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.analysis.instant_centres.construction import Construction
+    from centrode.analysis.instant_centres.kennedy import Construction
     from centrode.model.mechanism import Mechanism
 
 

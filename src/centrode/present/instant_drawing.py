@@ -12,7 +12,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from centrode.analysis.graphic.board import round_scale
+from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
 from centrode.present import signs
 from centrode.present.cams.driving_drawing import draw_cams

@@ -10,7 +10,7 @@ import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
-from centrode.analysis.graphic.board import round_scale
+from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
 from centrode.present.cams.driving_drawing import draw_cams
 from centrode.present.diagram_drawing import typeset

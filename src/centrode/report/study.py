@@ -7,7 +7,7 @@ from typing import Any, TypeVar, cast
 
 import xarray as xr
 
-from centrode.analysis.rotatability import Rotatability, rotatability
+from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
 from centrode.equations.derivation import Equations, equations
 from centrode.model.cams.description import Cam
 from centrode.model.cams.files import AnyCam

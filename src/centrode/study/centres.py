@@ -10,9 +10,8 @@ import numpy as np
 import xarray as xr
 
 from centrode.analysis.instant_centres.bodies import Pair, sliders_of
-from centrode.analysis.instant_centres.cases import Case
-from centrode.analysis.instant_centres.centres import bearing
-from centrode.analysis.instant_centres.construction import Construction, Step
+from centrode.analysis.instant_centres.centres import Case, bearing
+from centrode.analysis.instant_centres.kennedy import Construction, KennedyStep
 from centrode.errors import Status
 from centrode.kinematics.prepared import ready
 from centrode.locale import _
@@ -123,7 +122,7 @@ def steps_leading_to(construction: Construction, pairs: Sequence[tuple[str, str]
     ]
 
 
-def _step(construction: Construction | None, pair: Pair) -> Step | None:
+def _step(construction: Construction | None, pair: Pair) -> KennedyStep | None:
     steps = () if construction is None else construction.steps
     return next((step for step in steps if step.pair == (max(pair), min(pair))), None)
 
@@ -141,7 +140,7 @@ def place_text(centre: xr.Dataset, display: Display) -> str:
     return "-"
 
 
-def step_text(step: Step, names: Sequence[str]) -> str:
+def step_text(step: KennedyStep, names: Sequence[str]) -> str:
     """How a centre was constructed."""
 
     def symbol(*pair: int) -> str:

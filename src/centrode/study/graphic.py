@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-from centrode.analysis.graphic.board import Board
-from centrode.analysis.graphic.checking import CheckRow, GraphicCheck
+from centrode.analysis.graphic.checks import CheckRow, GraphicCheck
 from centrode.analysis.graphic.diagrams import Diagrams
-from centrode.analysis.graphic.stage import Step
+from centrode.analysis.graphic.stage import ConstructionStep, DrawingBoard
 from centrode.locale import _
 from centrode.model.mechanism import Display
 from centrode.quantities import QUANTITIES, display_unit
@@ -100,7 +99,7 @@ def _scales(found: Diagrams) -> list[str]:
     return listed
 
 
-def _reading(board: Board) -> str:
+def _reading(board: DrawingBoard) -> str:
     texts = []
     if board.angle_step is not None:
         texts.append(_("directions to {step:g} deg").format(step=math.degrees(board.angle_step)))
@@ -121,7 +120,7 @@ def graphic_steps(check: GraphicCheck) -> list[str]:
     return lines
 
 
-def sine_lines(step: Step) -> list[str]:
+def sine_lines(step: ConstructionStep) -> list[str]:
     """The law of sines with its numbers, as a person writes it: all sides, then each ratio."""
     if step.triangle is None:
         return []
@@ -143,7 +142,7 @@ def sine_lines(step: Step) -> list[str]:
     return lines
 
 
-def trial_lines(step: Step, order: int) -> list[str]:
+def trial_lines(step: ConstructionStep, order: int) -> list[str]:
     """The false position: what was tried, what was amiss, what fits."""
     if step.trial is None:
         return []

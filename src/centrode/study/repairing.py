@@ -7,10 +7,9 @@ from dataclasses import replace
 from math import degrees
 from typing import TypeAlias
 
-from centrode.analysis.repair import Change, Repair
-from centrode.analysis.repairing.candidates import Candidates
-from centrode.analysis.repairing.impossible import impossible
-from centrode.analysis.rotatability import rotatability
+from centrode.analysis.redesign.candidates import Candidates, impossible
+from centrode.analysis.redesign.repair import Change, Repair
+from centrode.analysis.rotatability.rotatability import rotatability
 from centrode.kinematics.prepared import ready
 from centrode.locale import _, ngettext, speaking
 from centrode.model.mechanism import Mechanism

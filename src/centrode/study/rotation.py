@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from centrode.analysis.rotatability import LimitFound, rotatability
+from centrode.analysis.rotatability.rotatability import LimitFound, rotatability
 from centrode.kinematics.prepared import Ready
 
 

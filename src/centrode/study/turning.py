@@ -6,12 +6,10 @@ import json
 from math import degrees
 from typing import TypeAlias
 
-from centrode.analysis.rotatability import LimitFound, Rotatability, Turning
-from centrode.analysis.turning.circuits import Branch, Circuits
-from centrode.analysis.turning.dwells import Dwell
-from centrode.analysis.turning.four_bars import FourBar
-from centrode.analysis.turning.swings import Extreme, Swing
-from centrode.analysis.turning.transmission import Transmission
+from centrode.analysis.rotatability.causes import Transmission
+from centrode.analysis.rotatability.circuits import Branch, Circuits, FourBar
+from centrode.analysis.rotatability.rotatability import LimitFound, LinkTurning, Rotatability
+from centrode.analysis.rotatability.tours import Dwell, StrokeExtreme, Swing
 from centrode.locale import _, mark, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.names import body_word
@@ -48,7 +46,7 @@ SIDES = (mark("left"), mark("right"), mark("ahead"), mark("behind"))
 class _Words:
     """Rows about one drive."""
 
-    def __init__(self, mechanism: Mechanism, turning: Turning) -> None:
+    def __init__(self, mechanism: Mechanism, turning: LinkTurning) -> None:
         self.mechanism = mechanism
         self.turning = turning
 
@@ -150,7 +148,7 @@ class _Words:
         text = ngettext("turns {n} time in a period", "turns {n} times in a period", count).format(n=count)
         return text + (_(", against the drive") if swing.turns < 0 else "")
 
-    def extreme(self, extreme: Extreme, unit: str) -> str:
+    def extreme(self, extreme: StrokeExtreme, unit: str) -> str:
         text = _("{value} at {place}").format(
             value=self.value(extreme.value, unit), place=self.place(extreme.at)
         )

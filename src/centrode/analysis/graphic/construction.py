@@ -9,11 +9,29 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from centrode.analysis.graphic.board import cross, dot, meet
-from centrode.analysis.graphic.false_position import solve_by_trials
-from centrode.analysis.graphic.rays import Leg, Ray, carrying, letter, ray_of, turning
-from centrode.analysis.graphic.stage import ORIGIN, Edge, Stage, Step, Triangle
-from centrode.analysis.graphic.wheel_rates import meshed_rate, rolled_rate, train_rates, wheel_equations
+from centrode.analysis.graphic.loci import (
+    Ray,
+    RayLeg,
+    carrying,
+    letter,
+    meshed_rate,
+    ray_of,
+    rolled_rate,
+    solve_by_trials,
+    train_rates,
+    turning,
+    wheel_equations,
+)
+from centrode.analysis.graphic.stage import (
+    ORIGIN,
+    ConstructionStage,
+    ConstructionStep,
+    Edge,
+    Triangle,
+    cross,
+    dot,
+    meet,
+)
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.structure.assur import step_of
@@ -38,7 +56,7 @@ SMALL = 1e-12
 """Sides of a triangle shorter than this part of the longest are none."""
 
 
-def construct(structure: Structure, stage: Stage) -> None:
+def construct(structure: Structure, stage: ConstructionStage) -> None:
     """Add the velocities or accelerations of every group of a plan, in its order."""
     for group in structure.groups:
         if isinstance(group, Newton):
@@ -47,15 +65,15 @@ def construct(structure: Structure, stage: Stage) -> None:
             construct_groups((group,), stage)
 
 
-def construct_groups(groups: Sequence[Group], stage: Stage) -> None:
+def construct_groups(groups: Sequence[Group], stage: ConstructionStage) -> None:
     """Add the rates of groups that can be drawn one after the other."""
     for group in groups:
         equations, triangle = _construct(group, stage)
         if equations:
-            stage.steps.append(Step(step_of(group), tuple(equations), triangle))
+            stage.steps.append(ConstructionStep(step_of(group), tuple(equations), triangle))
 
 
-def _construct(group: Group, stage: Stage) -> tuple[list[str], Triangle | None]:
+def _construct(group: Group, stage: ConstructionStage) -> tuple[list[str], Triangle | None]:
     if isinstance(group, RigidPoint):
         return _image(stage, group.link, group.point), None
     if isinstance(group, TwoPointLink):
@@ -73,7 +91,7 @@ def _construct(group: Group, stage: Stage) -> tuple[list[str], Triangle | None]:
     raise InputError(step_of(group), _("the construction does not apply to it"), _("take it from the motion"))
 
 
-def _turn_of(stage: Stage, turning_of: Turning | Meshed | Rolled, link: str) -> float:
+def _turn_of(stage: ConstructionStage, turning_of: Turning | Meshed | Rolled, link: str) -> float:
     """How a link turns that a drive, a guide, a gear or a rolling contact turns."""
     if isinstance(turning_of, Meshed):
         return meshed_rate(stage, turning_of.gear, link)
@@ -85,7 +103,7 @@ def _turn_of(stage: Stage, turning_of: Turning | Meshed | Rolled, link: str) -> 
     return stage.turns[turning_of.link] - rate
 
 
-def _image(stage: Stage, link: str, point: str) -> list[str]:
+def _image(stage: ConstructionStage, link: str, point: str) -> list[str]:
     """A point of a link that is known: at the end of an arm, or by the similar triangle on two images."""
     base = stage.bases[link]
     if base == point:
@@ -108,7 +126,7 @@ def _image(stage: Stage, link: str, point: str) -> list[str]:
     return [ray.equation(letter(stage), point)]
 
 
-def _through_two(stage: Stage, group: TwoPointLink) -> list[str]:
+def _through_two(stage: ConstructionStage, group: TwoPointLink) -> list[str]:
     """How a link turns two of whose points have their images."""
     place = stage.drawing.point
     arm = stage.drawing.arm(place(group.first), place(group.second), known=True)
@@ -120,7 +138,7 @@ def _through_two(stage: Stage, group: TwoPointLink) -> list[str]:
     return []
 
 
-def _aim(stage: Stage, group: Aim) -> tuple[list[str], Triangle | None]:
+def _aim(stage: ConstructionStage, group: Aim) -> tuple[list[str], Triangle | None]:
     """RPR: the place of the link under the target turns about the pivot, and the target slides over it."""
     numbers, drawing = stage.drawing.numbers, stage.drawing
     if group.contact is not None:
@@ -144,7 +162,7 @@ def _aim(stage: Stage, group: Aim) -> tuple[list[str], Triangle | None]:
     return [first.equation(letter(stage), under), second.equation(letter(stage), under)], triangle
 
 
-def _meet(stage: Stage, group: Meet) -> tuple[list[str], Triangle | None]:
+def _meet(stage: ConstructionStage, group: Meet) -> tuple[list[str], Triangle | None]:
     """A dyad with one unknown image: its two equations meet there."""
     reference = group.points[0] if group.points else f"{ORIGIN}{group.carriage}"
     if group.carriage is not None and group.turning is not None:
@@ -171,25 +189,27 @@ def _given(rays: Sequence[Ray]) -> str:
     return _("{part}, given by the drive").format(part=" + ".join(parts))
 
 
-def _moved(stage: Stage, ray: Ray, group: Meet, reference: str) -> Ray:
+def _moved(stage: ConstructionStage, ray: Ray, group: Meet, reference: str) -> Ray:
     """The equation of another place of the carriage, as one of the point that is looked for."""
     place = stage.drawing.point(reference)
     if group.carriage is None or ray.at == place:
         return ray
     arm = stage.drawing.arm(ray.at, place, known=True)
     name = f"{reference}{ray.of}"
-    shift = Leg("carried", stage.about(group.carriage, arm), name, f"{letter(stage)}_{name}")
+    shift = RayLeg("carried", stage.about(group.carriage, arm), name, f"{letter(stage)}_{name}")
     return replace(ray, legs=(*ray.legs, shift))
 
 
-def crossing(stage: Stage, name: str, first: Ray, second: Ray) -> tuple[complex, Triangle | None]:
+def crossing(stage: ConstructionStage, name: str, first: Ray, second: Ray) -> tuple[complex, Triangle | None]:
     """Where two equations meet, drawn; with the triangle of their directions, where it is one."""
     rate = meet(first.start, first.direction, second.start, second.direction)
     stage.edges += [*first.edges(rate), *second.edges(rate)]
     return rate, triangle_of(stage, name, first, second, rate)
 
 
-def triangle_of(stage: Stage, name: str, first: Ray, second: Ray, rate: complex) -> Triangle | None:
+def triangle_of(
+    stage: ConstructionStage, name: str, first: Ray, second: Ray, rate: complex
+) -> Triangle | None:
     """The triangle of two equations of velocity; None of accelerations, and where a side is missing."""
     if stage.order != 1:
         return None
@@ -219,7 +239,7 @@ def _angle(a: complex, b: complex) -> float:
     return math.atan2(abs(cross(a, b)), dot(a, b))
 
 
-def _train(stage: Stage, group: Train) -> list[str]:
+def _train(stage: ConstructionStage, group: Train) -> list[str]:
     """Links that gears turn together: angular velocities by their equations, then images one after the other."""
     stage.turns.update(train_rates(stage, group))
     equations = [line for one in group.equations for line in wheel_equations(stage, one)]

@@ -5,30 +5,149 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.graphic.board import Board, extent_of
-from centrode.analysis.graphic.centres import instant_centres
-from centrode.analysis.graphic.instant import drawing_of, driven_rates, stages
-from centrode.analysis.graphic.scales import chosen_scale
-from centrode.analysis.graphic.stage import Drawing, Edge, Stage, Step
+from centrode.algebra.arrays import ARRAYS
+from centrode.algebra.jets import Jet
+from centrode.analysis.graphic.construction import construct
+from centrode.analysis.graphic.stage import (
+    ConstructionStage,
+    ConstructionStep,
+    DrawingBoard,
+    Edge,
+    VectorDrawing,
+    extent_of,
+    round_scale,
+)
 from centrode.errors import InputError, MotionError, Status
+from centrode.geometry.plane import pose_with_point
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import SampleGrid, span_at
+from centrode.kinematics.path import JETS, SampleGrid, span_at
 from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
 from centrode.quantities import status_word
-from centrode.structure.constraints import FRAME
+from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.gearing import Round
+from centrode.structure.plan import Structure
+
+# Scales of drawings that a person gives instead of the round ones.
+
+NAMES = ("length", "velocity", "acceleration")
+PAGE = 120.0
+"""Longest side of a drawing that goes on a page A5 [mm]."""
+
+
+def chosen_scale(name: str, extent: float, room: float, scales: Mapping[str, float]) -> float:
+    """The scale given for a drawing of an extent [SI], or the round one that fills a room [mm].
+
+    Raises InputError where the scale given is no positive number, or the drawing does not go on a page with it.
+    """
+    for other in scales:
+        if other not in NAMES:
+            raise InputError(
+                "scales",
+                _("{name} is no scale").format(name=other),
+                _("one of: {names}").format(names=", ".join(NAMES)),
+            )
+    given = scales.get(name)
+    if given is None:
+        return round_scale(extent, room)
+    if not 0.0 < given < math.inf:
+        raise InputError(
+            f"scales, {name}", _("a scale has to be positive, got {value:g}").format(value=given)
+        )
+    if extent > PAGE * given:
+        raise InputError(
+            f"scales, {name}",
+            _("the drawing would be {size:.4g} mm long").format(size=extent / given),
+            _("take at least {least:g} a millimetre").format(least=round_scale(extent, PAGE)),
+        )
+    return given
+
+
+# An instant of a motion as a drawing: positions to measure in, rates of the drives, and both constructions.
+
+Driven: TypeAlias = tuple[dict[str, float], dict[str, float]]
+
+
+def stages(
+    structure: Structure, drawing: VectorDrawing, driven: Driven, grains: tuple[float, float] = (0.0, 0.0)
+) -> tuple[ConstructionStage, ConstructionStage]:
+    """Velocities and accelerations constructed; lengths of edges are read to the grains [m/s] and [m/s^2]."""
+    velocity = ConstructionStage(drawing, driven[0], grain=grains[0])
+    velocity.points |= dict.fromkeys(drawing.numbers.frame, 0j)
+    construct(structure, velocity)
+    acceleration = ConstructionStage(drawing, driven[1], before=velocity, grain=grains[1])
+    acceleration.points |= dict.fromkeys(drawing.numbers.frame, 0j)
+    construct(structure, acceleration)
+    return velocity, acceleration
+
+
+def drawing_of(prepared: Ready, exact: xr.Dataset, board: DrawingBoard) -> VectorDrawing:
+    """The mechanism as it stands at the only sample of a motion."""
+    return VectorDrawing(prepared.kinematics.numbers, positions_at(prepared, exact), board)
+
+
+def positions_at(prepared: Ready, exact: xr.Dataset) -> Positions:
+    """The mechanism as it is drawn: places and poses at the only sample."""
+    numbers = prepared.kinematics.numbers
+    at = Positions.of_frame(numbers, {}, ARRAYS)
+    for name in exact["point"].to_numpy().tolist():
+        x, y = exact["position"].sel(point=name).to_numpy()[0].tolist()
+        at.points[name] = (x, y)
+    for name in exact["link"].to_numpy().tolist():
+        angle = float(exact["angle"].sel(link=name)[0])
+        point, local = next(iter(numbers.local[name].items()))
+        at.poses[name] = pose_with_point(local, at.points[point], (np.cos(angle), np.sin(angle)))
+        at.angles[name] = angle
+    return at
+
+
+def driven_rates(prepared: Ready, span: SampleGrid) -> tuple[dict[str, float], dict[str, float]]:
+    """First and second derivatives by time of every drive's value."""
+    path = prepared.kinematics.path
+    if not path.by_time:
+        drive = path.driven[0].drive.id
+        return {drive: float(span.rate[0])}, {drive: float(span.second_rate[0])}
+    first, second = {}, {}
+    for one in path.driven:
+        value = one.value(JETS, Jet.variable(span.time, 2))
+        value = value if isinstance(value, Jet) else Jet((value, 0.0, 0.0))
+        first[one.drive.id], second[one.drive.id] = (
+            float(np.broadcast_to(value.derivative(k), (1,))[0]) for k in (1, 2)
+        )
+    return first, second
+
+
+# Instant centres as they are drawn: where perpendiculars to the velocities of two points meet.
+
+AT_REST = 1e-9
+"""Links that turn slower than this part of the fastest, or move so, count as translating or at rest."""
+
+
+def instant_centres(velocity: ConstructionStage) -> dict[str, complex | None]:
+    """Instant centres of velocity where perpendiculars to the velocities meet; None at infinity."""
+    size = max((abs(rate) for rate in velocity.points.values()), default=0.0)
+    reach = extent_of([velocity.drawing.point(name) for name in velocity.points])
+    found: dict[str, complex | None] = {}
+    for link, base in velocity.bases.items():
+        rate, turn = velocity.rate(base), velocity.turns[link]
+        if abs(turn) * reach > AT_REST * size:
+            found[link] = velocity.drawing.point(base) + 1j * rate / turn
+        elif abs(rate) > AT_REST * size:
+            found[link] = None
+    return found
+
 
 MECHANISM, DIAGRAM = 90.0, 105.0
 """Room of the mechanism and of a diagram on a page A5 [mm]."""
-AT_REST = 1e-12
+DIAGRAM_AT_REST = 1e-12
 COURSE = 121
 """Samples of the motion in which slots are measured."""
 
@@ -53,7 +172,7 @@ class Diagram:
     hidden: Mapping[str, complex]
     edges: tuple[Edge, ...]
     turns: Mapping[str, float]
-    steps: tuple[Step, ...]
+    steps: tuple[ConstructionStep, ...]
     scale: float
 
     @property
@@ -77,7 +196,7 @@ class Diagrams:
     mechanism: Mechanism
     exact: xr.Dataset
     course: xr.Dataset
-    board: Board
+    board: DrawingBoard
     velocity: Diagram
     acceleration: Diagram
     centres: Mapping[str, complex | None]
@@ -138,7 +257,7 @@ def diagrams(
             _("velocity and acceleration diagrams do not apply on the sphere"),
             _("take velocities from the motion"),
         )
-    board = Board(_step(angle_step, "angle"), _step(length_step, "length"))
+    board = DrawingBoard(_step(angle_step, "angle"), _step(length_step, "length"))
     prepared = ready(mechanism)
     span = span_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
@@ -184,7 +303,7 @@ def _constructed(
     prepared: Ready,
     exact: xr.Dataset,
     span: SampleGrid,
-    board: Board,
+    board: DrawingBoard,
     scales: Mapping[str, float],
     grains: tuple[float, float] = (0.0, 0.0),
 ) -> Diagrams:
@@ -194,7 +313,7 @@ def _constructed(
     extent = extent_of([*places.values(), *_rims(prepared.mechanism, drawing)])
     moving, speeding = _size(velocity), _size(acceleration)
     # velocities that are rounding beside what accelerations make in a moment are none
-    rests = moving <= AT_REST * math.sqrt(speeding * extent)
+    rests = moving <= DIAGRAM_AT_REST * math.sqrt(speeding * extent)
     return Diagrams(
         prepared.mechanism,
         exact,
@@ -216,19 +335,19 @@ def _course(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
         return exact
 
 
-def _size(stage: Stage) -> float:
+def _size(stage: ConstructionStage) -> float:
     """The longer side of a diagram."""
     ends = [end for edge in stage.edges for end in (edge.start, edge.end)]
     return extent_of([0j, *stage.points.values(), *stage.hidden.values(), *ends])
 
 
-def _diagram(stage: Stage, scale: float) -> Diagram:
+def _diagram(stage: ConstructionStage, scale: float) -> Diagram:
     turns = {name: turn for name, turn in stage.turns.items() if name != FRAME}
     edges, steps = tuple(stage.edges), tuple(stage.steps)
     return Diagram(stage.order, stage.points, stage.hidden, edges, turns, steps, scale)
 
 
-def _rims(mechanism: Mechanism, drawing: Drawing) -> list[complex]:
+def _rims(mechanism: Mechanism, drawing: VectorDrawing) -> list[complex]:
     """Corners around wheels, and around the circles that they roll on."""
     rims = [(drawing.point(wheel.centre), wheel.radius) for wheel in mechanism.rolling]
     for wheel in mechanism.rolling:

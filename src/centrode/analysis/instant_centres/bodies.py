@@ -7,9 +7,11 @@ sliding on what carries the guide.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -23,6 +25,7 @@ from centrode.model.files import parse_mechanism
 from centrode.model.mechanism import FRAME, Guide, Mechanism
 from centrode.model.paths import with_value
 from centrode.model.problems import nearest, shown
+from centrode.model.sphere import unit_vector
 from centrode.structure.dimensions import dimensions_of
 
 Array: TypeAlias = npt.NDArray[np.float64]
@@ -63,7 +66,7 @@ class Named:
 
 
 @dataclass(frozen=True)
-class Bodies(Named):
+class BodyMotions(Named):
     """Frame, links and sliders over a planar motion; a batch has its dimension in front.
 
     Attributes
@@ -102,7 +105,7 @@ class Bodies(Named):
         arm = complex(*np.subtract(points[1], points[0])) if len(points) > 1 else self.scale
         return np.asarray(at + arm * np.exp(1j * self.turn[..., body]))
 
-    def sample(self, number: int) -> Bodies:
+    def sample(self, number: int) -> BodyMotions:
         """One sample of a motion that is no batch."""
         return replace(self, **{name: getattr(self, name)[number] for name in ORDERS})
 
@@ -130,7 +133,7 @@ def is_spherical(motion: xr.Dataset) -> bool:
     return "angle" not in motion
 
 
-def bodies_of(motion: xr.Dataset) -> Bodies:
+def bodies_of(motion: xr.Dataset) -> BodyMotions:
     """The bodies of a planar motion."""
     mechanism = described(motion)
     sliders = sliders_of(mechanism)
@@ -152,7 +155,7 @@ def bodies_of(motion: xr.Dataset) -> Bodies:
             found[order][..., number] = values[order][..., columns["link"].index(carrier)]
     absent = ~np.isfinite(found["velocity"] + found["spin"]).all(axis=-1)
     found["velocity"][absent] = found["spin"][absent] = np.nan  # the frame's too, in a singular position
-    return Bodies(mechanism, names, sliders, scale=float(dimensions_of(mechanism).scale), **found)
+    return BodyMotions(mechanism, names, sliders, scale=float(dimensions_of(mechanism).scale), **found)
 
 
 def _variables(motion: xr.Dataset) -> tuple[str, ...]:
@@ -192,3 +195,235 @@ def refuse_batch(motion: xr.Dataset) -> None:
         raise InputError(
             "vary", _("this is asked of one mechanism"), _("select one: motion.isel(mechanism=0)")
         )
+
+
+# The bodies of a motion on the sphere: all turn about its centre, so angular velocities tell everything.
+#
+# Attitudes are matrices whose columns are a body's axes in those of the frame; they follow from the places of
+# two
+# of its points. The slider of a guide turns about the pole of its circle against what carries the guide, and
+# its axes
+# are those of that body, turned by the displacement.
+
+TURNING_ORDERS = ("axes", "spin", "spin_rate", "speed")
+BY_DRIVE = ("velocity_coefficient", "acceleration_coefficient")
+IN_TIME = ("velocity", "acceleration")
+
+
+@dataclass(frozen=True)
+class TurningBodies(Named):
+    """Frame, links and sliders over a motion on the sphere; a batch has its dimension in front.
+
+    Attributes
+    ----------
+    axes : (..., samples, bodies, 3, 3) own axes of each body as columns; NaN of a link of one point
+    spin, spin_rate : (..., samples, bodies, 3) angular velocity and acceleration [1 by unit of the drive; with
+        several drives rad/s, rad/s^2]
+    speed : (..., samples, bodies, 3) angular velocity [rad/s]
+    points : point -> (..., samples, 3) its places
+    """
+
+    axes: Array
+    spin: Array
+    spin_rate: Array
+    speed: Array
+    points: dict[str, Array]
+
+    @cached_property
+    def rate(self) -> Array:
+        """Greatest angular velocity of the motion at each sample [by unit of the drive]."""
+        return np.asarray(np.max(np.linalg.norm(self.spin, axis=-1), axis=-1))
+
+    def relative(self, pair: Pair) -> Array:
+        """Angular velocity of the first body against the second (..., samples, 3)."""
+        return np.asarray(self.spin[..., pair[0], :] - self.spin[..., pair[1], :])
+
+    def two_places(self, body: int) -> tuple[Array, Array]:
+        """Two places of a body that neither coincide nor lie opposite."""
+        name = self.names[body]
+        named = [] if name in self.sliders else list(self.mechanism.points_of(name))
+        if len(named) > 1:
+            first, second = _best(self.mechanism, name, named)
+            return self.points[first], self.points[second]
+        place = self.points[self.sliders[name].point] if name in self.sliders else self._any(named)
+        least = np.argmin(np.abs(place), axis=-1)[..., None]
+        across = np.cross(place, np.where(least == np.arange(3), 1.0, 0.0))
+        return place, np.asarray(across / np.linalg.norm(across, axis=-1, keepdims=True))
+
+    def _any(self, named: list[str]) -> Array:
+        return self.points[named[0]] if named else np.broadcast_to([1.0, 0.0, 0.0], (*self.rate.shape, 3))
+
+    def sample(self, number: int) -> TurningBodies:
+        """One sample of a motion that is no batch."""
+        points = {name: place[number] for name, place in self.points.items()}
+        return replace(self, points=points, **{name: getattr(self, name)[number] for name in TURNING_ORDERS})
+
+
+def turning_bodies_of(motion: xr.Dataset) -> TurningBodies:
+    """The bodies of a motion on the sphere."""
+    if BATCH not in motion.dims:
+        return _of_one(motion)
+    lanes = [_of_one(motion.isel({BATCH: k})) for k in range(motion.sizes[BATCH])]
+    arrays: dict[str, Any] = {
+        name: np.stack([getattr(lane, name) for lane in lanes]) for name in TURNING_ORDERS
+    }
+    points = {name: np.stack([lane.points[name] for lane in lanes]) for name in lanes[0].points}
+    return replace(lanes[0], points=points, **arrays)
+
+
+def _of_one(motion: xr.Dataset) -> TurningBodies:
+    mechanism = described(motion)
+    sliders = sliders_of(mechanism)
+    names = (FRAME, *mechanism.link_names, *sliders)
+    samples = motion.sizes["sample"]
+    points = {str(name): motion["position"].sel(point=name).to_numpy() for name in motion["point"].values}
+    axes = np.tile(np.eye(3), (samples, len(names), 1, 1))
+    for number, name in enumerate(mechanism.link_names, start=1):
+        axes[:, number] = _attitudes(mechanism, name, points, samples)
+    orders = BY_DRIVE if "velocity_coefficient" in motion else IN_TIME
+    spin, spin_rate, speed = (
+        _angular(motion, f"angular_{order}", len(names)) for order in (*orders, "velocity")
+    )
+    for number, guide in enumerate(sliders.values(), start=len(names) - len(sliders)):
+        base = names.index(guide.on)
+        slides = [motion[v].sel(guide=guide.id).to_numpy() / math.sin(guide.arc) for v in _slides(orders)]
+        pole = axes[:, base] @ np.array(unit_vector(pole_of(mechanism, guide)))
+        axes[:, number] = _turned(pole, slides[0]) @ axes[:, base]
+        spin[:, number] = spin[:, base] + slides[1][:, None] * pole
+        carried = slides[2][:, None] * pole + slides[1][:, None] * np.cross(spin[:, base], pole)
+        spin_rate[:, number] = spin_rate[:, base] + carried
+        speed[:, number] = speed[:, base] + slides[3][:, None] * pole
+    absent = ~np.isfinite(spin).all(axis=(1, 2))
+    for found in (spin, spin_rate, speed):
+        found[absent] = np.nan  # the frame's too, in a singular position
+    return TurningBodies(mechanism, names, sliders, axes, spin, spin_rate, speed, points)
+
+
+def _slides(orders: tuple[str, str]) -> tuple[str, ...]:
+    return "slide", f"slide_{orders[0]}", f"slide_{orders[1]}", "slide_velocity"
+
+
+def _angular(motion: xr.Dataset, variable: str, count: int) -> Array:
+    """A vector of every link, with zeros for the frame and room for the sliders."""
+    values = motion[variable].to_numpy()
+    found = np.zeros((len(values), count, 3))
+    found[:, 1 : 1 + values.shape[1]] = values
+    return found
+
+
+def _attitudes(mechanism: Mechanism, name: str, points: dict[str, Array], samples: int) -> Array:
+    """Axes of a link over the samples, from the two of its points that tell them best."""
+    own = mechanism.points_of(name)
+    if len(own) < 2:
+        return np.full((samples, 3, 3), np.nan)
+    chosen = _best(mechanism, name, list(own))
+    inside = _triad(*(np.array(unit_vector(own[point])) for point in chosen))
+    return np.asarray(_triad(*(points[point] for point in chosen)) @ inside.T)
+
+
+def _best(mechanism: Mechanism, name: str, named: list[str]) -> tuple[str, str]:
+    """The two points of a body that lie least in line with the centre of the sphere."""
+    own = {point: np.array(unit_vector(at)) for point, at in mechanism.points_of(name).items()}
+
+    def sine(two: tuple[str, str]) -> float:
+        return float(np.linalg.norm(np.cross(own[two[0]], own[two[1]])))
+
+    return max(combinations(named, 2), key=sine)
+
+
+def _triad(first: Array, second: Array) -> Array:
+    """Right-handed axes as columns: a place, towards another, and square to both."""
+    normal = np.cross(first, second)
+    normal = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    return np.stack([first, np.cross(normal, first), normal], axis=-1)
+
+
+def pole_of(mechanism: Mechanism, guide: Guide) -> tuple[float, float]:
+    """Pole of a guide's circle (longitude, latitude) in the axes of what carries it."""
+    pole = guide.pole
+    if isinstance(pole, str):
+        return mechanism.points_of(guide.on)[pole]
+    assert isinstance(pole, tuple)  # a pole cannot be placed
+    return pole
+
+
+def _turned(axis: Array, angle: Array) -> Array:
+    """Rotations about unit vectors (samples, 3) by angles (samples)."""
+    x, y, z = np.moveaxis(axis, -1, 0)
+    zero = np.zeros_like(x)
+    around = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)
+    sine, versine = np.sin(angle)[..., None, None], (1.0 - np.cos(angle))[..., None, None]
+    return np.asarray(np.eye(3) + sine * around + versine * (around @ around))
+
+
+# The motion of one body as another one sees it: derivatives of its pose, and what follows for the pole.
+#
+# Complex numbers z = c + s, s a place of the body turned with it, in the axes of the other body. By the
+# relative
+# angle: pole P = c + i c', where z' = 0; A = c'' - i c' leads from it to the inflection pole; B = c''' + c'
+# (Bottema and Roth, Theoretical Kinematics, 1979, chapter 8, write them as instantaneous invariants).
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Derivatives by one parameter: of the origin of a body's axes `c`, and of its angle `w` (first, second, ...).
+
+    All are in the axes of the body that looks on, whose own origin and rotor are `origin` and `rotor`; `turned`
+    is the rotor of the body looked at, in these axes.
+    """
+
+    c: tuple[Places, ...]
+    w: tuple[Array, ...]
+    turned: Places
+    origin: Places
+    rotor: Places
+
+    @property
+    def pole(self) -> Places:
+        """Place whose velocity is zero."""
+        return np.asarray(self.c[0] + 1j * self.c[1] / self.w[0])
+
+    @property
+    def pole_in_body(self) -> Places:
+        """The same place in the axes of the body looked at."""
+        return np.asarray(np.conj(self.turned) * 1j * self.c[1] / self.w[0])
+
+    @property
+    def pole_velocity(self) -> Places:
+        """Velocity of the pole along the fixed centrode, by the parameter."""
+        w, w1 = self.w[:2]
+        return np.asarray(self.c[1] + 1j * (self.c[2] * w - self.c[1] * w1) / w**2)
+
+    def by_angle(self) -> tuple[Places, ...]:
+        """Derivatives of `c` by the relative angle, first to third where there are so many."""
+        w = self.w[0]
+        first = self.c[1] / w
+        second = (self.c[2] - self.w[1] * first) / w**2
+        if len(self.c) < 4:
+            return first, second
+        third = (self.c[3] - 3.0 * w * self.w[1] * second - self.w[2] * first) / w**3
+        return first, second, third
+
+    def outside(self, place: Places) -> Places:
+        """A place in the frame's axes."""
+        return np.asarray(self.origin + self.rotor * place)
+
+
+def seen_by(bodies: BodyMotions, pair: Pair) -> Seen:
+    """The first body as the second sees it, over a motion: two derivatives."""
+    first, second = pair
+    rotor = np.exp(1j * bodies.turn[..., second])
+    place, velocity, acceleration = (
+        np.asarray(x[..., first] - x[..., second])
+        for x in (bodies.place, bodies.velocity, bodies.acceleration)
+    )
+    w, w1 = bodies.spin[..., second], bodies.spin_rate[..., second]
+    back = np.conj(rotor)
+    c = (
+        back * place,
+        back * (velocity - 1j * w * place),
+        back * (acceleration - 2j * w * velocity - (1j * w1 + w * w) * place),
+    )
+    spins = tuple(np.asarray(x[..., first] - x[..., second]) for x in (bodies.spin, bodies.spin_rate))
+    turned = np.exp(1j * (bodies.turn[..., first] - bodies.turn[..., second]))
+    return Seen(c, spins, turned, np.asarray(bodies.place[..., second]), rotor)

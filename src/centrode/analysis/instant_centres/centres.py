@@ -2,29 +2,292 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
 from itertools import combinations
+from typing import Literal, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
-from centrode.analysis.instant_centres.axes import axis_cases, axis_of, axis_speed
 from centrode.analysis.instant_centres.bodies import (
+    ROUNDED,
     Array,
-    Bodies,
+    BodyMotions,
     Named,
     Pair,
     Places,
+    TurningBodies,
     bodies_of,
     is_spherical,
+    turning_bodies_of,
     vectors,
 )
-from centrode.analysis.instant_centres.cases import Case, Recogniser
-from centrode.analysis.instant_centres.turning_bodies import TurningBodies, turning_bodies_of
 from centrode.errors import InputError
 from centrode.kinematics.motion import labels_of, named
 from centrode.kinematics.solve import GREATEST_RESULT
-from centrode.locale import _
+from centrode.locale import _, mark
+from centrode.model.mechanism import FRAME, Guide, Mechanism, Rolling
+
+# Primary instant centres: those that a joint shows, without any construction.
+
+Kind: TypeAlias = Literal["hinge", "guide", "rolling"]
+
+
+@dataclass(frozen=True)
+class PrimaryJoint:
+    """Two bodies joined so that their centre is seen: in a hinge, square to a guide, where a wheel touches."""
+
+    kind: Kind
+    name: str
+    pair: Pair
+
+
+@dataclass(frozen=True)
+class PrimaryGearing:
+    """A gear ties three centres: with two of those of its wheels and its carrier the third is known."""
+
+    name: str
+    first: int
+    second: int
+    carrier: int
+    ratio: float
+
+
+def joints_of(mechanism: Mechanism, bodies: Named) -> tuple[PrimaryJoint, ...]:
+    """Hinges, guides and rolling wheels, in the order of the points, the guides and the wheels."""
+    found: list[PrimaryJoint] = []
+    for point in mechanism.points:
+        found += [
+            PrimaryJoint("hinge", point, ordered(pair)) for pair in combinations(carriers(bodies, point), 2)
+        ]
+    for guide in mechanism.guides:
+        slid = guide.link if guide.link is not None else slider_of(bodies, guide)
+        found.append(PrimaryJoint("guide", guide.id, ordered((bodies.number(slid), bodies.number(guide.on)))))
+    for wheel in mechanism.rolling:
+        pair = ordered((bodies.number(wheel.link), bodies.number(wheel.on)))
+        found.append(PrimaryJoint("rolling", wheel.id, pair))
+    return tuple(found)
+
+
+def gearings_of(mechanism: Mechanism, bodies: Named) -> tuple[PrimaryGearing, ...]:
+    """Gears as ties between centres."""
+    return tuple(
+        PrimaryGearing(
+            gear.id,
+            bodies.number(gear.links[0]),
+            bodies.number(gear.links[1]),
+            bodies.number(gear.carrier),
+            gear.ratio,
+        )
+        for gear in mechanism.gears
+    )
+
+
+def ordered(pair: Pair) -> Pair:
+    """A pair as it is named: the later body against the earlier one."""
+    return max(pair), min(pair)
+
+
+def carriers(bodies: Named, point: str) -> list[int]:
+    """Bodies that are hinged at a point: links and the frame that name it, and its sliders."""
+    mechanism = bodies.mechanism
+    names = [FRAME] if point in mechanism.frame.points else []
+    names += [name for name, link in mechanism.links.items() if point in link.coordinates]
+    names += [name for name, guide in bodies.sliders.items() if guide.point == point]
+    return [bodies.number(name) for name in names]
+
+
+def slider_of(bodies: Named, guide: Guide) -> str:
+    """Name of the slider of a guide."""
+    return next(name for name, own in bodies.sliders.items() if own.id == guide.id)
+
+
+def place_of(joint: PrimaryJoint, bodies: BodyMotions) -> tuple[complex, bool]:
+    """Where a primary centre is at one sample, or its direction if it is at infinity (then True)."""
+    if joint.kind == "hinge":
+        return point_at(bodies, joint.name), False
+    if joint.kind == "guide":
+        guide = bodies.mechanism.guide(joint.name)
+        along = complex(*guide.unit) * np.exp(1j * bodies.turn[bodies.number(guide.on)])
+        return complex(1j * along), True
+    wheel = next(wheel for wheel in bodies.mechanism.rolling if wheel.id == joint.name)
+    return contact_of(wheel, bodies), False
+
+
+def point_at(bodies: BodyMotions, point: str) -> complex:
+    """Place of a named point at one sample."""
+    mechanism = bodies.mechanism
+    if point in mechanism.frame.points:
+        return complex(*mechanism.frame.coordinates[point])
+    for name, guide in bodies.sliders.items():
+        if guide.point == point:
+            return complex(bodies.place[bodies.number(name)])
+    owner = next(name for name, link in mechanism.links.items() if point in link.coordinates)
+    return bodies.carried(bodies.number(owner), mechanism.links[owner].coordinates[point])
+
+
+def contact_of(wheel: Rolling, bodies: BodyMotions) -> complex:
+    """Where a wheel touches its track at one sample: the foot of its centre on it."""
+    mechanism, on = bodies.mechanism, bodies.number(wheel.on)
+    centre, track = point_at(bodies, wheel.centre), wheel.along
+    if track.through is not None:
+        along = complex(*track.unit) * np.exp(1j * bodies.turn[on])
+        start = bodies.carried(on, track.through)
+        return start + complex(((centre - start) * np.conj(along)).real * along)
+    own = track.centre
+    local = mechanism.points_of(wheel.on)[own] if isinstance(own, str) else own
+    middle = bodies.carried(on, local or (0.0, 0.0))
+    radius = track.radius or 0.0
+    # a ring around its pin touches on the far side of the pin
+    far = -1.0 if track.inside and wheel.radius > radius else 1.0
+    return middle + far * radius * (centre - middle) / abs(centre - middle)
+
+
+def rolling_pairs(mechanism: Mechanism, bodies: Named) -> Iterator[Pair]:
+    """Pairs that roll on each other: wheels on their tracks, and geared links on their pitch circles."""
+    for wheel in mechanism.rolling:
+        yield ordered((bodies.number(wheel.link), bodies.number(wheel.on)))
+    for gear in mechanism.gears:
+        yield ordered((bodies.number(gear.links[0]), bodies.number(gear.links[1])))
+
+
+# How the instant centre of a body is located: the cases of the textbooks, recognised and named.
+
+Kinds: TypeAlias = npt.NDArray[np.int8]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+
+
+class Case(IntEnum):
+    """What the velocities of two points of a body, seen from another one, say of its instant centre."""
+
+    ABSENT = 0
+    REST = 1
+    HINGE = 2
+    ROLLING = 3
+    DIRECTIONS = 4
+    SAME_SENSE = 5
+    OPPOSITE_SENSE = 6
+    TRANSLATION = 7
+    STANDSTILL = 8
+
+    @property
+    def word(self) -> str:
+        """What tables call it, in English."""
+        return _WORDS[self]
+
+    @property
+    def sentence(self) -> str:
+        """The same in the chosen language."""
+        return _(_WORDS[self])
+
+
+_WORDS: Mapping[Case, str] = {
+    Case.ABSENT: mark("no position"),
+    Case.REST: mark("at rest against each other"),
+    Case.HINGE: mark("common hinge"),
+    Case.ROLLING: mark("rolling contact"),
+    Case.DIRECTIONS: mark("two velocity directions"),
+    Case.SAME_SENSE: mark("parallel velocities, same sense"),
+    Case.OPPOSITE_SENSE: mark("parallel velocities, opposite sense"),
+    Case.TRANSLATION: mark("equal velocities: translation"),
+    Case.STANDSTILL: mark("a point that stands still"),
+}
+
+
+class Recogniser:
+    """Names the cases of pairs of bodies over a motion."""
+
+    def __init__(self, bodies: BodyMotions) -> None:
+        self.bodies = bodies
+        joints = joints_of(bodies.mechanism, bodies)
+        self.hinged = {joint.pair for joint in joints if joint.kind == "hinge"}
+        self.rolling = set(rolling_pairs(bodies.mechanism, bodies))
+
+    def cases(self, pair: Pair) -> Kinds:
+        """Case of a pair at every sample."""
+        bodies = self.bodies
+        moving, spin = bodies.relative(pair)
+        slow = ROUNDED * bodies.rate
+        still = np.abs(spin) * bodies.scale <= slow
+        found = self._by_velocities(pair, moving, spin, slow)
+        if ordered(pair) in self.rolling:
+            found[:] = Case.ROLLING
+        if ordered(pair) in self.hinged:
+            found[:] = Case.HINGE
+        found[still] = Case.TRANSLATION
+        found[still & (np.abs(moving) <= slow)] = Case.REST
+        found[~np.isfinite(np.abs(moving) + spin)] = Case.ABSENT
+        return found
+
+    def _by_velocities(self, pair: Pair, moving: Places, spin: Array, slow: Array) -> Kinds:
+        """Cases told by the velocities of two points of the first body against the second."""
+        bodies, first = self.bodies, pair[0]
+        arm = bodies.second_place(first) - bodies.place[..., first]
+        other = moving + 1j * spin * arm
+        with np.errstate(invalid="ignore"):
+            product = np.conj(moving) * other
+            parallel = np.abs(product.imag) <= ROUNDED * np.abs(product)
+        found = np.full(moving.shape, Case.DIRECTIONS, dtype=np.int8)
+        found[parallel & (product.real > 0.0)] = Case.SAME_SENSE
+        found[parallel & (product.real <= 0.0)] = Case.OPPOSITE_SENSE
+        found[(np.abs(moving) <= slow) | (np.abs(other) <= slow)] = Case.STANDSTILL
+        return found
+
+
+# Instantaneous axes of bodies that turn about the centre of a sphere, and how they are located.
+#
+# Where the axis of a relative rotation meets the sphere, two opposite places stand still: they are the
+# instant centres
+# of the sphere. The one about which the body turns counter-clockwise, seen from outside, is given.
+
+
+def axis_of(bodies: TurningBodies, pair: Pair) -> Array:
+    """End of the axis of a pair (..., samples, 3), a unit vector; NaN where nothing turns."""
+    spin = bodies.relative(pair)
+    size = np.linalg.norm(spin, axis=-1)
+    return np.asarray(spin / np.where(at_rest(bodies, pair), np.nan, size)[..., None])
+
+
+def axis_speed(bodies: TurningBodies, pair: Pair, axis: Array) -> Array:
+    """Relative angular velocity [rad/s] about the end of the axis that is given; zero where nothing turns."""
+    speed = bodies.speed[..., pair[0], :] - bodies.speed[..., pair[1], :]
+    found = np.sum(speed * axis, axis=-1)
+    return np.asarray(np.where(at_rest(bodies, pair), np.linalg.norm(speed, axis=-1), found))
+
+
+def at_rest(bodies: TurningBodies, pair: Pair) -> Mask:
+    """Whether two bodies do not move against each other, but for rounding."""
+    size = np.linalg.norm(bodies.relative(pair), axis=-1)
+    return np.asarray(size <= ROUNDED * bodies.rate)
+
+
+def axis_cases(bodies: TurningBodies, pair: Pair) -> Kinds:
+    """Case of a pair at every sample: the velocities of two places of the first body, seen from the second."""
+    spin = bodies.relative(pair)
+    slow = ROUNDED * bodies.rate
+    one, other = (np.cross(spin, place) for place in bodies.two_places(pair[0]))
+    sizes = [np.linalg.norm(velocity, axis=-1) for velocity in (one, other)]
+    product = np.sum(one * other, axis=-1)
+    # both square to one great circle: the axis lies on it, beyond or between the places
+    parallel = np.linalg.norm(np.cross(one, other), axis=-1) <= ROUNDED * sizes[0] * sizes[1]
+    found = np.full(slow.shape, Case.DIRECTIONS, dtype=np.int8)
+    found[parallel & (product > 0.0)] = Case.SAME_SENSE
+    found[parallel & (product <= 0.0)] = Case.OPPOSITE_SENSE
+    found[(sizes[0] <= slow) | (sizes[1] <= slow)] = Case.STANDSTILL
+    mechanism = bodies.mechanism
+    if ordered(pair) in set(rolling_pairs(mechanism, bodies)):
+        found[:] = Case.ROLLING
+    if ordered(pair) in {
+        joint.pair for joint in joints_of(mechanism, bodies)
+    }:  # a guide's pole is a hinge too
+        found[:] = Case.HINGE
+    found[at_rest(bodies, pair)] = Case.REST
+    found[~np.isfinite(spin).all(axis=-1)] = Case.ABSENT
+    return found
+
 
 NUMBERS = 5
 """Numbers of a result for each pair and sample."""
@@ -79,7 +342,7 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     return kept.assign_coords(pair=labels_of(tuple(labels))).assign(variables)
 
 
-def _centres(bodies: Bodies, numbers: Sequence[Pair]) -> dict[str, Array]:
+def _centres(bodies: BodyMotions, numbers: Sequence[Pair]) -> dict[str, Array]:
     """Centres of a planar motion: places, directions of those at infinity, cases."""
     recogniser = Recogniser(bodies)
     shape = (*bodies.rate.shape, len(numbers))
@@ -103,7 +366,7 @@ def _axes(bodies: TurningBodies, numbers: Sequence[Pair]) -> dict[str, Array]:
     }
 
 
-def _located(bodies: Bodies, pair: Pair, cases: Array) -> tuple[Array, Array]:
+def _located(bodies: BodyMotions, pair: Pair, cases: Array) -> tuple[Array, Array]:
     """Places of centres, and directions of those at infinity."""
     moving, spin = bodies.relative(pair)
     finite = (cases != Case.ABSENT) & (cases != Case.REST) & (cases != Case.TRANSLATION)

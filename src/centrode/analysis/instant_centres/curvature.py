@@ -13,12 +13,12 @@ from centrode.algebra.jets import Jet
 from centrode.analysis.instant_centres.bodies import (
     ROUNDED,
     Array,
+    Seen,
     described,
     refuse_batch,
     sliders_of,
     vectors,
 )
-from centrode.analysis.instant_centres.relative import Seen
 from centrode.errors import InputError, NotComputedYet, Status
 from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
 from centrode.kinematics.events import EventScan

@@ -7,34 +7,354 @@ centre: a chord that closes two triangles is found.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
-from typing import TypeAlias
+from math import sqrt
+from typing import Literal, Protocol, TypeAlias
 
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.instant_centres.bodies import ROUNDED, Pair, bodies_of, is_spherical, refuse_batch
-from centrode.analysis.instant_centres.centres import numbered
-from centrode.analysis.instant_centres.construction import Construction, How, Step
-from centrode.analysis.instant_centres.primary import Gearing, Joint, gearings_of, joints_of, ordered
-from centrode.analysis.instant_centres.projective import (
-    EPS,
-    Spot,
-    best_crossing,
-    cross,
-    crossing,
-    differ,
-    dot,
-    length,
-    spot,
+from centrode.analysis.instant_centres.bodies import (
+    ROUNDED,
+    Array,
+    BodyMotions,
+    Named,
+    Pair,
+    TurningBodies,
+    bodies_of,
+    is_spherical,
+    pole_of,
+    refuse_batch,
+    turning_bodies_of,
 )
-from centrode.analysis.instant_centres.spots import Spots, Where, spots_of
-from centrode.analysis.instant_centres.turning_bodies import turning_bodies_of
+from centrode.analysis.instant_centres.centres import (
+    PrimaryGearing,
+    PrimaryJoint,
+    gearings_of,
+    joints_of,
+    numbered,
+    ordered,
+    place_of,
+    upward,
+)
 from centrode.errors import InputError
 from centrode.locale import _
+from centrode.model.sphere import unit_vector
 
-Derived: TypeAlias = "tuple[Pair, Spot | None, How, str, tuple[int, ...]]"
+# What a construction of instant centres gives: its steps in their order.
+
+How: TypeAlias = Literal["hinge", "guide", "rolling", "gear", "kennedy", "together", "rest", "field"]
+
+
+@dataclass(frozen=True)
+class KennedyStep:
+    """How one centre was found.
+
+    Attributes
+    ----------
+    pair : numbers of the two bodies, the later first
+    how : "hinge", "guide" (at infinity square to it, on the sphere its pole), "rolling" (contact), "gear",
+        "kennedy" (two lines), "together" (its two neighbours lie in one place), "rest" (no relative motion),
+        "field" (the velocity field, where Kennedy's theorem is not enough)
+    name : of the hinge, guide, wheel or gear
+    by : numbers of the bodies whose lines meet, or that were gone by
+    place : (x, y) [m], None at infinity and at rest; on the sphere (x, y, z) of one end of the axis
+    direction : unit vector towards a centre at infinity, else None
+    error : bound on rounding, as an angle between places seen from the mechanism's size
+    """
+
+    pair: Pair
+    how: How
+    name: str
+    by: tuple[int, ...]
+    place: tuple[float, ...] | None
+    direction: tuple[float, ...] | None
+    error: float
+
+
+@dataclass(frozen=True)
+class Construction:
+    """Constructed centres of one position: `bodies` by number, `steps` in the order they were found.
+
+    `mismatch` of a pair is the relative velocity left at its constructed centre, in the greatest velocity of
+    the motion: zero to rounding.
+    """
+
+    bodies: tuple[str, ...]
+    steps: tuple[KennedyStep, ...]
+    mismatch: Mapping[Pair, float]
+
+    def step(self, first: str, second: str) -> KennedyStep:
+        """The step that found the centre of two bodies; raises InputError where there is none."""
+        for step in self.steps:
+            if {first, second} == {self.bodies[number] for number in step.pair}:
+                return step
+        raise InputError(
+            "pair",
+            _("there is no constructed centre of {first} and {second}").format(first=first, second=second),
+        )
+
+    def needed(self, pairs: Sequence[Pair]) -> Construction:
+        """The same with the steps alone that lead to some pairs."""
+        wanted: set[Pair] = {ordered(pair) for pair in pairs}
+        kept: list[KennedyStep] = []
+        for step in reversed(self.steps):
+            if step.pair in wanted:
+                kept.append(step)
+                wanted.update(ordered((one, by)) for by in step.by for one in step.pair)
+        steps = tuple(reversed(kept))
+        return replace(self, steps=steps, mismatch={step.pair: self.mismatch[step.pair] for step in steps})
+
+
+# Places and lines of the plane with its points at infinity, each with a bound on its rounding error.
+#
+# A place is a unit vector (x, y, w) in coordinates of the order of one, a line one with the places on it
+# square to
+# it. Errors are angles between unit vectors [rad]: the same for near places and for those at infinity.
+
+Triple: TypeAlias = tuple[float, float, float]
+EPS = sys.float_info.epsilon
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectivePoint:
+    """A place, perhaps at infinity, or a line, and a bound on its error."""
+
+    vector: Triple
+    error: float
+
+    @property
+    def at_infinity(self) -> bool:
+        """Whether it cannot be told from a place at infinity."""
+        return abs(self.vector[2]) <= self.error
+
+
+def spot(x: complex, w: float, error: float) -> ProjectivePoint:
+    """A place x / w, or with w = 0 the place at infinity in a direction; the error is that of (x, w)."""
+    length = sqrt(x.real * x.real + x.imag * x.imag + w * w)
+    return ProjectivePoint((x.real / length, x.imag / length, w / length), error / length)
+
+
+def cross(a: Triple, b: Triple) -> Triple:
+    """Vector square to two others."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def dot(a: Triple, b: Triple) -> float:
+    """Scalar product: zero where a place lies on a line."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def length(a: Triple) -> float:
+    """Length of a vector."""
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+
+
+def crossing(first: ProjectivePoint, second: ProjectivePoint) -> ProjectivePoint | None:
+    """The line through two places, or the place where two lines meet; nothing if they cannot be told apart."""
+    normal = cross(first.vector, second.vector)
+    sine = length(normal)
+    unsure = first.error + second.error + EPS
+    if sine <= unsure:
+        return None
+    return ProjectivePoint((normal[0] / sine, normal[1] / sine, normal[2] / sine), unsure / sine)
+
+
+def differ(first: ProjectivePoint, second: ProjectivePoint) -> bool:
+    """Whether two places are told apart by more than their errors."""
+    return crossing(first, second) is not None
+
+
+def best_crossing(
+    lines: Sequence[tuple[ProjectivePoint, int]], worst: float
+) -> tuple[ProjectivePoint, tuple[int, int]] | None:
+    """Where the two lines meet that tell the place best, and which they are; nothing if it may be off by `worst`."""
+    best: tuple[ProjectivePoint, tuple[int, int]] | None = None
+    for (one, first), (other, second) in combinations(lines, 2):
+        place = crossing(one, other)
+        if place is not None and place.error < (worst if best is None else best[0].error):
+            best = place, (first, second)
+    return best
+
+
+# Where a construction of instant centres has its places: in the plane, or on the sphere.
+#
+# Both are places of the projective plane (see `projective`): a place of the plane with a weight, an axis
+# through the
+# centre of the sphere. Places of the sphere are seen along the direction of their middle and enlarged by the
+# size of
+# the mechanism, which keeps great circles lines, so that small linkages keep their accuracy.
+
+Where: TypeAlias = tuple[float, ...]
+SMALLEST = 16.0 * EPS
+
+
+class Spots(Protocol):
+    """Places of one position as spots, and back."""
+
+    @property
+    def bodies(self) -> Named:
+        """The bodies at this position."""
+
+    def shown(self, joint: PrimaryJoint, error: float) -> tuple[ProjectivePoint, Where | None]:
+        """The centre that a joint shows, and its place where that is not to be read off the spot."""
+
+    def read(self, where: ProjectivePoint) -> tuple[Where | None, Where | None]:
+        """Place of a spot, or the direction in which it lies at infinity."""
+
+    def geared(
+        self, gear: PrimaryGearing, wanted: str, known: Sequence[ProjectivePoint]
+    ) -> ProjectivePoint | None:
+        """The third centre of a gear: of the "first" or the "second" wheel against the carrier, or where they "mesh".
+
+        The two others stand in this order; nothing where they do not tell it.
+        """
+
+    def pole(self, pair: Pair) -> Triple:
+        """The velocity field of a pair as a place times its spin, in the greatest velocity."""
+
+
+@dataclass(frozen=True)
+class PlaneSpots:
+    """Places of the plane about their middle, in the size of the mechanism."""
+
+    bodies: BodyMotions
+
+    @cached_property
+    def middle(self) -> complex:
+        """Middle of the bodies' places."""
+        return complex(np.mean(self.bodies.place))
+
+    @cached_property
+    def size(self) -> float:
+        """What distances are measured by."""
+        return max(self.bodies.scale, float(np.max(np.abs(self.bodies.place - self.middle))))
+
+    def shown(self, joint: PrimaryJoint, error: float) -> tuple[ProjectivePoint, Where | None]:
+        place, at_infinity = place_of(joint, self.bodies)
+        if at_infinity:
+            return spot(place, 0.0, error), None
+        return spot((place - self.middle) / self.size, 1.0, error), (place.real, place.imag)
+
+    def read(self, where: ProjectivePoint) -> tuple[Where | None, Where | None]:
+        x, w = complex(where.vector[0], where.vector[1]), where.vector[2]
+        if where.at_infinity:
+            towards = complex(upward(np.array(x / abs(x))))
+            return None, (towards.real, towards.imag)
+        at = self.middle + self.size * x / w
+        return (at.real, at.imag), None
+
+    def geared(
+        self, gear: PrimaryGearing, wanted: str, known: Sequence[ProjectivePoint]
+    ) -> ProjectivePoint | None:
+        """With A, B of the wheels on the carrier, P - A = i (P - B)."""
+        if any(one.at_infinity for one in known):
+            return None
+        a, b = (complex(one.vector[0], one.vector[1]) / one.vector[2] for one in known)
+        ratio = gear.ratio
+        x, w = {
+            "first": (ratio * a + (1.0 - ratio) * b, 1.0),
+            "second": (a - (1.0 - ratio) * b, ratio),
+            "mesh": (a - ratio * b, 1.0 - ratio),
+        }[wanted]
+        error = _geared_error(gear, known)
+        if abs(x) <= error and abs(w) <= EPS * abs(ratio):
+            return None  # equal turns about one axis: at rest
+        return spot(x, w, error)
+
+    def pole(self, pair: Pair) -> Triple:
+        moving, spin = self.bodies.relative(pair)
+        rate = float(self.bodies.rate) or 1.0
+        turning = float(spin) * self.size / rate
+        arm = (complex(self.bodies.place[pair[0]]) - self.middle) / self.size
+        x = turning * arm + 1j * complex(moving) / rate
+        return x.real, x.imag, turning
+
+
+@dataclass(frozen=True)
+class SphereSpots:
+    """Axes through the centre of the sphere."""
+
+    bodies: TurningBodies
+
+    @cached_property
+    def chart(self) -> Array:
+        """Matrix that gives the coordinates of a spot: two enlarged across the middle, one along it."""
+        places = np.array([place for place in self.bodies.points.values() if np.isfinite(place).all()])
+        middle = places.mean(axis=0) if len(places) else np.array([0.0, 0.0, 1.0])
+        apart = float(np.linalg.norm(middle))
+        along = middle / apart if apart > SMALLEST else np.array([0.0, 0.0, 1.0])
+        across = np.cross(along, np.eye(3)[int(np.argmin(np.abs(along)))])
+        across /= np.linalg.norm(across)
+        size = float(np.max(np.linalg.norm(places - middle, axis=1), initial=0.0)) if len(places) else 1.0
+        size = min(1.0, size) if size > SMALLEST else 1.0
+        return np.stack([across / size, np.cross(along, across) / size, along])
+
+    @cached_property
+    def rate(self) -> float:
+        """Greatest angular velocity of a body as a spot."""
+        return float(np.max(np.linalg.norm(self.bodies.spin @ self.chart.T, axis=-1))) or 1.0
+
+    def shown(self, joint: PrimaryJoint, error: float) -> tuple[ProjectivePoint, Where | None]:
+        bodies = self.bodies
+        if joint.kind == "hinge":
+            place = bodies.points[joint.name]
+        else:
+            guide = bodies.mechanism.guide(joint.name)
+            inside = np.array(unit_vector(pole_of(bodies.mechanism, guide)))
+            place = bodies.axes[bodies.number(guide.on)] @ inside
+        x, y, w = self.chart @ place
+        return spot(complex(x, y), float(w), error), tuple(map(float, place))
+
+    def read(self, where: ProjectivePoint) -> tuple[Where | None, Where | None]:
+        vector = np.linalg.solve(self.chart, np.array(where.vector))
+        # of the two ends the one on the side of the mechanism
+        vector *= (1.0 if where.vector[2] >= 0.0 else -1.0) / np.linalg.norm(vector)
+        return tuple(map(float, vector)), None
+
+    def geared(
+        self, gear: PrimaryGearing, wanted: str, known: Sequence[ProjectivePoint]
+    ) -> ProjectivePoint | None:
+        """With A, B where the wheels are hinged to the carrier, the wheels turn about A - i B against each other."""
+        pivots = [_hinge(self.bodies, wheel, gear.carrier) for wheel in (gear.first, gear.second)]
+        if wanted != "mesh" or None in pivots:
+            return None
+        a, b = (self.bodies.points[pivot] for pivot in pivots if pivot is not None)
+        axis = a - gear.ratio * b
+        error = _geared_error(gear, known)
+        if np.linalg.norm(axis) <= error:
+            return None  # equal turns about one axis: at rest
+        x, y, w = self.chart @ axis
+        return spot(complex(x, y), float(w), error)
+
+    def pole(self, pair: Pair) -> Triple:
+        x, y, w = self.chart @ self.bodies.relative(pair) / self.rate
+        return float(x), float(y), float(w)
+
+
+def _geared_error(gear: PrimaryGearing, known: Sequence[ProjectivePoint]) -> float:
+    return sum(one.error for one in known) * (1.0 + abs(gear.ratio)) * 4.0
+
+
+def _hinge(bodies: TurningBodies, wheel: int, carrier: int) -> str | None:
+    """The point in which a wheel is hinged to its carrier."""
+    own, held = (bodies.mechanism.points_of(bodies.names[number]) for number in (wheel, carrier))
+    return next((name for name in own if name in held), None)
+
+
+def spots_of(bodies: Named) -> Spots:
+    """The places of one position of a planar or a spherical motion."""
+    if isinstance(bodies, TurningBodies):
+        return SphereSpots(bodies)
+    assert isinstance(bodies, BodyMotions)
+    return PlaneSpots(bodies)
+
+
+Derived: TypeAlias = "tuple[Pair, ProjectivePoint | None, How, str, tuple[int, ...]]"
 
 MOST_BODIES = 40
 """Bodies of one construction: its work grows as their cube."""
@@ -101,8 +421,8 @@ class _Constructing:
         self.bodies = spots.bodies
         self.start = ROUNDINGS + residual
         self.gears = gearings_of(self.bodies.mechanism, self.bodies)
-        self.known: dict[Pair, Spot | None] = {}  # None: at rest against each other
-        self.steps: list[Step] = []
+        self.known: dict[Pair, ProjectivePoint | None] = {}  # None: at rest against each other
+        self.steps: list[KennedyStep] = []
 
     def run(self) -> Construction:
         """Find all centres."""
@@ -122,7 +442,7 @@ class _Constructing:
         mismatch = {step.pair: self._mismatch(step.pair) for step in self.steps}
         return Construction(self.bodies.names, tuple(self.steps), mismatch)
 
-    def _see(self, joint: Joint) -> None:
+    def _see(self, joint: PrimaryJoint) -> None:
         """Take in the centre that a joint shows."""
         where, place = self.spots.shown(joint, self.start)
         before = self.known.get(joint.pair)
@@ -148,7 +468,7 @@ class _Constructing:
     def _note(
         self,
         pair: Pair,
-        where: Spot,
+        where: ProjectivePoint,
         how: How,
         name: str = "",
         by: tuple[int, ...] = (),
@@ -157,12 +477,12 @@ class _Constructing:
         self.known[pair] = where
         place, direction = self.spots.read(where)
         place = place if at is None else at
-        self.steps.append(Step(pair, how, name, by, place, direction, where.error))
+        self.steps.append(KennedyStep(pair, how, name, by, place, direction, where.error))
 
     def _rest(self, pair: Pair, by: tuple[int, ...]) -> None:
         self.known[pair] = None
         self.steps = [step for step in self.steps if step.pair != pair]
-        self.steps.append(Step(pair, "rest", "", by, None, None, self.start))
+        self.steps.append(KennedyStep(pair, "rest", "", by, None, None, self.start))
 
     def _derived(self, pair: Pair) -> Derived | None:
         """A centre from what is known: a gear, a body at rest against one of the two, lines that meet."""
@@ -170,8 +490,8 @@ class _Constructing:
             where, third = self._by_gear(gear, pair)
             if where is not None:
                 return pair, where, "gear", gear.name, (third,)
-        lines: list[tuple[Spot, int]] = []
-        together: list[tuple[Spot, int]] = []
+        lines: list[tuple[ProjectivePoint, int]] = []
+        together: list[tuple[ProjectivePoint, int]] = []
         for third, one, other in self._thirds(pair):
             if one is None or other is None:
                 moving = other if one is None else one
@@ -188,7 +508,7 @@ class _Constructing:
         best = best_crossing(lines, UNSURE)
         return None if best is None else (pair, best[0], "kennedy", "", best[1])
 
-    def _thirds(self, pair: Pair) -> Iterator[tuple[int, Spot | None, Spot | None]]:
+    def _thirds(self, pair: Pair) -> Iterator[tuple[int, ProjectivePoint | None, ProjectivePoint | None]]:
         """Bodies whose centres with both of a pair are known."""
         for third in range(len(self.bodies.names)):
             if third in pair:
@@ -197,7 +517,7 @@ class _Constructing:
             if all(leg in self.known for leg in legs):
                 yield third, self.known[legs[0]], self.known[legs[1]]
 
-    def _by_gear(self, gear: Gearing, pair: Pair) -> tuple[Spot | None, int]:
+    def _by_gear(self, gear: PrimaryGearing, pair: Pair) -> tuple[ProjectivePoint | None, int]:
         """The third centre of a gear, from those of the other two pairs."""
         legs = {
             "first": ordered((gear.first, gear.carrier)),

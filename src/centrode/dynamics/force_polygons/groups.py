@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.analysis.graphic.board import cross, dot
+from centrode.analysis.graphic.stage import cross, dot
 from centrode.dynamics.force_polygons.statics import (
     SINGULAR,
     Action,

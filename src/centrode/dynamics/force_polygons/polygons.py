@@ -11,10 +11,9 @@ from typing import TypeAlias
 import numpy as np
 import xarray as xr
 
-from centrode.analysis.graphic.board import Board
 from centrode.analysis.graphic.construction import construct
-from centrode.analysis.graphic.instant import drawing_of
-from centrode.analysis.graphic.stage import Drawing, Stage
+from centrode.analysis.graphic.diagrams import drawing_of
+from centrode.analysis.graphic.stage import ConstructionStage, DrawingBoard, VectorDrawing
 from centrode.dynamics.force_polygons.groups import (
     DyadReactions,
     WorkedSteps,
@@ -246,10 +245,12 @@ class Lever:
 
 
 def lever_of(
-    structure: Structure, drawing: Drawing, bodies: FreeBodies, outer: Sequence[Action], drive: Drive
+    structure: Structure, drawing: VectorDrawing, bodies: FreeBodies, outer: Sequence[Action], drive: Drive
 ) -> Lever:
     """The lever of one drive, the others held; raises as velocity diagrams do at dead points."""
-    stage = Stage(drawing, {one.id: float(one.id == drive.id) for one in structure.mechanism.drives})
+    stage = ConstructionStage(
+        drawing, {one.id: float(one.id == drive.id) for one in structure.mechanism.drives}
+    )
     stage.points |= dict.fromkeys(drawing.numbers.frame, 0j)
     construct(structure, stage)
     forces = []
@@ -273,7 +274,7 @@ def lever_of(
     )
 
 
-def _rate(stage: Stage, bodies: FreeBodies, action: Action) -> complex:
+def _rate(stage: ConstructionStage, bodies: FreeBodies, action: Action) -> complex:
     """Velocity of the place of a body where an action acts."""
     if action.force == 0 or action.body == FRAME:
         return 0j
@@ -284,7 +285,7 @@ def _rate(stage: Stage, bodies: FreeBodies, action: Action) -> complex:
     return stage.carried(action.body, action.place)
 
 
-def _turn(stage: Stage, bodies: FreeBodies, body: str) -> float:
+def _turn(stage: ConstructionStage, bodies: FreeBodies, body: str) -> float:
     """Turning of a link; of sliders no moment is asked."""
     return stage.turns.get(body, 0.0)
 
@@ -399,7 +400,7 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
     solved = solve(prepared, span_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
     exact = dataset_of(solved)
     _refuse_where_it_is_not(exact, at)
-    drawing = drawing_of(prepared, exact, Board())
+    drawing = drawing_of(prepared, exact, DrawingBoard())
     bodies = FreeBodies.of(prepared.structure)
     state, rates, machine = _state(solved, burden)
     outer = outer_actions(burden, state, rates, drawing, bodies)
@@ -563,7 +564,7 @@ def _by_work(burden: MassesAndLoads, state: State, rates: Rates, prepared: Ready
 
 
 def _levers(
-    prepared: Ready, drawing: Drawing, bodies: FreeBodies, outer: Sequence[Action]
+    prepared: Ready, drawing: VectorDrawing, bodies: FreeBodies, outer: Sequence[Action]
 ) -> tuple[Lever, ...]:
     """A lever for each drive; none where the velocities of a group cannot be drawn by hand."""
     drives = prepared.mechanism.drives

@@ -17,8 +17,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from centrode.algebra.plain import PLAIN
-from centrode.analysis.graphic.board import cross
-from centrode.analysis.graphic.stage import Drawing
+from centrode.analysis.graphic.stage import VectorDrawing, cross
 from centrode.analysis.instant_centres.bodies import sliders_of
 from centrode.dynamics.load_coordinates import Component, Distance, HalfSquare, Slide, Turn
 from centrode.dynamics.loads import AppliedLoad, LoadTerm, MassesAndLoads
@@ -192,7 +191,7 @@ class StaticJoint:
 XY: tuple[Basis, ...] = ((1 + 0j, 0.0), (1j, 0.0))
 
 
-def joints_of(structure: Structure, bodies: FreeBodies, drawing: Drawing) -> tuple[StaticJoint, ...]:
+def joints_of(structure: Structure, bodies: FreeBodies, drawing: VectorDrawing) -> tuple[StaticJoint, ...]:
     """All joints as they stand, hinges first; `alone` is false where two joints join the same bodies."""
     found = [
         *_hinges(bodies, drawing),
@@ -208,13 +207,13 @@ def joints_of(structure: Structure, bodies: FreeBodies, drawing: Drawing) -> tup
     )
 
 
-def _hinges(bodies: FreeBodies, drawing: Drawing) -> Iterator[StaticJoint]:
+def _hinges(bodies: FreeBodies, drawing: VectorDrawing) -> Iterator[StaticJoint]:
     for point, (host, *others) in bodies.at_point.items():
         for other in others:
             yield StaticJoint("hinge", point, {host: -1.0, other: 1.0}, drawing.point(point), XY)
 
 
-def _guides(bodies: FreeBodies, drawing: Drawing) -> Iterator[StaticJoint]:
+def _guides(bodies: FreeBodies, drawing: VectorDrawing) -> Iterator[StaticJoint]:
     for guide in bodies.mechanism.guides:
         along = _heading(drawing, guide.on, drawing.numbers.direction[guide.id])
         shares = {guide.on: -1.0, bodies.carrier(guide): 1.0}
@@ -222,7 +221,7 @@ def _guides(bodies: FreeBodies, drawing: Drawing) -> Iterator[StaticJoint]:
         yield StaticJoint("guide", guide.id, shares, drawing.point(guide.point), bases, along)
 
 
-def _wheels(structure: Structure, bodies: FreeBodies, drawing: Drawing) -> Iterator[StaticJoint]:
+def _wheels(structure: Structure, bodies: FreeBodies, drawing: VectorDrawing) -> Iterator[StaticJoint]:
     redundant = {one.rolling for one in structure.redundant if isinstance(one, Contact)}
     for constraint in structure.constraints:
         if isinstance(constraint, GearRatio):
@@ -236,7 +235,7 @@ def _wheels(structure: Structure, bodies: FreeBodies, drawing: Drawing) -> Itera
             yield StaticJoint("rolling", constraint.rolling, shares, at, bases, across)
 
 
-def _mesh(gear: GearRatio, bodies: FreeBodies, drawing: Drawing) -> StaticJoint:
+def _mesh(gear: GearRatio, bodies: FreeBodies, drawing: VectorDrawing) -> StaticJoint:
     """A force square to the line of centres at the pitch point; moments alone where nothing tells that point.
 
     The radial part of a tooth's force, which presses the wheels apart, is left out.
@@ -260,7 +259,7 @@ def _axes(bodies: FreeBodies, wheel: str, carrier: str) -> list[str]:
     return [point for point, names in bodies.at_point.items() if wheel in names and carrier in names]
 
 
-def _drive(drive: Drive, bodies: FreeBodies, drawing: Drawing) -> StaticJoint:
+def _drive(drive: Drive, bodies: FreeBodies, drawing: VectorDrawing) -> StaticJoint:
     """Its moment on the driven link, positive as the angle grows; its force, positive as the way grows."""
     if drive.link is not None:
         shares = {drive.relative_to: -1.0, drive.link: 1.0}
@@ -281,7 +280,7 @@ def _drive(drive: Drive, bodies: FreeBodies, drawing: Drawing) -> StaticJoint:
     return StaticJoint("drive", drive.id, shares, at, ((along, 0.0),), along)
 
 
-def _heading(drawing: Drawing, on: str, direction: tuple[float, float]) -> complex:
+def _heading(drawing: VectorDrawing, on: str, direction: tuple[float, float]) -> complex:
     """Unit vector of a guide as it stands."""
     angle = 0.0 if on == FRAME else cmath.phase(complex(*drawing.at.poses[on].rotor))
     return complex(*direction) * cmath.rect(1.0, angle)
@@ -326,7 +325,7 @@ def moment_about(actions: Iterable[Action], place: complex) -> float:
 
 
 def outer_actions(
-    burden: MassesAndLoads, state: State, rates: Rates, drawing: Drawing, bodies: FreeBodies
+    burden: MassesAndLoads, state: State, rates: Rates, drawing: VectorDrawing, bodies: FreeBodies
 ) -> list[Action]:
     """Loads, weights and inertia on the moving bodies and the frame at the only sample of a state."""
     reader = ActionReader(burden, state, drawing, bodies)
@@ -354,7 +353,7 @@ class ActionReader:
 
     burden: MassesAndLoads
     state: State
-    drawing: Drawing
+    drawing: VectorDrawing
     bodies: FreeBodies
 
     def inertia(self, mass: Mass, rates: Rates) -> Iterator[Action]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from centrode.analysis.graphic.board import round_scale
+from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
 from centrode.present import signs
 from centrode.present.diagram_drawing import flat, typeset

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from centrode.analysis.graphic.board import round_scale as round_length
+from centrode.analysis.graphic.stage import round_scale as round_length
 from centrode.dynamics.force_polygons.polygons import PARTS, round_scale
 from centrode.locale import _
 from centrode.present.diagram_drawing import arrow, flat

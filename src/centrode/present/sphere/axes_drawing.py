@@ -27,7 +27,7 @@ from centrode.present.tags import Tag, write_tags
 
 if TYPE_CHECKING:
     from centrode.analysis.instant_centres.bodies import Pair
-    from centrode.analysis.instant_centres.construction import Construction, Step
+    from centrode.analysis.instant_centres.kennedy import Construction, KennedyStep
 
 CENTRE = "#A00000"
 FOUND = "#0072B2"
@@ -89,13 +89,15 @@ def arcs_on_paper(globe: Globe, sample: int) -> list[tuple[Array, Array]]:
     return found
 
 
-def _end(globe: Globe, step: Step) -> Array:
+def _end(globe: Globe, step: KennedyStep) -> Array:
     end = np.array(step.place)
     flipped = step.how not in ("hinge", "guide") and not globe.in_front(end)
     return -end if flipped else end
 
 
-def _circles(axes: Axes, globe: Globe, step: Step, ends: dict[Pair, Array]) -> list[tuple[Array, Array]]:
+def _circles(
+    axes: Axes, globe: Globe, step: KennedyStep, ends: dict[Pair, Array]
+) -> list[tuple[Array, Array]]:
     """The great circles that an axis was found on, drawn; their pieces in front."""
     found: list[tuple[Array, Array]] = []
     for by in step.by:

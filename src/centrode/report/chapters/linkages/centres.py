@@ -8,8 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from centrode.analysis.instant_centres.centres import instant_centres
-from centrode.analysis.instant_centres.construction import Construction
-from centrode.analysis.instant_centres.kennedy import MOST_BODIES, construct_centres
+from centrode.analysis.instant_centres.kennedy import MOST_BODIES, Construction, construct_centres
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.spoken import body_name

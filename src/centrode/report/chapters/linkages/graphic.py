@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from matplotlib.figure import Figure
 
-from centrode.analysis.graphic.checking import CheckRow, GraphicCheck, graphic_check
+from centrode.analysis.graphic.checks import CheckRow, GraphicCheck, graphic_check
 from centrode.analysis.graphic.diagrams import Diagram
 from centrode.errors import CentrodeError
 from centrode.locale import _

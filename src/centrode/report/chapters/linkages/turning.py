@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import xarray as xr
 
-from centrode.analysis.repair import Repair, repair
+from centrode.analysis.redesign.repair import Repair, repair
 from centrode.analysis.transmission import transmission_angles
 from centrode.errors import CentrodeError
 from centrode.locale import _

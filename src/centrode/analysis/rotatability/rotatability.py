@@ -12,13 +12,16 @@ from typing import Any, Literal
 
 import numpy as np
 
-from centrode.analysis.turning.causes import cause_of
-from centrode.analysis.turning.circuits import Circuits, circuits_of
-from centrode.analysis.turning.four_bars import FourBar, four_bars_of
-from centrode.analysis.turning.swings import Swing, swings_of, watched_members
-from centrode.analysis.turning.tours import Tour, tour_of
-from centrode.analysis.turning.transmission import Transmission, transmissions_of, watched_dyads
-from centrode.analysis.turning.watched import course_of
+from centrode.analysis.rotatability.causes import Transmission, cause_of, transmissions_of, watched_dyads
+from centrode.analysis.rotatability.circuits import Circuits, FourBar, circuits_of, four_bars_of
+from centrode.analysis.rotatability.tours import (
+    DriveSweep,
+    Swing,
+    course_of,
+    swings_of,
+    tour_of,
+    watched_members,
+)
 from centrode.kinematics.plan_evaluation import Event
 from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.several_inputs.limits import initial_values
@@ -82,7 +85,7 @@ class DeadPoint:
 
 
 @dataclass(frozen=True)
-class Turning:
+class LinkTurning:
     """What is found for one drive, the others held at their initial values.
 
     Attributes
@@ -122,17 +125,17 @@ class Rotatability:
     ----------
     turns_fully : whether the one drive turns fully; None with several drives, and for displacements
     limits : of all drives
-    drives : Turning of each drive, the others held
+    drives : LinkTurning of each drive, the others held
     four_bars : every four-bar and slider-crank loop with its type
     """
 
     turns_fully: bool | None
     limits: tuple[LimitFound, ...]
-    drives: tuple[Turning, ...]
+    drives: tuple[LinkTurning, ...]
     four_bars: tuple[FourBar, ...]
 
     @property
-    def one(self) -> Turning:
+    def one(self) -> LinkTurning:
         """What is found for the first drive."""
         return self.drives[0]
 
@@ -176,12 +179,12 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
     )
 
 
-def _turning(prepared: Ready, tour: Tour) -> Turning:
+def _turning(prepared: Ready, tour: DriveSweep) -> LinkTurning:
     members, dyads = watched_members(tour), watched_dyads(tour)
     course = course_of(tour, [*(one for one, _kind in members), *(one for one, _group in dyads)])
     swings = swings_of(course, [kind for _one, kind in members])
     circuits, missing = circuits_of(tour)
-    return Turning(
+    return LinkTurning(
         tour.drive.id,
         tour.unit,
         tour.held,
@@ -198,7 +201,7 @@ def _turning(prepared: Ready, tour: Tour) -> Turning:
     )
 
 
-def _limits(prepared: Ready, tour: Tour) -> tuple[LimitFound, ...]:
+def _limits(prepared: Ready, tour: DriveSweep) -> tuple[LimitFound, ...]:
     events = [event for event in tour.continuation.branches.events if event.kind == "limit"]
     found = [
         _limit(prepared, tour, event, end)
@@ -212,7 +215,7 @@ def _limits(prepared: Ready, tour: Tour) -> tuple[LimitFound, ...]:
     return tuple(found)
 
 
-def _limit(prepared: Ready, tour: Tour, event: Event, end: str) -> LimitFound:
+def _limit(prepared: Ready, tour: DriveSweep, event: Event, end: str) -> LimitFound:
     group = prepared.structure.groups[event.group]
     cause = cause_of(tour, group, event.group, event.at)
     side: Literal["low", "high"] = "low" if end == "low" else "high"
@@ -221,7 +224,7 @@ def _limit(prepared: Ready, tour: Tour, event: Event, end: str) -> LimitFound:
     )
 
 
-def _change_points(prepared: Ready, tour: Tour) -> tuple[ChangePoint, ...]:
+def _change_points(prepared: Ready, tour: DriveSweep) -> tuple[ChangePoint, ...]:
     found: dict[ChangePoint, None] = {}  # several pairs of positions of a group may meet at one place
     for event in tour.events("change point"):
         if tour.low <= event.at <= tour.high:

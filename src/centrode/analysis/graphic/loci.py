@@ -1,0 +1,584 @@
+"""Vector equations of a point: the parts of its velocity or acceleration that are known, and the direction of the last.
+
+One equation for each locus on which a point of a group lies; two of them meet in its image.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.analysis.graphic.stage import (
+    ConstructionStage,
+    ConstructionStep,
+    ConstructionTrial,
+    Edge,
+    Kind,
+    cross,
+    dot,
+)
+from centrode.errors import InputError, MotionError
+from centrode.kinematics.dyads import solved_angles
+from centrode.locale import _
+from centrode.structure.assur import step_of
+from centrode.structure.constraints import (
+    FRAME,
+    AngleDrive,
+    Constraint,
+    DistanceDrive,
+    Entity,
+    GearRatio,
+    NoSlip,
+    PointInLink,
+    PointOnGuide,
+    Positions,
+)
+from centrode.structure.gearing import Round, Straight
+from centrode.structure.groups import (
+    AngleEquation,
+    AngleGiven,
+    Arm,
+    Group,
+    Locus,
+    Meshed,
+    Newton,
+    Rail,
+    Rod,
+    Rolled,
+    Rolloff,
+    Slot,
+    Stop,
+    Stroke,
+    Touch,
+    Train,
+)
+from centrode.structure.plan import Structure, classify
+from centrode.structure.rank import in_order, match, strong_components
+
+
+@dataclass(frozen=True)
+class RayLeg:
+    """A known part of a vector equation."""
+
+    kind: Kind
+    vector: complex
+    name: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Ray:
+    """A vector equation: rate = origin + legs + unknown length along a direction.
+
+    `origin_text` and `text` say the known first part and the unknown last one as an equation does; `at` is the
+    place of the drawing whose rate it is, `of` its name, `arm` the length over which the unknown part turns a link.
+    """
+
+    origin: complex
+    origin_text: str
+    legs: tuple[RayLeg, ...]
+    direction: complex
+    kind: Kind
+    name: str
+    text: str
+    at: complex
+    of: str
+    arm: float = 0.0
+    link: str = ""
+
+    @property
+    def start(self) -> complex:
+        """Where the direction begins."""
+        return self.origin + sum(leg.vector for leg in self.legs)
+
+    def length(self, end: complex) -> float:
+        """The unknown part once the end is known, positive in the direction."""
+        return dot(self.direction, end - self.start)
+
+    def edges(self, end: complex) -> list[Edge]:
+        """All parts as they are drawn."""
+        place, found = self.origin, []
+        for leg in self.legs:
+            found.append(Edge(place, place + leg.vector, leg.kind, leg.name, self.link))
+            place += leg.vector
+        return [*found, Edge(place, end, self.kind, self.name, self.link)]
+
+    def equation(self, letter: str, name: str) -> str:
+        """The equation in symbols: v_B = v_A + v_BA (⊥ AB)."""
+        parts = [self.origin_text, *(leg.text for leg in self.legs), self.text]
+        return f"{letter}_{name} = {' + '.join(part for part in parts if part)}"
+
+
+def letter(stage: ConstructionStage) -> str:
+    """Symbol of what is constructed."""
+    return "v" if stage.order == 1 else "a"
+
+
+def told(stage: ConstructionStage, point: str) -> str:
+    """Symbol of the rate of a point; nothing of one at rest."""
+    return "" if stage.rate(point) == 0 else f"{letter(stage)}_{point}"
+
+
+def around(stage: ConstructionStage, point: str, centre: str, link: str, known: bool = True) -> Ray:
+    """A point on a circle about another one: known normal part, unknown part square to the arm."""
+    drawing = stage.drawing
+    arm = drawing.arm(drawing.point(centre), drawing.point(point), known)
+    return turning(stage, arm, point, centre, link)
+
+
+def turning(stage: ConstructionStage, arm: complex, point: str, centre: str, link: str) -> Ray:
+    """What turns with a link about a point of it that is known, at the end of an arm."""
+    symbol, name = letter(stage), f"{point}{centre}"
+    legs: tuple[RayLeg, ...] = ()
+    if stage.before is not None:
+        legs = (RayLeg("normal", stage.inwards(link, arm), name, f"aⁿ_{name} (∥ {name})"),)
+    kind: Kind = "relative" if stage.order == 1 else "tangential"
+    text = f"{symbol if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
+    return Ray(
+        stage.rate(centre),
+        told(stage, centre),
+        legs,
+        1j * arm / abs(arm),
+        kind,
+        name,
+        text,
+        stage.drawing.point(centre) + arm,
+        point,
+        abs(arm),
+        link,
+    )
+
+
+def sliding(
+    stage: ConstructionStage, on: str, at: complex, direction: complex, point: str, guide: str
+) -> Ray:
+    """A point of the unknown that slides on a known body: the body's own rate there, Coriolis, along the guide."""
+    velocity = 0j if stage.before is None else stage.before.points[point]
+    return _along(stage, on, at, direction, velocity, point, guide)
+
+
+def _along(
+    stage: ConstructionStage,
+    on: str,
+    at: complex,
+    direction: complex,
+    velocity: complex,
+    point: str,
+    guide: str,
+) -> Ray:
+    under = f"{point}′"
+    legs: tuple[RayLeg, ...] = ()
+    if stage.before is not None and on != FRAME and stage.before.turns[on] != 0.0:
+        turned = stage.coriolis(on, at, velocity)
+        legs = (RayLeg("coriolis", turned, f"{point}{under}", f"aᵏ_{point}{under}"),)
+    origin = stage.carried(on, at)
+    if on != FRAME:
+        stage.hidden.setdefault(under, origin)
+    text = f"{letter(stage)}ʳ_{point}{under if on != FRAME else ''} (∥ {guide})"
+    return Ray(
+        origin,
+        f"{letter(stage)}_{under}" if on != FRAME else "",
+        legs,
+        direction,
+        "sliding",
+        f"{point}{under}" if on != FRAME else point,
+        text,
+        at,
+        point,
+    )
+
+
+def carrying(stage: ConstructionStage, link: str, point: str, direction: complex, guide: str) -> Ray:
+    """The place of an unknown link of known turning under a known point that slides on it."""
+    at, under = stage.drawing.point(point), f"{point}′"
+    legs: tuple[RayLeg, ...] = ()
+    if stage.before is not None and stage.before.turns[link] != 0.0:
+        turned = -stage.coriolis(link, at, stage.before.points[point])
+        legs = (RayLeg("coriolis", turned, f"{under}{point}", f"aᵏ_{under}{point}"),)
+    text = f"{letter(stage)}ʳ_{under}{point} (∥ {guide})"
+    origin, name = stage.points[point], f"{under}{point}"
+    return Ray(origin, told(stage, point), legs, direction, "sliding", name, text, at, under, link=link)
+
+
+def ray_of(stage: ConstructionStage, locus: Locus, carriage: str | None) -> Ray:
+    """The vector equation of a locus, for the place it is about."""
+    drawing = stage.drawing
+    numbers = drawing.numbers
+    if isinstance(locus, Rod):
+        return around(stage, locus.point, locus.centre, locus.link)
+    if isinstance(locus, Stroke):
+        return cylinder(stage, locus)
+    if isinstance(locus, Rail):
+        direction = drawing.heading(locus.on, numbers.direction[locus.guide])
+        return sliding(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
+    if isinstance(locus, Slot):
+        direction = drawing.heading(carriage or "", numbers.direction[locus.guide])
+        return carrying(stage, carriage or "", locus.point, direction, locus.guide)
+    if isinstance(locus, Stop):
+        direction = drawing.heading(locus.on, numbers.direction[locus.guide])
+        ray = sliding(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
+        return _driven(ray, stage.driven[locus.drive])
+    return _of_wheel(stage, locus)
+
+
+def _driven(ray: Ray, rate: float) -> Ray:
+    """The equation of a point that is driven along the direction and free square to it."""
+    driven = RayLeg("driven", rate * ray.direction, ray.name, ray.text)
+    free = ray.text.replace("∥", "⊥")
+    return replace(ray, legs=(*ray.legs, driven), direction=1j * ray.direction, text=free)
+
+
+def cylinder(stage: ConstructionStage, locus: Stroke) -> Ray:
+    """A point at the end of a cylinder: the stroke's rate along it, Coriolis, and unknown turning about its foot."""
+    drawing, name = stage.drawing, f"{locus.point}{locus.centre}"
+    arm = drawing.arm(drawing.point(locus.centre), drawing.point(locus.point), known=True)
+    along, rate = arm / abs(arm), stage.driven[locus.drive]
+    legs = [RayLeg("driven", rate * along, name, f"{letter(stage)}ʳ_{name} (∥ {name})")]
+    if stage.before is not None:
+        apart = stage.before.points[locus.point] - stage.before.points[locus.centre]
+        spin = dot(1j * along, apart) / abs(arm)
+        stretch = dot(along, apart)
+        legs.insert(0, RayLeg("normal", -(spin**2) * arm, name, f"aⁿ_{name} (∥ {name})"))
+        legs.append(RayLeg("coriolis", 2j * spin * stretch * along, name, f"aᵏ_{name} (⊥ {name})"))
+    text = f"{letter(stage) if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
+    kind: Kind = "relative" if stage.order == 1 else "tangential"
+    origin = stage.points[locus.centre]
+    at = drawing.point(locus.point)
+    first = told(stage, locus.centre)
+    return Ray(origin, first, tuple(legs), 1j * along, kind, name, text, at, locus.point, abs(arm))
+
+
+def _of_wheel(stage: ConstructionStage, locus: Touch | Rolloff) -> Ray:
+    """A wheel's centre beside or about its track, or a track that is carried past a known wheel."""
+    drawing = stage.drawing
+    contact = locus.contact if isinstance(locus, Touch) else locus.rolling
+    track = drawing.numbers.gearing.track[contact.rolling]
+    if isinstance(track, Round):
+        return _about_track(stage, locus, contact.on, track)
+    assert isinstance(track, Straight)
+    direction = drawing.heading(contact.on, track.direction)
+    if locus.carried:
+        ray = carrying(stage, contact.on, locus.point, direction, contact.rolling)
+    else:
+        at = drawing.point(locus.point)
+        ray = sliding(stage, contact.on, at, direction, locus.point, contact.rolling)
+    if isinstance(locus, Touch):
+        return ray
+    # rolling: the centre goes back along the track by the radius times the wheel's turn against it
+    turn = stage.turns[contact.link] - stage.turns[contact.on]
+    way = -turn * drawing.numbers.gearing.radius[contact.rolling]
+    return _driven(ray, -way if locus.carried else way)
+
+
+def _about_track(stage: ConstructionStage, locus: Touch | Rolloff, on: str, track: Round) -> Ray:
+    """A circle about the centre of a round track: the distance of the two centres turns as a rod would."""
+    drawing, wheel = stage.drawing, locus.point
+    centre = drawing.inside(on, track.centre)
+    arm = drawing.arm(centre, drawing.point(wheel))
+    sense = -1.0 if locus.carried else 1.0
+    origin = stage.points[wheel] if locus.carried else stage.carried(on, centre)
+    name = f"{wheel}K"
+    legs: tuple[RayLeg, ...] = ()
+    if stage.before is not None:
+        apart = stage.before.points[wheel] - stage.before.carried(on, centre)
+        spin = dot(1j * arm, apart) / abs(arm) ** 2
+        legs = (RayLeg("normal", -(spin**2) * sense * arm, name, f"aⁿ_{name} (∥ {name})"),)
+    kind: Kind = "relative" if stage.order == 1 else "tangential"
+    text = f"{letter(stage) if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
+    first = told(stage, wheel) if locus.carried else ("" if on == FRAME else f"{letter(stage)}_K")
+    place = centre if locus.carried else drawing.point(wheel)
+    of = "K" if locus.carried else wheel
+    return Ray(origin, first, legs, 1j * arm / abs(arm), kind, name, text, place, of)
+
+
+# Angular velocities and accelerations that gears and rolling wheels give.
+
+
+def meshed_rate(stage: ConstructionStage, gear: GearRatio, link: str) -> float:
+    """Turning of one link of a gear from that of the other two (Willis)."""
+    weights = gear.weights(stage.drawing.numbers)
+    known = sum(weight * stage.turns[other] for other, weight in weights.items() if other != link)
+    return float(-known / weights[link])
+
+
+def wheel_equations(stage: ConstructionStage, turning: object) -> list[str]:
+    """The equation of a gear (Willis), or of a wheel that rolls on the frame, as a person writes it."""
+    letter = "ω" if stage.order == 1 else "ε"
+    if isinstance(turning, Meshed):
+        turning = turning.gear
+    if isinstance(turning, GearRatio):
+        weights = turning.weights(stage.drawing.numbers)
+        ratio = -weights[turning.first] / weights[turning.second]
+        first, second = (_seen(letter, link, turning.carrier) for link in (turning.first, turning.second))
+        return [f"{second} = {ratio:.5g}·{first}"]
+    if isinstance(turning, Rolled) and turning.rolling.on == FRAME:
+        wheel, centre = turning.rolling.link, turning.rolling.centre
+        rate = "v" if stage.order == 1 else "aᵗ"
+        return [f"|{letter}_{wheel}| = |{rate}_{centre}|/r"]
+    return []
+
+
+def _seen(letter: str, link: str, carrier: str) -> str:
+    """Turning of a link as its gear's carrier sees it."""
+    parts = ["0" if name == FRAME else f"{letter}_{name}" for name in (link, carrier)]
+    return parts[0] if carrier == FRAME else f"({parts[0]} − {parts[1]})"
+
+
+def rolled_rate(stage: ConstructionStage, rolling: NoSlip) -> float:
+    """Turning of a wheel against the body it rolls on, from the way of its centre along the track."""
+    drawing = stage.drawing
+    numbers, centre = drawing.numbers, drawing.point(rolling.centre)
+    track = numbers.gearing.track[rolling.rolling]
+    velocity = 0j if stage.before is None else stage.before.points[rolling.centre]
+    relative = stage.points[rolling.centre] - stage.carried(rolling.on, centre)
+    relative -= stage.coriolis(rolling.on, centre, velocity)
+    if isinstance(track, Straight):
+        heading = drawing.heading(rolling.on, track.direction)
+        return float(-dot(heading, relative) / numbers.gearing.radius[rolling.rolling])
+    arm = drawing.arm(drawing.inside(rolling.on, track.centre), centre)
+    return float(numbers.gearing.spin(rolling.rolling) * dot(1j * arm, relative) / abs(arm) ** 2)
+
+
+def train_rates(stage: ConstructionStage, group: Train) -> dict[str, float]:
+    """Turning of all links of a train."""
+    rows = [_row(stage, equation) for equation in group.equations]
+    return solved_angles(group, rows, Positions({}, {}, {}, dict(stage.turns)))
+
+
+def _row(stage: ConstructionStage, equation: AngleEquation) -> tuple[Mapping[str, float], float]:
+    """Factors of the turnings in an equation, and what they sum up to."""
+    numbers = stage.drawing.numbers
+    if isinstance(equation, GearRatio):
+        return dict(equation.weights(numbers)), 0.0
+    if isinstance(equation, NoSlip):
+        return {equation.link: 1.0, equation.on: -1.0}, rolled_rate(stage, equation)
+    if isinstance(equation, Arm):
+        spin = numbers.gearing.spin(equation.rolling.rolling)
+        return {equation.rolling.link: 1.0, equation.rolling.on: spin - 1.0, equation.link: -spin}, 0.0
+    assert isinstance(equation, AngleGiven)
+    rate = 0.0 if equation.drive is None else stage.driven[equation.drive]
+    return {equation.link: 1.0, equation.relative_to: -1.0}, rate
+
+
+# Groups of higher class by the method of false position.
+#
+# A rod is taken out of the group, or a point off its guide, and a link is turned at will: what is left are
+# dyads. How
+# much the rod would stretch tells how wrong the trial is; rates depend on it linearly, so two trials give the
+# right
+# one.
+
+MOST_TRIALS = 2
+"""Links turned at will at once: with three, a person no longer draws."""
+SINGULAR = 1e-10
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Equation: TypeAlias = tuple[Constraint, int]
+Construct: TypeAlias = Callable[[Sequence[Group], ConstructionStage], None]
+
+
+@dataclass(frozen=True)
+class Cut:
+    """What is taken out of a group: a rod with its two points, a cylinder's drive, or a point's guide."""
+
+    name: str
+    ends: tuple[str, str] = ("", "")
+    rod: str = ""
+    drive: str = ""
+    guide: PointOnGuide | None = None
+
+    def spares(self, equation: Equation) -> bool:
+        """Whether an equation stays."""
+        constraint = equation[0]
+        if isinstance(constraint, PointInLink) and self.rod:
+            return constraint.link != self.rod
+        if isinstance(constraint, DistanceDrive):
+            return constraint.drive != self.drive
+        return constraint != self.guide
+
+    def misfit(self, stage: ConstructionStage) -> float:
+        """How fast the rod would stretch, or the point leave its guide: a velocity or an acceleration."""
+        if self.guide is not None:
+            return _off_guide(stage, self.guide)
+        arm = _arm(stage, self.ends)
+        along = arm / abs(arm)
+        apart = stage.points[self.ends[1]] - stage.points[self.ends[0]]
+        rate = stage.driven[self.drive] if self.drive else 0.0
+        if stage.before is not None:
+            spin = cross(along, stage.before.points[self.ends[1]] - stage.before.points[self.ends[0]]) / abs(
+                arm
+            )
+            rate -= spin**2 * abs(arm)
+        return dot(along, apart) - rate
+
+
+@dataclass(frozen=True)
+class Opened:
+    """A group of higher class made drawable: what was cut, the links turned at will, the dyads that are left."""
+
+    cuts: tuple[Cut, ...]
+    turned: tuple[str, ...]
+    groups: tuple[Group, ...]
+
+
+def solve_by_trials(
+    structure: Structure, group: Newton, stage: ConstructionStage, construct: Construct
+) -> None:
+    """Add the rates of a group of higher class; InputError where no trial makes dyads of it."""
+    opened = open_up(structure, group)
+    size = _trial_size(stage)
+    count = len(opened.turned)
+    values = [tuple(size * (k == j + 1) for j in range(count)) for k in range(count + 1)]
+    misfits = [_misfits(_tried(stage, opened, trial, construct), opened) for trial in values]
+    found = tuple(_corrected(np.array(values), np.array(misfits)).tolist())
+    trial = ConstructionTrial(
+        opened.turned, tuple(values), tuple(misfits), found, tuple(cut.name for cut in opened.cuts)
+    )
+    stage.steps.append(ConstructionStep(step_of(group), (), trial=trial))
+    _adopt(stage, _tried(stage, opened, found, construct))
+    for cut in opened.cuts:
+        _put_back(stage, cut)
+
+
+def _trial_size(stage: ConstructionStage) -> float:
+    """A turning as large as those that are known: rounding of one that is zero must not set it."""
+    scale = float(stage.drawing.numbers.scale)
+    sizes = [abs(turn) for turn in stage.turns.values()]
+    sizes += [abs(rate) / scale for rate in stage.points.values()]
+    if stage.before is not None:
+        sizes += [turn**2 for turn in stage.before.turns.values()]
+    return max(sizes) or 1.0
+
+
+def _corrected(values: Array, misfits: Array) -> Array:
+    """The trial that fits: misfits are linear in it."""
+    slopes = (misfits[1:] - misfits[0]).T / (values[1:] - values[0]).max(axis=1)
+    sizes = np.abs(slopes).max(axis=1, keepdims=True)
+    if not sizes.all() or np.linalg.cond(slopes / sizes) > 1 / SINGULAR:
+        raise MotionError(
+            "",
+            _("the trials all fit alike: the group stands at a dead point"),
+            _("choose another instant, or a finer reading step"),
+        )
+    return np.asarray(values[0] - np.linalg.solve(slopes, misfits[0]))
+
+
+def _tried(
+    stage: ConstructionStage, opened: Opened, trial: Sequence[float], construct: Construct
+) -> ConstructionStage:
+    tried = stage.copied()
+    tried.driven.update(zip(map(_drive, opened.turned), trial, strict=True))
+    construct(opened.groups, tried)
+    return tried
+
+
+def _misfits(stage: ConstructionStage, opened: Opened) -> tuple[float, ...]:
+    return tuple(cut.misfit(stage) for cut in opened.cuts)
+
+
+def _adopt(stage: ConstructionStage, done: ConstructionStage) -> None:
+    stage.points, stage.turns, stage.bases = done.points, done.turns, done.bases
+    stage.hidden, stage.edges, stage.steps = done.hidden, done.edges, done.steps
+
+
+def _put_back(stage: ConstructionStage, cut: Cut) -> None:
+    """The rod that was taken out turns with its two points."""
+    if not cut.rod:
+        return
+    arm = _arm(stage, cut.ends)
+    ends = stage.points[cut.ends[0]], stage.points[cut.ends[1]]
+    stage.turns[cut.rod] = cross(arm, ends[1] - ends[0]) / abs(arm) ** 2
+    stage.bases[cut.rod] = cut.ends[0]
+    stage.edges.append(Edge(*ends, "image", f"{cut.ends[1]}{cut.ends[0]}", cut.rod))
+
+
+def _arm(stage: ConstructionStage, ends: tuple[str, str]) -> complex:
+    place = stage.drawing.point
+    return stage.drawing.arm(place(ends[0]), place(ends[1]), known=True)
+
+
+def _off_guide(stage: ConstructionStage, guide: PointOnGuide) -> float:
+    drawing = stage.drawing
+    heading = drawing.heading(guide.on, drawing.numbers.direction[guide.guide])
+    at = drawing.point(guide.point)
+    velocity = 0j if stage.before is None else stage.before.points[guide.point]
+    relative = (
+        stage.points[guide.point] - stage.carried(guide.on, at) - stage.coriolis(guide.on, at, velocity)
+    )
+    return cross(heading, relative)
+
+
+def _drive(link: str) -> str:
+    """Name of the drive that turns a link at will; no drive of a description has a slash."""
+    return f"trial/{link}"
+
+
+def open_up(structure: Structure, group: Newton) -> Opened:
+    """Cuts and links to turn at will with which a group falls into dyads, as few as will do."""
+    cuts = list(_cuts(group))
+    for count in range(1, MOST_TRIALS + 1):
+        for chosen in combinations(cuts, count):
+            links = [link for link in group.links if all(cut.rod != link for cut in chosen)]
+            for turned in combinations(links, count):
+                groups = _fallen(structure, group, chosen, turned)
+                if groups is not None:
+                    return Opened(chosen, turned, groups)
+    raise InputError(
+        step_of(group),
+        _("the method of false position does not apply: two trials at once do not make dyads of the group"),
+        _("take velocities from the motion"),
+    )
+
+
+def _cuts(group: Newton) -> Iterator[Cut]:
+    """Rods with two points of which nothing else of the group hangs; cylinders; points on guides."""
+    constraints = list(dict.fromkeys(constraint for constraint, _row in group.equations))
+    for link in group.links:
+        hinges = [c.point for c in constraints if isinstance(c, PointInLink) and c.link == link]
+        entity = Entity("link", link)
+        held = sum(entity in c.bodies for c in constraints)
+        if len(hinges) == 2 and held == 2:
+            yield Cut(link, (hinges[0], hinges[1]), rod=link)
+    for c in constraints:
+        if isinstance(c, DistanceDrive):
+            yield Cut(c.drive, (c.first, c.second), drive=c.drive)
+        if isinstance(c, PointOnGuide):
+            yield Cut(c.guide, guide=c)
+
+
+def _fallen(
+    structure: Structure, group: Newton, cuts: Sequence[Cut], turned: Sequence[str]
+) -> tuple[Group, ...] | None:
+    """The dyads that a group falls into, in order; None where something of higher class is left."""
+    rods = {cut.rod for cut in cuts}
+    entities = [Entity("point", name) for name in group.points]
+    entities += [Entity("link", name) for name in group.links if name not in rods]
+    equations: list[Equation] = [e for e in group.equations if all(cut.spares(e) for cut in cuts)]
+    equations += [(AngleDrive(_drive(link), link, FRAME), 0) for link in turned]
+    neighbours = {
+        number: [(e, k) for e in entities if e in equation[0].bodies for k in range(e.unknowns)]
+        for number, equation in enumerate(equations)
+    }
+    owner = match(neighbours)
+    if len(owner) < sum(entity.unknowns for entity in entities):
+        return None
+    matched: dict[Entity, list[int]] = {entity: [] for entity in entities}
+    for (entity, _k), number in owner.items():
+        matched[entity].append(number)
+    depends = {
+        entity: [o for number in own for o in equations[number][0].bodies if o != entity and o in matched]
+        for entity, own in matched.items()
+    }
+    found: list[Group] = []
+    for component in in_order(strong_components(depends), depends):
+        own = sorted(number for entity in component for number in matched[entity])
+        part = classify(structure.mechanism, component, [equations[n] for n in own])
+        if isinstance(part, Newton):
+            return None
+        found.append(part)
+    return tuple(found)

@@ -1,0 +1,524 @@
+"""The smallest change after which a mechanism turns fully, verified by its geometry."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import pi, sin, tau
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.analysis.redesign.candidates import (
+    Batch,
+    Bounds,
+    Candidates,
+    Value,
+    Varying,
+    impossible,
+    varyings,
+)
+from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
+from centrode.errors import CentrodeError, InputError, NotComputedYet
+from centrode.geometry.plane import Circle, dot, subtract
+from centrode.kinematics.dyads import loci_of, solve_group
+from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
+from centrode.kinematics.prepared import Ready, ready
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.model.units import to_si
+from centrode.structure.constraints import Positions
+from centrode.structure.groups import Aim, Group, Meet, Newton
+
+# How well the dyads of many mechanisms close over one turn: squared sines of their transmission angles.
+#
+# The squared sine is a group's radicand over its own greatest value. It falls through zero where the group
+# begins to
+# be open, so it tells as well by how much a mechanism fails to turn.
+
+Array: TypeAlias = npt.NDArray[np.float64]
+Number: TypeAlias = Any
+
+ABSENT = -1.0
+"""Stands for a group where one before it is open."""
+
+
+def squared_sines(batch: Batch, nodes: int) -> Array:
+    """Squared sines (lanes, groups, nodes) of transmission angles over one turn; NaN behind an open group."""
+    kinematics = batch.kinematics
+    along = kinematics.path.initial + (np.arange(nodes) + 0.5) * (tau / nodes)
+    at = kinematics.frame(ARRAYS, along[None, :])
+    hooks = _Keeping(batch.signs)
+    found = []
+    with np.errstate(all="ignore"):
+        for index, group in enumerate(kinematics.structure.groups):
+            choices = SideChoices(hooks, index)
+            size = _greatest(kinematics, group, at, choices)
+            solve_group(group, ARRAYS, kinematics.numbers, at, choices)
+            if size is not None:
+                ratio = hooks.kept[index] / size
+                found.append(np.broadcast_to(ratio, (batch.size, nodes)))
+    if not found:
+        return np.ones((batch.size, 1, nodes))
+    return np.stack(found, axis=1)
+
+
+class _Keeping(FixedSigns):
+    """Fixed signs; radicands, and squares of divisors, are kept by their groups."""
+
+    def __init__(self, signs: Mapping[int, Number]) -> None:
+        super().__init__(ARRAYS, signs)
+        self.kept: dict[int, Number] = {}
+
+    def root(self, group: int, radicand: Number) -> Number:
+        self.kept[group] = radicand
+        return super().root(group, radicand)
+
+    def divisor(self, group: int, divisor: Number) -> Number:
+        self.kept[group] = divisor * divisor
+        return divisor
+
+
+def _greatest(kinematics: Kinematics, group: Group, at: Positions, choices: SideChoices) -> Number | None:
+    """The radicand of a group at a transmission angle of 90 degrees; None for a group without one."""
+    numbers = kinematics.numbers
+    if isinstance(group, Aim):
+        arm = subtract(at.points[group.target], at.points[group.pivot])
+        return dot(arm, arm)
+    if not isinstance(group, Meet):
+        return None
+    one, other = loci_of(group, ARRAYS, numbers, at, choices)
+    if hasattr(one, "half"):
+        return _sine(one) ** 2 * _sine(other) ** 2
+    if not isinstance(one, Circle):
+        return 1.0
+    if not isinstance(other, Circle):
+        return one.radius**2
+    return (2.0 * one.radius * other.radius) ** 2
+
+
+def _sine(circle: Any) -> Number:
+    """Sine of a circle's arc on the sphere."""
+    sine, cosine = circle.half
+    return 2.0 * sine * cosine
+
+
+def least(sines: Array) -> Array:
+    """The least squared sine of every mechanism (lanes,)."""
+    return np.asarray(least_by_sector(np.where(np.isnan(sines), np.inf, sines), 1).min(axis=1))
+
+
+def least_by_sector(sines: Array, sectors: int) -> Array:
+    """The least squared sine of every group in every sector of the turn: (lanes, groups * sectors).
+
+    Between nodes it is that of the parabola through three of them, so that it changes smoothly with the mechanism.
+    """
+    lanes, groups, nodes = sines.shape
+    known = np.where(np.isnan(sines), ABSENT, sines)
+    width = nodes // sectors
+    first = width * np.arange(sectors)
+    lowest = known.reshape(lanes, groups, sectors, width).argmin(axis=3) + first
+    before, here, behind = (np.take_along_axis(known, (lowest + step) % nodes, axis=2) for step in (-1, 0, 1))
+    with np.errstate(all="ignore"):
+        slope, bend = 0.5 * (behind - before), behind - 2.0 * here + before
+        shift = np.clip(-slope / bend, -0.5, 0.5)
+        below = np.where(bend > 0.0, shift * (slope + 0.5 * shift * bend), 0.0)
+    smooth = np.isfinite(below) & (before != ABSENT) & (behind != ABSENT)
+    return np.asarray((here + np.where(smooth, below, 0.0)).reshape(lanes, groups * sectors))
+
+
+# The search for the smallest change: candidates spread over the bounds, then the best of them drawn towards
+# no change.
+#
+# Nothing is random: candidates are those of an additive sequence (Roberts, The unreasonable effectiveness of
+# quasirandom sequences, 2018), so the same question has the same answer.
+
+Progress: TypeAlias = Callable[[int, int], None]
+
+CHUNK, COARSE = 256, 180
+"""Candidates evaluated together, and nodes of the turn on which they are looked at first."""
+FINE, SECTORS = 720, 12
+"""Nodes on which a candidate is improved, and sectors of the turn of which each has a condition of its own."""
+SHELLS = (1.0, 0.6, 0.35, 0.2, 0.1, 0.05)
+"""Candidates lie in the whole box and in smaller ones about no change, in turn."""
+STARTS = 6
+"""Candidates that are improved."""
+APART = 0.1
+"""Starts closer than this, scaled by the box, lead to the same place."""
+STEP = 1e-6
+"""Of differences, in scaled changes: half the digits of a squared sine."""
+SLACK = 1e-5
+"""By which part of it the quadratic programming aims above the target, so that its rounding does not fall short."""
+CORRECTIONS, ACTIVE = 4, 0.02
+"""Small steps back to where all conditions hold, and how near to the target a condition counts for them."""
+ITERATIONS = 60
+CONTRACTIONS = 40
+
+SAID = 100
+"""Progress is said every so many candidates."""
+
+# what is needed for a repair alone is not loaded before
+_optimize = functools.partial(importlib.import_module, "scipy.optimize")
+
+
+@dataclass
+class RepairSearch:
+    """A search among candidates for the least change with squared sines of at least `target`.
+
+    `tried` counts the candidates that were evaluated, `turning` those of the first, even spread that are good enough.
+    """
+
+    candidates: Candidates
+    target: float
+    progress: Progress | None = None
+    tried: int = 0
+    turning: int = 0
+    spread: int = 0
+    total: int = 0
+    _low: Array = field(init=False)
+    _high: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._low, self._high = self.candidates.box()
+
+    def margins(self, changes: Array, nodes: int = COARSE) -> Array:
+        """Least squared sine over the turn of every candidate (n,)."""
+        parts = []
+        for first in range(0, len(changes), CHUNK):
+            some = changes[first : first + CHUNK]
+            parts.append(least(squared_sines(self.candidates.batch(some), nodes)))
+            self._count(len(some))
+        return np.concatenate(parts)
+
+    def run(self, spread: int) -> list[Array]:
+        """Scaled changes that are good enough on the fine nodes, the smallest first."""
+        self.spread = spread
+        self.total = spread + STARTS * (CONTRACTIONS + ITERATIONS * (2 * len(self._low) + 1))
+        changes = self._spread(spread)
+        margins = self.margins(changes)
+        good = margins >= self.target
+        self.turning = int(good.sum())
+        starts = self._apart(changes[good], np.linalg.norm(changes[good], axis=1))
+        if not starts:
+            starts = self._apart(changes, -margins)
+        found = [self.improved(start) for start in starts]
+        reached = [change for change in found if change is not None]
+        if self.progress is not None:
+            self.progress(self.total, self.total)
+        return sorted(reached, key=lambda change: float(np.linalg.norm(change)))
+
+    def _count(self, more: int) -> None:
+        """Count candidates, and say how far it is now and then."""
+        before, self.tried = self.tried, self.tried + more
+        if self.progress is not None and before // SAID < self.tried // SAID:
+            self.progress(min(self.tried, self.total), self.total)
+
+    def _spread(self, count: int) -> Array:
+        """No change, then an even spread over the box and over smaller boxes."""
+        size = len(self._low)
+        root = 2.0
+        for _step in range(50):
+            root = (1.0 + root) ** (1.0 / (size + 1))
+        steps = root ** -np.arange(1.0, size + 1)
+        share = (0.5 + np.outer(np.arange(1, count), steps)) % 1.0
+        shell = np.resize(SHELLS, count - 1)[:, None]
+        inside = (self._low + share * (self._high - self._low)) * shell
+        return np.vstack([np.zeros((1, size)), inside])
+
+    def _apart(self, changes: Array, order: Array) -> list[Array]:
+        """The first few changes by an order that do not lie close together."""
+        width = np.where(self._high > self._low, self._high - self._low, 1.0)
+        kept: list[Array] = []
+        for k in np.argsort(order, kind="stable"):
+            if all(np.linalg.norm((changes[k] - other) / width) > APART for other in kept):
+                kept.append(changes[k])
+            if len(kept) == STARTS:
+                break
+        return kept
+
+    def improved(self, start: Array) -> Array | None:
+        """The least change near a start that is good enough on the fine nodes; None if there is none."""
+        options = []
+        drawn = self._drawn(start)
+        for first in (start,) if drawn is None else (drawn, start):
+            found = self._minimised(first)
+            if found is not None:
+                options.append(found)
+        options += [] if drawn is None else [drawn]
+        return min(options, key=lambda change: float(np.linalg.norm(change)), default=None)
+
+    def _drawn(self, start: Array) -> Array | None:
+        """The least part of a change that is good enough, if the whole of it is."""
+        if self.margins(start[None, :], FINE)[0] < self.target:
+            return None
+        shares = np.linspace(0.0, 1.0, CONTRACTIONS)[:, None]
+        good = self.margins(shares * start, FINE) >= self.target
+        return np.asarray(start * shares[int(np.nonzero(good)[0][0])])
+
+    def _minimised(self, start: Array) -> Array | None:
+        """Sequential quadratic programming from a start, on the conditions of all sectors."""
+        result: Any = _optimize().minimize(
+            lambda x: float(x @ x),
+            start,
+            jac=lambda x: 2.0 * x,
+            bounds=list(zip(self._low, self._high, strict=True)),
+            constraints={"type": "ineq", "fun": self._conditions, "jac": self._slopes},
+            method="SLSQP",
+            options={"maxiter": ITERATIONS, "ftol": 1e-12},
+        )
+        change = np.clip(np.asarray(result.x, dtype=np.float64), self._low, self._high)
+        if not np.isfinite(change).all():
+            return None
+        for _correction in range(CORRECTIONS):
+            lack = self.target - float(self.margins(change[None, :], FINE)[0])
+            if lack <= 0.0:
+                return change
+            change = self.raised(change, lack)
+        return None
+
+    def raised(self, change: Array, lack: float) -> Array:
+        """A change moved as little as lifts its least squared sines by what they lack (and a little more)."""
+        values, slopes = self._sectors(change[None, :])[0], self._slopes(change) * self.target
+        lowest = values <= float(values.min()) + ACTIVE * self.target
+        moved = change + np.linalg.pinv(slopes[lowest], rcond=1e-6) @ np.full(int(lowest.sum()), 1.5 * lack)
+        return np.asarray(np.clip(moved, self._low, self._high))
+
+    def _conditions(self, change: Array) -> Array:
+        return np.asarray(self._sectors(change[None, :])[0] / self.target - (1.0 + SLACK))
+
+    def _sectors(self, changes: Array) -> Array:
+        self._count(len(changes))
+        sines = squared_sines(self.candidates.batch(changes), FINE)
+        return least_by_sector(sines, SECTORS)
+
+    def _slopes(self, change: Array) -> Array:
+        size = len(change)
+        moved = np.vstack([change + STEP * np.eye(size), change - STEP * np.eye(size)])
+        found = self._sectors(moved)
+        return np.asarray((found[:size] - found[size:]).T / (2.0 * STEP * self.target))
+
+
+DEFAULT_ANGLE = pi / 180
+"""Least transmission angle asked for where none is given: 0 would be a mechanism at the brink of locking."""
+CANDIDATES = 3072
+"""Candidates of the first spread."""
+TIGHTENINGS = 4
+"""How often a change is corrected by what its exact least angle lacks."""
+ENOUGH = 1e-9
+"""By how much [rad] the verified least transmission angle may fall short of the one asked for."""
+
+_PARTS = ("mechanism", "changes", "varying", "before", "after")
+
+
+@dataclass(frozen=True)
+class Change:
+    """One number before and after.
+
+    Attributes
+    ----------
+    unit : "rad", "m" or "1"
+    size : its part of the change: radians of an angle, of a length the change over the length
+    """
+
+    path: str
+    before: float
+    after: float
+    unit: str
+    size: float
+
+
+@dataclass(frozen=True)
+class Repair:
+    """What was found.
+
+    Attributes
+    ----------
+    found : whether a mechanism was found that turns fully with the transmission angle asked for
+    mechanism : it; the one given if that turns already; None if none was found
+    changes : of every number that may vary
+    size : root of the sum of the squares of the changes' sizes
+    varying : what could change, with its bounds
+    least_transmission_angle, reached : asked for, and that of the mechanism found (exact) [rad]
+    tried : candidates evaluated
+    spread, turning : candidates of the first spread over the bounds, and how many of these turn
+    impossible : why there can be none, with the inequality; empty where nothing says so
+    before, after : Rotatability of the mechanism given and of the one found
+    """
+
+    found: bool
+    mechanism: Mechanism | None
+    changes: tuple[Change, ...]
+    size: float
+    varying: tuple[Varying, ...]
+    least_transmission_angle: float
+    reached: float | None
+    tried: int
+    spread: int
+    turning: int
+    impossible: str
+    before: Rotatability
+    after: Rotatability | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON, in SI."""
+        plain = {k: v for k, v in vars(self).items() if k not in _PARTS}
+        return {
+            **plain,
+            "changes": [vars(change) for change in self.changes],
+            "varying": [vars(one) for one in self.varying],
+            "before": self.before.as_dict(),
+            "after": self.after.as_dict() if self.after else None,
+        }
+
+
+def repair(
+    mechanism: Mechanism,
+    vary: Sequence[str] | None = None,
+    bounds: Bounds | None = None,
+    least_transmission_angle: Value | None = None,
+    progress: Progress | None = None,
+) -> Repair:
+    """The smallest change that was found after which a mechanism turns fully.
+
+    Parameters
+    ----------
+    vary : paths of numbers that may change
+        Initial angles (where they place something), lengths, coordinates, directions. Left out: the initial
+        angles of all links that are not driven, where these place something, otherwise all lengths.
+    bounds : path -> (least, greatest) value [rad, m, or texts with units]
+        Left out: half a turn to both sides, half to double of a length, half the greatest length to both sides of
+        a coordinate.
+    least_transmission_angle : float [rad] or text
+        What every dyad keeps all over the turn; 1 degree if left out.
+    progress : called with (candidates evaluated, candidates in all at most)
+
+    Returns
+    -------
+    Repair
+        A change is as large as the root of the sum of squares of radians (angles) and of changes over lengths.
+        What is returned is verified by `rotatability`: it turns, with the exact least transmission angle. It is
+        the smallest change found, a local minimum; smaller ones elsewhere are not excluded.
+
+    Raises
+    ------
+    InputError
+        A path or bound is wrong, the drive is no angle or not the only one.
+    NotComputedYet
+        Groups of higher class, gears and rolling wheels.
+    """
+    prepared = ready(mechanism)
+    _check_repairable(prepared)
+    least_angle = _angle(least_transmission_angle)
+    varying = varyings(prepared, vary, bounds)
+    before = rotatability(mechanism)
+    asked = Repair(False, None, (), 0.0, varying, least_angle, None, 0, 0, 0, "", before, None)
+    if turns_well(before, least_angle):
+        return replace(asked, found=True, mechanism=mechanism, reached=_reached(before), after=before)
+    candidates = Candidates(prepared, varying)
+    reason = impossible(candidates, least_angle)
+    if reason:
+        return replace(asked, impossible=reason)
+    return _searched(candidates, asked, progress)
+
+
+def turns_well(found: Rotatability, least_angle: float) -> bool:
+    """Whether a mechanism turns fully with at least a transmission angle in every dyad."""
+    return found.turns_fully is True and _reached(found) >= least_angle - ENOUGH
+
+
+def _reached(found: Rotatability) -> float:
+    return min((one.least for one in found.one.transmissions), default=pi / 2)
+
+
+def _angle(given: Value | None) -> float:
+    if given is None:
+        return DEFAULT_ANGLE
+    try:
+        value = to_si(given, "angle")
+    except InputError as error:
+        raise InputError("least_transmission_angle", error.what, error.repair) from None
+    if not 0.0 < value < pi / 2:
+        raise InputError(
+            "least_transmission_angle",
+            _("it lies between 0 and 90 deg, got {value:.6g} deg").format(value=np.degrees(value)),
+            _('write "20 deg"'),
+        )
+    return value
+
+
+def _check_repairable(prepared: Ready) -> None:
+    mechanism = prepared.mechanism
+    if len(mechanism.drives) != 1:
+        raise InputError(
+            "[[drives]]",
+            _("a repair makes one drive turn; {n} are given").format(n=len(mechanism.drives)),
+            _("give one drive"),
+        )
+    if mechanism.drives[0].kind != "angle":
+        raise InputError("[[drives]]", _("a displacement cannot turn fully"), _("drive the angle of a link"))
+    groups = prepared.structure.groups
+    on_sphere = mechanism.space == "sphere"
+    lacking = [
+        (any(isinstance(group, Newton) for group in groups), _("groups of higher class")),
+        (bool(mechanism.gears or mechanism.rolling), _("gears and rolling wheels")),
+        (
+            on_sphere and any(isinstance(group, Aim) for group in groups),
+            _("guides on moving links of a sphere"),
+        ),
+    ]
+    for found, what in lacking:
+        if found:
+            raise NotComputedYet(
+                "--repair", _("no repair is computed of {what}").format(what=what), _("change it by hand")
+            )
+
+
+def _searched(candidates: Candidates, asked: Repair, progress: Progress | None) -> Repair:
+    """The smallest change that the geometry confirms."""
+    least_angle = asked.least_transmission_angle
+    search = RepairSearch(candidates, sin(least_angle + ENOUGH) ** 2, progress)
+    options = search.run(CANDIDATES)
+    effort = replace(asked, spread=search.spread, turning=search.turning)
+    for change in options:
+        confirmed = _confirmed(search, change, least_angle)
+        if confirmed is not None:
+            change, mechanism, after = confirmed
+            return replace(
+                effort,
+                found=True,
+                mechanism=mechanism,
+                changes=_changes(candidates.varying, change),
+                size=float(np.linalg.norm(change)),
+                reached=_reached(after),
+                tried=search.tried,
+                after=after,
+            )
+    return replace(effort, tried=search.tried)
+
+
+def _confirmed(
+    search: RepairSearch, change: Any, least_angle: float
+) -> tuple[Any, Mechanism, Rotatability] | None:
+    """A change whose mechanism turns as asked by its geometry, corrected by what the exact least angle lacks."""
+    for _attempt in range(TIGHTENINGS):
+        try:
+            mechanism = search.candidates.mechanism(change)
+            after = rotatability(mechanism)
+        except CentrodeError:
+            return None
+        if turns_well(after, least_angle):
+            return change, mechanism, after
+        lack = search.target - sin(_reached(after)) ** 2 if after.turns_fully else 0.1 * search.target
+        change = search.raised(change, max(lack, 0.0) + 1e-9 * search.target)
+    return None
+
+
+def _changes(varying: Sequence[Varying], change: Any) -> tuple[Change, ...]:
+    return tuple(
+        Change(one.path, one.before, one.before + float(x) * one.scale, one.unit, float(x))
+        for one, x in zip(varying, change, strict=True)
+    )

@@ -1,0 +1,478 @@
+"""Why a group stops a mechanism, or lets its assemblies meet: in a sentence, and in symbols."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, pi, remainder
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from centrode.algebra.arrays import ARRAYS
+from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, Pair, Watched
+from centrode.geometry.plane import Vector, place, subtract, turned
+from centrode.geometry.plane import cross as plane_cross
+from centrode.geometry.plane import dot as plane_dot
+from centrode.geometry.sphere import cross, dot, tangent
+from centrode.kinematics.dyads import aim_curve, loci_of
+from centrode.kinematics.path import JETS
+from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
+from centrode.locale import _
+from centrode.model.mechanism import Mechanism
+from centrode.quantities import display_unit
+from centrode.structure.assur import name_of
+from centrode.structure.constraints import Positions
+from centrode.structure.dimensions import Dimensions
+from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Slot, Stop, Stroke
+
+# Conditions in symbols: the angle phi of each link by its number in the description, and what vanishes of
+# them.
+
+NOTHING = 1e-12
+"""An angle [rad] below which a constant is not written down."""
+HIGHER = "determinant = 0"
+"""The condition of a group whose determinant has no short form."""
+
+
+@dataclass(frozen=True)
+class PivotSymbol:
+    """The direction of a line as a sum: symbols of angles, and a constant [rad]."""
+
+    symbols: tuple[str, ...] = ()
+    constant: float = 0.0
+
+
+def symbol_of(mechanism: Mechanism, link: str) -> str:
+    """Symbol of a link's angle: links count from 1, in the order of the description."""
+    return f"phi{mechanism.link_names.index(link) + 1}"
+
+
+def bearing_of(mechanism: Mechanism, body: str, direction: Vector) -> PivotSymbol:
+    """Bearing of a direction that is given in the axes of a link, or of the frame."""
+    constant = atan2(float(direction[1]), float(direction[0]))
+    symbols = (symbol_of(mechanism, body),) if body in mechanism.links else ()
+    return PivotSymbol(symbols, constant)
+
+
+def bearing_between(
+    mechanism: Mechanism, numbers: Dimensions, link: str, first: str, last: str
+) -> PivotSymbol:
+    """Bearing of the line from one point of a link to another."""
+    local = numbers.local[link]
+    return bearing_of(mechanism, link, subtract(local[last], local[first]))
+
+
+def parallel(one: PivotSymbol, other: PivotSymbol) -> str:
+    """The condition that two lines have the same direction, or opposite ones."""
+    return _vanishes(one, other, square=False)
+
+
+def square(one: PivotSymbol, other: PivotSymbol) -> str:
+    """The condition that two lines stand square to each other."""
+    return _vanishes(one, other, square=True)
+
+
+def _vanishes(one: PivotSymbol, other: PivotSymbol, *, square: bool) -> str:
+    """The sine or cosine of the difference = 0; a quarter turn between the two changes one into the other."""
+    plus = [name for name in one.symbols if name not in other.symbols]
+    minus = [name for name in other.symbols if name not in one.symbols]
+    if not plus and not minus:
+        return HIGHER
+    constant = one.constant - other.constant
+    if not plus:
+        plus, minus, constant = minus, plus, -constant
+    constant = remainder(constant, pi)  # half a turn changes the sign alone
+    if abs(abs(constant) - 0.5 * pi) <= NOTHING:
+        constant, square = 0.0, not square
+    name = "cos" if square else "sin"
+    return f"{name}({_sum(plus, minus, constant)}) = 0"
+
+
+def _sum(plus: list[str], minus: list[str], constant: float) -> str:
+    text = " + ".join(plus) + "".join(f" - {name}" for name in minus)
+    if abs(constant) <= NOTHING:
+        return text
+    return f"{text} {'+' if constant > 0 else '-'} {abs(constant):.6g}"
+
+
+Number: TypeAlias = Any
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Why: a sentence, and the condition of the group's own geometry that holds there ("sin(phi3 - phi4) = 0")."""
+
+    sentence: str
+    condition: str
+
+
+def cause_of(tour: DriveSweep, group: Group, index: int, value: float, *, crossing: bool = False) -> Cause:
+    """Why a group is at a limit, or at a change point (`crossing`), at a value of the drive."""
+    mechanism, numbers = tour.prepared.mechanism, tour.continuation.kinematics.numbers
+    about = _About(tour, mechanism, numbers, index, value)
+    if isinstance(group, Aim):
+        return _cause_of_aim(about, group)
+    if not isinstance(group, Meet):
+        sentence = (
+            _("positions of the group meet: the determinant of its equations is zero")
+            if crossing
+            else _("the positions of the group turn back: the determinant of its equations is zero")
+        )
+        return Cause(sentence, HIGHER)
+    if group.kind == "RRR":
+        return _of_two_rods(about, group)
+    if group.kind == "RRP":
+        return _of_rod_and_line(about, group)
+    return _of_two_lines(about, group)
+
+
+@dataclass(frozen=True)
+class _About:
+    """What a cause is told of."""
+
+    tour: DriveSweep
+    mechanism: Mechanism
+    numbers: Dimensions
+    index: int
+    value: float
+
+    @property
+    def on_sphere(self) -> bool:
+        return self.mechanism.space == "sphere"
+
+    def length(self, value: float) -> str:
+        """A length, on the sphere an arc, in the units of the reader."""
+        value = 0.0 if abs(value) <= 1e-12 * float(self.numbers.scale) else value
+        display = self.mechanism.display
+        factor, shown = display_unit(self.numbers.space.unit, display.length, display.angle)
+        return f"{value * factor:.6g} {shown}"
+
+
+def _one(x: Number) -> float:
+    return float(np.reshape(x, -1)[0])
+
+
+def body_of(locus: Locus) -> str:
+    """A locus by what draws it: a link, a cylinder or a guide."""
+    if isinstance(locus, Rod):
+        return locus.link
+    if isinstance(locus, Stroke):
+        return _("cylinder {name}").format(name=locus.drive)
+    if isinstance(locus, (Rail, Slot, Stop)):
+        return _("guide {name}").format(name=locus.guide)
+    return _("the track of a wheel")
+
+
+def bearing_of_locus(
+    mechanism: Mechanism, numbers: Dimensions, locus: Locus, carriage: str
+) -> PivotSymbol | None:
+    """Bearing of a rod, or of a line on which a point moves; None where a wheel draws it."""
+    if isinstance(locus, Rod):
+        return bearing_between(mechanism, numbers, locus.link, locus.centre, locus.point)
+    if isinstance(locus, Stroke):
+        return PivotSymbol(("psi_" + locus.drive.replace("-", ""),))
+    if isinstance(locus, Rail):
+        return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
+    if isinstance(locus, Slot):
+        return bearing_of(mechanism, carriage, numbers.direction[locus.guide])
+    if isinstance(locus, Stop):
+        x, y = numbers.direction[locus.guide]
+        return bearing_of(mechanism, locus.on, (-y, x))
+    return None
+
+
+def _conditions(about: _About, group: Meet) -> tuple[PivotSymbol | None, PivotSymbol | None]:
+    carriage = group.carriage or ""
+    one, other = (bearing_of_locus(about.mechanism, about.numbers, locus, carriage) for locus in group.loci)
+    return one, other
+
+
+def _of_two_rods(about: _About, group: Meet) -> Cause:
+    """The centres and the point where the rods meet lie on one line: stretched out, or folded."""
+    one, other = (body_of(locus) for locus in group.loci)
+    stretched, apart = _stretched(about, group)
+    first, second = (getattr(locus, "centre", "") for locus in group.loci)
+    if about.on_sphere:
+        condition = f"sin(angle {first}-{group.points[0]}-{second}) = 0"
+        line = _("{one} and {other} lie on one great circle")
+    else:
+        bearings = _conditions(about, group)
+        condition = HIGHER if None in bearings else parallel(*bearings)  # type: ignore[arg-type]
+        line = (
+            _("{one} and {other} stand parallel") if group.carriage else _("{one} and {other} fall in line")
+        )
+    how = _("stretched out") if stretched else _("folded over each other")
+    sentence = _("{line}, {how}").format(line=line.format(one=one, other=other), how=how)
+    if first and second and not group.carriage:
+        sentence = _("{sentence} ({first} and {second} are {apart} apart)").format(
+            sentence=sentence, first=first, second=second, apart=about.length(apart)
+        )
+    return Cause(sentence, condition)
+
+
+def _stretched(about: _About, group: Meet) -> tuple[bool, float]:
+    """Whether two circles touch from outside, and how far apart their centres are."""
+    at = about.tour.stopped(about.value, ARRAYS)
+    choices = SideChoices(FixedSigns(ARRAYS, {about.index: 0.0}), about.index)
+    space = about.numbers.space
+    with np.errstate(all="ignore"):
+        one, other = loci_of(group, ARRAYS, about.numbers, at, choices)
+        apart = _one(space.distance(ARRAYS, one.centre, other.centre))
+    radii = [_radius(circle) for circle in (one, other)]
+    total, difference = sum(radii), abs(radii[0] - radii[1])
+    total = min(total, 2.0 * np.pi - total) if about.on_sphere else total
+    return abs(apart - total) <= abs(apart - difference), apart
+
+
+def _radius(circle: Any) -> float:
+    """Radius [m], on the sphere the arc [rad], of a circle."""
+    if hasattr(circle, "half"):
+        sine, cosine = (_one(x) for x in circle.half)
+        return 2.0 * float(np.arctan2(abs(sine), abs(cosine)))
+    return abs(_one(circle.radius))
+
+
+def _of_rod_and_line(about: _About, group: Meet) -> Cause:
+    """The rod stands square to the line on which its end moves."""
+    rod, line = group.loci
+    names = {"rod": body_of(rod), "guide": body_of(line)}
+    if about.on_sphere:
+        on = getattr(line, "guide", "")
+        condition = f"cos(angle between {names['rod']} and guide {on}) = 0"
+        return Cause(_("{rod} stands square to {guide}").format(**names), condition)
+    bearings = _conditions(about, group)
+    condition = HIGHER if None in bearings else square(*bearings)  # type: ignore[arg-type]
+    if isinstance(line, Stop):
+        return Cause(_("{rod} lies along {guide}").format(**names), condition)
+    return Cause(_("{rod} stands square to {guide}").format(**names), condition)
+
+
+def _of_two_lines(about: _About, group: Meet) -> Cause:
+    """Two lines are parallel: where they meet goes to infinity."""
+    one, other = (body_of(locus) for locus in group.loci)
+    if about.on_sphere:
+        return Cause(_("the circles of {one} and {other} touch").format(one=one, other=other), HIGHER)
+    bearings = _conditions(about, group)
+    condition = HIGHER if None in bearings else parallel(*bearings)  # type: ignore[arg-type]
+    sentence = _("{one} and {other} are parallel: where they meet goes to infinity")
+    return Cause(sentence.format(one=one, other=other), condition)
+
+
+def _cause_of_aim(about: _About, group: Aim) -> Cause:
+    """The target is as near to the pivot as the line in the aimed link: the arm to it stands square to the line."""
+    names = {"pivot": group.pivot, "target": group.target, "link": group.link, "guide": group.guide}
+    if group.contact is not None:
+        return Cause(_("{link} cannot come nearer to the wheel about {target}").format(**names), HIGHER)
+    if about.on_sphere:
+        condition = f"cos(angle between arc {group.pivot}-{group.target} and guide {group.guide}) = 0"
+        return Cause(
+            _("the arc from {pivot} to {target} stands square to guide {guide}").format(**names), condition
+        )
+    through, direction = aim_curve(group, about.numbers)
+    to_pivot = subtract(about.numbers.local[group.link][group.pivot], through)
+    foot = float(plane_dot(direction, to_pivot))
+    slide = f"s_{group.guide}"
+    condition = (
+        f"{slide} = {about.length(foot)}"
+        if abs(foot) > 1e-12 * float(about.numbers.scale)
+        else f"{slide} = 0"
+    )
+    offset = abs(float(direction[0] * to_pivot[1] - direction[1] * to_pivot[0]))
+    if offset <= 1e-12 * float(about.numbers.scale):
+        return Cause(_("{target} comes to the pivot {pivot} of {link}").format(**names), condition)
+    sentence = _(
+        "the line from {pivot} to {target} stands square to guide {guide}: {target} comes no nearer than {by}"
+    )
+    return Cause(sentence.format(**names, by=about.length(offset)), condition)
+
+
+# Transmission angles of the dyads: how well each passes motion on, from 0 (it locks) to a right angle.
+
+
+@dataclass(frozen=True)
+class Transmission:
+    """Extremes of a dyad's transmission angle over a tour.
+
+    Attributes
+    ----------
+    group : its name
+    kind : "RRR", "RRP", "RPR"
+    least, least_at : the least acute angle [rad] (between lines: 0 to pi/2), and the drive's value there
+    extremes : (drive's value, angle [rad]) of its minima and maxima; two links: 0 to pi, otherwise acute
+    """
+
+    group: str
+    kind: str
+    least: float
+    least_at: float
+    extremes: tuple[tuple[float, float], ...]
+
+
+def watched_dyads(tour: DriveSweep, guides: bool = False) -> list[tuple[Watched, int]]:
+    """The transmission angles of a plan's dyads, each with the number of its group; on demand of two guides too."""
+    kinematics = tour.continuation.kinematics
+    found = []
+    for index, group in enumerate(kinematics.structure.groups):
+        watched = _watched(kinematics, group)
+        if watched is None and guides:
+            watched = _watched_guides(kinematics, group)
+        if watched is not None:
+            found.append((watched, index))
+    return found
+
+
+def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
+    """RRR: between the two rods; RRP: between the rod and the normal of the line; RPR: between arm and normal."""
+    name = name_of(group)
+    sphere = kinematics.numbers.space.name == "sphere"
+    if isinstance(group, Aim) and group.contact is None:
+        of_aim = _of_aim_on_sphere if sphere else _of_aim
+        return Watched(name, "rad", lambda at: of_aim(kinematics, group, at))
+    if not isinstance(group, Meet):
+        return None
+    centres = [locus for locus in group.loci if isinstance(locus, (Rod, Stroke))]
+    if len(centres) == 2:
+        return Watched(name, "rad", lambda at: _between_rods(sphere, centres, at))
+    line = next((locus for locus in group.loci if isinstance(locus, (Rail, Slot))), None)
+    if len(centres) == 1 and isinstance(line, Rail) and sphere:
+        return Watched(name, "rad", lambda at: _to_pole(kinematics, centres[0], line, at))
+    if len(centres) == 1 and line is not None and not sphere:
+        return Watched(name, "rad", lambda at: _to_normal(kinematics, centres[0], line, group.carriage, at))
+    return None
+
+
+def _watched_guides(kinematics: Kinematics, group: Group) -> Watched | None:
+    """PRP, RPP: between the two guides, on the sphere between the arcs to the poles of both circles."""
+    if not isinstance(group, Meet) or len(group.loci) != 2:
+        return None
+    lines = [locus for locus in group.loci if isinstance(locus, (Rail, Slot))]
+    name = name_of(group)
+    if len(lines) != 2:
+        return None
+    if kinematics.numbers.space.name != "sphere":
+        return Watched(name, "rad", lambda at: _between_guides(kinematics, lines, group.carriage, at))
+    rails = [line for line in lines if isinstance(line, Rail)]
+    if len(rails) != 2 or len(group.points) != 1:
+        return None
+    return Watched(name, "rad", lambda at: _between_poles(kinematics, rails, group.points[0], at))
+
+
+def _between_guides(
+    kinematics: Kinematics, lines: list[Rail | Slot], carriage: str | None, at: Positions
+) -> Pair:
+    bodies = [line.on if isinstance(line, Rail) else carriage for line in lines]
+    one, other = (
+        turned(kinematics.numbers.direction[line.guide], at.poses[body or "frame"].rotor)
+        for line, body in zip(lines, bodies, strict=True)
+    )
+    return plane_dot(one, other), plane_cross(one, other)
+
+
+def _between_poles(kinematics: Kinematics, rails: list[Rail], point: str, at: Positions) -> Pair:
+    space, numbers = kinematics.numbers.space, kinematics.numbers
+    pin = at.points[point]
+    one, other = (
+        tangent(pin, space.place(JETS, at.poses[rail.on], numbers.through[rail.guide])) for rail in rails
+    )
+    return dot(one, other), dot(pin, cross(one, other))
+
+
+def _between_rods(sphere: bool, rods: list[Any], at: Positions) -> Pair:
+    one, other = ((at.points[rod.point], at.points[rod.centre]) for rod in rods)
+    if sphere:
+        arc, next_arc = (tangent(pin, centre) for pin, centre in (one, other))
+        return dot(arc, next_arc), dot(one[0], cross(arc, next_arc))
+    line, next_line = (subtract(centre, pin) for pin, centre in (one, other))
+    return plane_dot(line, next_line), plane_cross(line, next_line)
+
+
+def _to_pole(kinematics: Kinematics, rod: Any, line: Rail, at: Positions) -> Pair:
+    """Between the rod's arc and the arc to the pole of the guide's circle."""
+    space, numbers = kinematics.numbers.space, kinematics.numbers
+    pin, centre = at.points[rod.point], at.points[rod.centre]
+    pole = space.place(JETS, at.poses[line.on], numbers.through[line.guide])
+    arc, to_pole = tangent(pin, centre), tangent(pin, pole)
+    return dot(arc, to_pole), dot(pin, cross(arc, to_pole))
+
+
+def _of_aim_on_sphere(kinematics: Kinematics, group: Aim, at: Positions) -> Pair:
+    """In the target, between the arcs to the pivot and to the pole of the guide's circle."""
+    space, numbers = kinematics.numbers.space, kinematics.numbers
+    target, pivot = at.points[group.target], at.points[group.pivot]
+    pole = space.place(JETS, at.poses[group.link], numbers.through[group.guide])
+    arc, to_pole = tangent(target, pivot), tangent(target, pole)
+    return dot(arc, to_pole), dot(target, cross(arc, to_pole))
+
+
+def _to_normal(kinematics: Kinematics, rod: Any, line: Locus, carriage: str | None, at: Positions) -> Pair:
+    """The rod's share along the line is the sine; that along the normal the cosine."""
+    assert isinstance(line, (Rail, Slot))
+    body = line.on if isinstance(line, Rail) else carriage
+    rotor = at.poses[body or "frame"].rotor
+    direction = turned(kinematics.numbers.direction[line.guide], rotor)
+    arm = subtract(at.points[rod.point], at.points[rod.centre])
+    return plane_cross(direction, arm), plane_dot(direction, arm)
+
+
+def _of_aim(kinematics: Kinematics, group: Aim, at: Positions) -> Pair:
+    """The target's way along the line from the pivot's foot is the sine, the pivot's distance from it the cosine."""
+    _through, direction = aim_curve(group, kinematics.numbers)
+    pose = at.poses[group.link]
+    pivot = place(pose, kinematics.numbers.local[group.link][group.pivot])
+    along = turned(direction, pose.rotor)
+    arm = subtract(at.points[group.target], pivot)
+    return plane_cross(along, arm), plane_dot(along, arm)
+
+
+def transmissions_of(course: MonitoredFunction, groups: list[int], first: int = 0) -> list[Transmission]:
+    """Extremes of the watched transmission angles, from number `first` on."""
+    found = []
+    for k, index in enumerate(groups, first):
+        group = course.tour.prepared.structure.groups[index]
+        fold = _between if group.kind == "RRR" else _acute  # two links have a sense each, a line has none
+        extremes = [(float(at), fold(float(value))) for at, value in zip(*course.turned[k], strict=True)]
+        least, at = least_of(course, k, index, extremes)
+        found.append(Transmission(course.watched[k].name, group.kind, least, at, tuple(extremes)))
+    return found
+
+
+def _between(value: float) -> float:
+    """An angle between two directions, in [0, pi]."""
+    folded = abs(value) % (2.0 * pi)
+    return min(folded, 2.0 * pi - folded)
+
+
+def _acute(value: float) -> float:
+    """An angle between two lines, in [0, pi/2]."""
+    between = _between(value)
+    return min(between, pi - between)
+
+
+def least_of(
+    course: MonitoredFunction, k: int, index: int, extremes: list[tuple[float, float]]
+) -> tuple[float, float]:
+    """The least acute angle; zero at the group's own limits and change points."""
+    tour = course.tour
+    if not isinstance(tour.prepared.structure.groups[index], Aim):
+        for event in tour.events("limit") + tour.events("change point"):
+            if event.group == index and (event.kind == "change point" or event.at in (tour.low, tour.high)):
+                return 0.0, event.at
+    acute = [(min(value, pi - value), at) for at, value in extremes]
+    if not acute or not tour.comes_round:
+        acute += transmission_at_ends(course, k)
+    if not acute:
+        sines = np.abs(np.sin(course.values[k]))
+        node = int(np.nanargmin(sines))
+        acute.append((float(np.arcsin(sines[node])), float(course.nodes[node])))
+    return min(acute)
+
+
+def transmission_at_ends(course: MonitoredFunction, k: int) -> list[tuple[float, float]]:
+    """The acute angle at the ends of the stretch: the drive's limits, or the initial position."""
+    found = []
+    for at in (end for end in course.tour.span if np.isfinite(end)):
+        value = float(course.watched[k].value(course.tour.stopped(at, ARRAYS), 1)[0])
+        if np.isfinite(value):
+            between = _between(value)
+            found.append((min(between, pi - between), at))
+    return found
