@@ -22,7 +22,7 @@ from centrode.algebra.graph_arrays import run_on_arrays
 from centrode.algebra.scans import Scan, call_of, room_of
 from centrode.kinematics.compiled.variables import PARAMETER
 from centrode.kinematics.prepared import ready
-from centrode.sweeps.limits import KERNEL_BUFFER
+from centrode.sweeps.designs import KERNEL_BUFFER
 
 if machine_code.PRESENT:
     from centrode.algebra.machine_code.kernels import kernel_of

@@ -245,10 +245,10 @@ from .study.variants.telling import spoken_variants as spoken_variants
 from .study.words.describing import describe as describe
 
 # Many mechanisms
-from .sweeps.sweeping import sweep as sweep
+from .sweeps.sweep import sweep as sweep
 from .sweeps.designs import grid as grid
-from .sweeps.drawing import sample as sample
-from .sweeps.files import read_sweep as read_sweep
+from .sweeps.designs import sample as sample
+from .sweeps.sweep import read_sweep as read_sweep
 from .study.sweep_summary import sweep_rows as sweep_rows
 
 # Any result, shown

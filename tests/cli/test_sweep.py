@@ -159,7 +159,7 @@ def test_places_that_are_refused(centrode: Centrode, folder: Path, study: Path) 
 def test_an_interrupted_table_is_not_written(
     centrode: Centrode, folder: Path, study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("centrode.sweeps.limits.BLOCK_POSITIONS", 1)
+    monkeypatch.setattr("centrode.sweeps.designs.BLOCK_POSITIONS", 1)
 
     def stop(self: object, what: str, done: int = 0, of: int = 0) -> None:
         if done == 3:

@@ -18,7 +18,7 @@ import xarray as xr
 import centrode as ct
 from centrode.cli.main import main
 from centrode.errors import DamageWarning
-from centrode.sweeps import limits
+from centrode.sweeps import designs
 
 pytest.importorskip("zarr", reason="stores need the extra sweeps")
 
@@ -35,7 +35,7 @@ links.AB.length = { from = 3.2, to = 3.8, count = 4 }
 
 @pytest.fixture(autouse=True)
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(limits, "BLOCK_POSITIONS", 1)  # every mechanism is a block
+    monkeypatch.setattr(designs, "BLOCK_POSITIONS", 1)  # every mechanism is a block
 
 
 def swept(store: Path | None, **more: Any) -> xr.Dataset:
@@ -48,7 +48,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A store that is finished, twelve blocks."""
     place = tmp_path_factory.mktemp("finished") / "r.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(limits, "BLOCK_POSITIONS", 1)
+        patch.setattr(designs, "BLOCK_POSITIONS", 1)
         swept(place)
     return place
 
@@ -139,7 +139,7 @@ def test_a_bad_block_at_the_edge(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[Path], None]
 ) -> None:
     """The last block is no whole chunk; what is in its place is not read when it is computed again."""
-    monkeypatch.setattr(limits, "BLOCK_POSITIONS", 2000)
+    monkeypatch.setattr(designs, "BLOCK_POSITIONS", 2000)
     asked = {
         "vary": ct.grid({"links.AB.length": np.linspace(3.2, 3.8, 7)}),
         "outputs": "angle.DB",
@@ -307,7 +307,7 @@ def test_a_study_with_blocks_that_take_all_memory_is_refused(tmp_path: Path, mon
     swept(store)
     file = store / "progress" / "study.json"
     file.write_bytes(changed("blocks", [0, 4])(file.read_bytes()))
-    monkeypatch.setattr(limits, "BLOCK_BYTES", 1000)
+    monkeypatch.setattr(designs, "BLOCK_BYTES", 1000)
     with pytest.raises(ct.InputError, match=r"study\.json in it is damaged"):
         swept(store)
 

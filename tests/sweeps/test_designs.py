@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import centrode as ct
-from centrode.sweeps.blocks import Blocks
 from centrode.sweeps.designs import Crossed, design_of
+from centrode.sweeps.store import Blocks
 
 AB, DX = "links.AB.length", "frame.points.D.x"
 

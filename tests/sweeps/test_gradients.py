@@ -11,7 +11,7 @@ import pytest
 
 import centrode as ct
 from centrode.algebra import machine_code
-from centrode.sweeps.slopes import Slopes, States
+from centrode.sweeps.machine import Slopes, States
 from drives import five_bar
 from mechanisms import EPS, four_bar
 

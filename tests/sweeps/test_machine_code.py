@@ -16,7 +16,7 @@ from centrode.kinematics.compiled.event_screening import EventScreening
 from centrode.kinematics.prepared import ready
 from centrode.quantities import QUANTITIES
 from centrode.structure.groups import Newton
-from centrode.sweeps import limits
+from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor
 from growing import mechanism_of
 from growing_sphere import grown
@@ -141,7 +141,7 @@ def test_what_is_refused_is_told(name: str, monkeypatch: pytest.MonkeyPatch) -> 
     vary = around(mechanism, 0.001, 2)
     with pytest.raises(ct.InputError, match=f"{REASONS[name]}; say executor"):
         ct.sweep(mechanism, vary, "position", 3, executor=MACHINE)
-    monkeypatch.setattr(limits, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(designs, "WORTH_COMPILING", 1)
     found = ct.sweep(mechanism, vary, "position", 3)
     assert found.attrs["executor"] == f"{ARRAYS} ({REASONS[name]})"
 
@@ -175,7 +175,7 @@ def test_a_fifth_of_the_samples_open(reduce: str | None, monkeypatch: pytest.Mon
 @pytest.mark.parametrize("name", ["crank-rocker", "antiparallelogram", "five-bar-two-drives"])
 def test_columns_of_mechanisms_with_events(name: str, reduce: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Bits, angles and sums included: motions with events are those of the arrays."""
-    monkeypatch.setattr(limits, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(designs, "WORTH_COMPILING", 1)
     mechanism = ct.example(name)
     lengths = np.linspace(0.97, 1.03, 9) if name == "antiparallelogram" else np.linspace(0.35, 0.49, 9)
     paths = ("links.OA.length", "links.DB.length") if name == "antiparallelogram" else ("links.AB.length",)
@@ -298,7 +298,7 @@ def test_bits_do_not_hang_on_chunks_threads_or_the_cache(
     kernels.forget()
     xr.testing.assert_identical(whole, computed())
     for name, value in (("KERNEL_LANES", 5), ("KERNEL_BUFFER", 20_000), ("BLOCK_POSITIONS", 200)):
-        monkeypatch.setattr(limits, name, value)
+        monkeypatch.setattr(designs, name, value)
     calls: list[int] = []
     xr.testing.assert_identical(whole, computed(progress=lambda done, _of: calls.append(done)))
     assert len(calls) > 3, "one chunk proves nothing"
@@ -314,14 +314,14 @@ def test_threads_are_counted(threads: Any) -> None:
 def test_machine_code_is_chosen_where_it_pays(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism, vary = open_and_whole()
     assert ct.sweep(mechanism, vary, "angle", 37).attrs["executor"] == ARRAYS
-    monkeypatch.setattr(limits, "WORTH_COMPILING", 42 * 37)
+    monkeypatch.setattr(designs, "WORTH_COMPILING", 42 * 37)
     assert ct.sweep(mechanism, vary, "angle", 37).attrs["executor"] == MACHINE
 
 
 def test_without_llvmlite_arrays_compute(monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism, vary = open_and_whole()
     monkeypatch.setattr(machine_code, "PRESENT", False)
-    monkeypatch.setattr(limits, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(designs, "WORTH_COMPILING", 1)
     found = ct.sweep(mechanism, vary, "angle", 7)
     assert found.attrs["executor"] == "arrays (llvmlite is not installed)"
     with pytest.raises(ct.InputError, match="llvmlite is not installed"):

@@ -14,7 +14,7 @@ from centrode.algebra import machine_code
 from centrode.kinematics.compiled import batch
 from centrode.kinematics.compiled.newton import CHANGE, CONDITION
 from centrode.kinematics.prepared import ready
-from centrode.sweeps import limits
+from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor
 from growing_higher import HIGHER, grown_higher
 from mechanisms import EPS, parts_of
@@ -229,7 +229,7 @@ def test_bits_do_not_hang_on_chunks_threads_or_the_cache(
     monkeypatch.setenv("CENTRODE_CACHE", "")
     pytest.importorskip("centrode.algebra.machine_code.kernels").forget()
     for name, value in (("KERNEL_LANES", 11), ("KERNEL_BUFFER", 20_000), ("BLOCK_POSITIONS", 200)):
-        monkeypatch.setattr(limits, name, value)
+        monkeypatch.setattr(designs, name, value)
     xr.testing.assert_identical(whole, computed())
 
 
@@ -301,7 +301,7 @@ def test_several_drives_are_left_to_the_arrays(monkeypatch: pytest.MonkeyPatch) 
     mechanism, vary = ct.Mechanism(**parts), {"links.AB.length": [4.99, 5.01]}
     with pytest.raises(ct.InputError, match="groups of higher class with several drives; say executor"):
         ct.sweep(mechanism, vary, "position", 3, executor=MACHINE)
-    monkeypatch.setattr(limits, "WORTH_COMPILING", 1)
+    monkeypatch.setattr(designs, "WORTH_COMPILING", 1)
     monkeypatch.setattr(batch, "WORTH_COMPILING", 1)
     assert ct.sweep(mechanism, vary, "position", 3).attrs["executor"].startswith(f"{ARRAYS} (")
     assert (ct.motion(mechanism, 3, start=0.0, stop=0.1, vary=vary)["status"] == ct.Status.OK).all()

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from centrode.algebra import machine_code
-from centrode.sweeps import limits
+from centrode.sweeps import designs
 
 COMPILED = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")
 PROBE = """
@@ -54,4 +54,4 @@ def grown(mechanisms: int, samples: int, name: str, executor: str) -> tuple[int,
 def test_memory_is_bounded(mechanisms: int, samples: int, name: str, executor: str) -> None:
     """Chunks are full: with more mechanisms there are more of them, not greater ones."""
     more, result = grown(mechanisms, samples, name, executor)
-    assert more < limits.WORKING_SET + limits.BLOCK_BYTES + result
+    assert more < designs.WORKING_SET + designs.BLOCK_BYTES + result

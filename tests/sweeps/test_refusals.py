@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.sweeps import limits
+from centrode.sweeps import designs
 
 AB = "links.AB.length"
 WRONG: list[tuple[dict[str, Any], str]] = [
@@ -82,7 +82,7 @@ def test_what_is_refused(change: dict[str, Any], message: str) -> None:
 
 
 def test_a_great_result_may_go_to_a_store(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(limits, "IN_MEMORY", 1000)
+    monkeypatch.setattr(designs, "IN_MEMORY", 1000)
     with pytest.raises(ct.InputError, match="give a store"):
         ct.sweep(ct.example("crank-rocker"), {AB: np.linspace(3.4, 3.6, 100)}, "angle", 5)
 

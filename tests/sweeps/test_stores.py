@@ -16,7 +16,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.files.locks import locked
-from centrode.sweeps import limits
+from centrode.sweeps import designs
 from samples import few
 
 pytest.importorskip("zarr", reason="stores need the extra sweeps")
@@ -32,7 +32,7 @@ def crank_rocker() -> ct.Mechanism:
 
 @pytest.fixture
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(limits, "BLOCK_POSITIONS", 6_000)
+    monkeypatch.setattr(designs, "BLOCK_POSITIONS", 6_000)
 
 
 def markers(store: Path) -> dict[str, int]:
@@ -148,7 +148,7 @@ def test_blocks_of_another_size_go_on_too(tmp_path: Path, monkeypatch: pytest.Mo
 
     with pytest.raises(KeyboardInterrupt):
         ct.sweep(crank_rocker(), ct.grid(VARY), OUTPUTS, 19, store=tmp_path / "r.zarr", progress=stop)
-    monkeypatch.setattr(limits, "BLOCK_POSITIONS", 20_000)
+    monkeypatch.setattr(designs, "BLOCK_POSITIONS", 20_000)
     ended = ct.sweep(crank_rocker(), ct.grid(VARY), OUTPUTS, 19, store=tmp_path / "r.zarr")
     xr.testing.assert_equal(ended, ct.sweep(crank_rocker(), ct.grid(VARY), OUTPUTS, 19))
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.quantities import QUANTITIES
-from centrode.sweeps import limits
+from centrode.sweeps import designs
 from mechanisms import EPS
 
 CASES: list[tuple[str, dict[str, Any], int]] = [
@@ -42,8 +42,8 @@ def varied(name: str, vary: dict[str, Any]) -> dict[str, Any]:
 @pytest.fixture
 def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
     """A few mechanisms at once, a few chunks in a block."""
-    monkeypatch.setattr(limits, "WORKING_SET", 250_000)
-    monkeypatch.setattr(limits, "BLOCK_POSITIONS", 3_000)
+    monkeypatch.setattr(designs, "WORKING_SET", 250_000)
+    monkeypatch.setattr(designs, "BLOCK_POSITIONS", 3_000)
 
 
 def quantities(motion: xr.Dataset) -> list[str]:

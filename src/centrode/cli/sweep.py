@@ -21,7 +21,7 @@ from centrode.locale import _, mark
 if TYPE_CHECKING:
     import xarray as xr
 
-    from centrode.sweeps.files import SweepStudy
+    from centrode.sweeps.sweep import SweepStudy
 
 TABLE, STORE = ".csv", ".zarr"
 

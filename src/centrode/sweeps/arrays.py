@@ -17,9 +17,9 @@ from centrode.kinematics.prepared import Ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
-from centrode.sweeps import limits
-from centrode.sweeps.asked import Asked
+from centrode.sweeps import designs
 from centrode.sweeps.designs import Rows
+from centrode.sweeps.outputs import SweepOutputs
 
 AnyArray: TypeAlias = npt.NDArray[Any]
 Results: TypeAlias = Mapping[str, AnyArray]
@@ -34,12 +34,12 @@ OF_ANCHORS = 5
 
 
 @dataclass(frozen=True)
-class Task:
+class SweepTask:
     """What is computed for every mechanism: a mechanism made ready, its samples, what is asked for, what varies."""
 
     ready: Ready
     span: SampleGrid
-    asked: Asked
+    asked: SweepOutputs
     paths: tuple[str, ...]
 
     @property
@@ -54,8 +54,8 @@ class ArraysExecutor:
     name = "arrays"
     blocks = 1
 
-    def lanes(self, task: Task) -> int:
-        """How many mechanisms may be computed together: as many as `limits.WORKING_SET` holds, at least one."""
+    def lanes(self, task: SweepTask) -> int:
+        """How many mechanisms may be computed together: as many as `designs.WORKING_SET` holds, at least one."""
         layout = layout_of(task.ready.kinematics)
         samples = len(task.span.parameter)
         mesh = len(mesh_of(task.ready.kinematics.path, task.span.parameter))
@@ -63,15 +63,15 @@ class ArraysExecutor:
         higher = any(isinstance(group, Newton) for group in task.ready.structure.groups)
         each = NUMBER * columns * (AT_SAMPLES * samples + (OF_ANCHORS if higher else ON_MESH) * mesh)
         each += sum(column.bytes for column in task.asked.columns)
-        return max(1, limits.WORKING_SET // each)
+        return max(1, designs.WORKING_SET // each)
 
-    def run(self, task: Task, numbers: Dimensions, values: Rows, results: Results) -> None:
+    def run(self, task: SweepTask, numbers: Dimensions, values: Rows, results: Results) -> None:
         """Fill in all columns for the mechanisms of these dimensions; `values` are those that vary, one a mechanism."""
         lanes = len(next(iter(values.values())))
         fill_columns(task, solve(task.ready, task.span, numbers, lanes), values, results)
 
 
-def fill_columns(task: Task, solved: Solved, values: Rows, results: Results) -> None:
+def fill_columns(task: SweepTask, solved: Solved, values: Rows, results: Results) -> None:
     """Fill in all columns from the motions of some mechanisms."""
     ok = solved.status == Status.OK
     # copied at once: what is asked for may be a view of everything that was computed

@@ -5,9 +5,11 @@ Values are made chunk by chunk, so a grid costs no memory however many mechanism
 
 from __future__ import annotations
 
+import functools
 import hashlib
+import importlib
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeAlias
 
@@ -18,12 +20,226 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
+from centrode.model.paths import value_at
+from centrode.model.problems import nearest, shown
+from centrode.model.units import to_si
 from centrode.structure.dimensions import dimensions_of
-from centrode.sweeps import limits
-from centrode.sweeps.drawing import Sample, drawn
-from centrode.sweeps.values import count_of, ends, numbers
+
+# What a sweep may take of memory and ask for at most; named here, told in docs/sweeps.md.
+
+WORKING_SET = 256_000_000
+"""Bytes that the mechanisms solved together may take, results aside (one mechanism alone may take more)."""
+
+BLOCK_POSITIONS = 2_000_000
+"""Positions of one block, the unit that is stored and marked as done: a few seconds of work."""
+
+BLOCKS_OF_KERNELS = 32
+"""How many times as many positions stand in a block that machine code computes."""
+
+WORTH_COMPILING = 100_000
+"""Positions (nodes of the mesh, if they are more) from which on "auto" takes machine code."""
+
+THREADS = 256
+"""Threads of one sweep."""
+
+KERNEL_LANES = 1 << 16
+"""Mechanisms that machine code computes at once."""
+
+KERNEL_BUFFER = 2_000_000
+"""Bytes of the buffer that machine code writes samples to: it should stay in the cache."""
+
+BLOCK_BYTES = 32_000_000
+"""Bytes of one block's results."""
+
+IN_MEMORY = 2_000_000_000
+"""Bytes of a result that is kept in memory; a greater one needs a store."""
+
+IN_STORE = 1_000_000_000_000
+"""Bytes of a result in a store."""
+
+MECHANISMS = 10_000_000_000
+"""Mechanisms of one sweep."""
+
+DRAWN = 20_000_000
+"""Numbers of a sample (mechanisms times paths): they are drawn at once."""
+
+LISTED = 20_000_000
+"""Values given one by one."""
+
+PATHS = 100
+"""Paths that vary together."""
+
+OUTPUTS = 200
+"""Outputs, or formulas, of one sweep."""
+
+
+# Varied values as they are given: numbers in SI, texts with a unit, ranges.
 
 Array: TypeAlias = npt.NDArray[np.float64]
+
+_ALONG = frozenset({"x", "y", "length", "radius"})
+_METRES = frozenset({"radius", "centre_radius"})
+"""Of links: lengths on the sphere too."""
+_MASSES = frozenset({"mass", "inertia"})
+_ANGLES = frozenset({"direction", "angle", "longitude", "latitude"})
+
+
+def kind_of(mechanism: Mechanism, path: str) -> str:
+    """Kind of the number at a path, which tells its units; InputError where there is no such path."""
+    try:
+        value_at(mechanism, path)
+    except InputError as error:
+        raise InputError("vary", error.what, error.repair) from None
+    room, word = path.partition(".")[0], path.rpartition(".")[2]
+    if word in _METRES and room == "links":
+        return "length"
+    if word in _ALONG:
+        return "length" if mechanism.space == "plane" else "arc"
+    if word in _MASSES:
+        return word
+    return "angle" if word in _ANGLES else "ratio"
+
+
+def unit_of(mechanism: Mechanism, path: str) -> str:
+    """SI unit of the number at a path; "1" where it has none."""
+    return {"length": "m", "ratio": "1", "mass": "kg", "inertia": "kg m^2"}.get(
+        kind_of(mechanism, path), "rad"
+    )
+
+
+def numbers(mechanism: Mechanism, path: str, given: Any) -> Array:
+    """Values [SI] given one by one: an array of numbers, or a list of numbers and texts with a unit.
+
+    Raises InputError at the path: none, not in one dimension, not finite, a text that is no number, a range.
+    """
+    kind = kind_of(mechanism, path)
+    if (
+        isinstance(given, tuple)
+        and len(given) == 3
+        and isinstance(given[0], str)
+        and isinstance(given[2], int)
+    ):
+        raise InputError(path, _("a range stands where values are expected"), _("say ct.grid or ct.sample"))
+    if isinstance(given, Sequence) and not isinstance(given, str) and any(isinstance(x, str) for x in given):
+        given = [_number(kind, path, value) for value in given]
+    try:
+        array = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(
+            path, _("its values are no numbers"), _("give numbers, or texts with a unit")
+        ) from None
+    if array.ndim != 1 or not array.size:
+        raise InputError(path, _("it needs one value or more, in one dimension"))
+    if array.size > LISTED:
+        what = _("{count} values were given").format(count=array.size)
+        raise InputError(path, what, _("give at most {most}, or a ct.grid").format(most=LISTED))
+    if not np.isfinite(array).all():
+        raise InputError(path, _("values must be finite"))
+    _refuse_negative(kind, path, float(array.min()))
+    return array
+
+
+def ends(mechanism: Mechanism, path: str, first: Any, last: Any) -> tuple[float, float]:
+    """Both ends [SI] of a range; InputError at the path where it is reversed or has no extent."""
+    kind = kind_of(mechanism, path)
+    low, high = (_number(kind, path, end) for end in (first, last))
+    if not low < high:
+        what = _("the range from {first} to {last} does not rise").format(
+            first=shown(first), last=shown(last)
+        )
+        raise InputError(path, what, _("give the lesser end first, and a greater one after it"))
+    _refuse_negative(kind, path, low)
+    return low, high
+
+
+def _refuse_negative(kind: str, path: str, least: float) -> None:
+    if kind in _MASSES and least < 0.0:
+        raise InputError(path, _("{value:g} is negative").format(value=least), _("give 0 or more"))
+
+
+def _number(kind: str, path: str, given: Any) -> float:
+    value = given.item() if isinstance(given, np.generic) else given
+    try:
+        return to_si(value, kind)
+    except InputError as error:
+        raise InputError(path, error.what, error.repair) from None
+
+
+def count_of(path: str, given: Any, most: int) -> int:
+    """A number of values; InputError at the path where it is no whole number from 1 to `most`."""
+    if isinstance(given, np.integer):
+        given = int(given)
+    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= most:
+        what = _("{count} is no number of values").format(count=shown(given))
+        raise InputError(path, what, _("give a whole number from 1 to {most}").format(most=most))
+    return given
+
+
+# Samples of ranges: latin hypercubes and Sobol sequences.
+
+METHODS = ("latin hypercube", "sobol")
+
+# scipy costs more to import than a small sweep takes
+_qmc = functools.partial(importlib.import_module, "scipy.stats.qmc")
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Mechanisms to be drawn from ranges; made by `sample`."""
+
+    ranges: Mapping[str, Any]
+    count: int
+    method: str
+    seed: int
+
+
+def sample(ranges: Mapping[str, Any], count: int, method: str = "latin hypercube", seed: int = 0) -> Sample:
+    """Mechanisms spread evenly over ranges of several dimensions, for `sweep`.
+
+    Parameters
+    ----------
+    ranges : path -> (first, last)
+        Numbers [SI] or texts with a unit.
+    count : int
+        How many mechanisms.
+    method : "latin hypercube" or "sobol"
+        Each of `count` slices of every range once; or the first points of a scrambled Sobol sequence (best with
+        a power of two).
+    seed : int
+        The same seed draws the same mechanisms.
+    """
+    return Sample(dict(ranges), count, method, seed)
+
+
+def drawn(mechanism: Mechanism, asked: Sample) -> dict[str, Array]:
+    """Values [SI] of every path, one for each mechanism; InputError for a range, count, method or seed that is none."""
+    count = count_of("sample", asked.count, DRAWN // len(asked.ranges))
+    if asked.method not in METHODS:
+        what = _("unknown method {method}").format(method=shown(asked.method))
+        raise InputError("sample", what, nearest(str(asked.method), METHODS))
+    seed: object = asked.seed
+    if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
+        raise InputError("sample", _("the seed is a whole number from 0"))
+    bounds = {path: _bounds(mechanism, path, given) for path, given in asked.ranges.items()}
+    unit = _in_unit_cube(asked.method, len(bounds), count, np.random.default_rng(seed))
+    columns = zip(bounds.items(), unit.T, strict=True)
+    return {path: np.clip(low + (high - low) * column, low, high) for (path, (low, high)), column in columns}
+
+
+def _bounds(mechanism: Mechanism, path: str, given: Any) -> tuple[float, float]:
+    if isinstance(given, str) or not isinstance(given, tuple | list) or len(given) != 2:
+        raise InputError(path, _("a range of a sample is (first, last)"))
+    return ends(mechanism, path, *given)
+
+
+def _in_unit_cube(method: str, paths: int, count: int, random: np.random.Generator) -> Array:
+    """Points of the unit cube (count, paths)."""
+    if method == "latin hypercube":
+        return np.asarray(_qmc().LatinHypercube(paths, seed=random).random(count))
+    # powers of two are what the sequence is balanced for; the rest is cut off
+    return np.asarray(_qmc().Sobol(paths, seed=random).random_base2((count - 1).bit_length())[:count])
+
+
 Rows: TypeAlias = Mapping[str, Array]
 Coordinates: TypeAlias = Mapping[str, tuple[str, Array]]
 
@@ -125,12 +341,12 @@ def design_of(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> 
         raise InputError(
             "vary", _("nothing varies"), _('name a path and its values: {"links.AC.length": [...]}')
         )
-    if len(given) > limits.PATHS or not all(isinstance(path, str) for path in given):
-        raise InputError("vary", _("give at most {most} paths, as texts").format(most=limits.PATHS))
+    if len(given) > PATHS or not all(isinstance(path, str) for path in given):
+        raise InputError("vary", _("give at most {most} paths, as texts").format(most=PATHS))
     design = _resolved(mechanism, vary)
-    if math.prod(design.shape) > limits.MECHANISMS:
+    if math.prod(design.shape) > MECHANISMS:
         what = _("{count} mechanisms were asked for").format(count=math.prod(design.shape))
-        raise InputError("vary", what, _("ask for at most {most}").format(most=limits.MECHANISMS))
+        raise InputError("vary", what, _("ask for at most {most}").format(most=MECHANISMS))
     extremes = {
         path: np.array([values.min(), values.max()]) for path, (_along, values) in design.coordinates.items()
     }
@@ -158,7 +374,7 @@ def _axis(mechanism: Mechanism, path: str, given: Any) -> Array:
     if len(given) != 3:
         raise InputError(path, _("a range is (first, last, count)"), _("give values as a list"))
     low, high = ends(mechanism, path, *given[:2])
-    count = count_of(path, given[2], limits.LISTED)
+    count = count_of(path, given[2], LISTED)
     if count < 2:
         raise InputError(path, _("a range needs two values or more"), _("give one value as a list"))
     return np.linspace(low, high, count)

@@ -15,8 +15,8 @@ from centrode.kinematics.compiled.trace import Untraceable
 from centrode.locale import _
 from centrode.model.problems import nearest, shown
 from centrode.structure.dimensions import Dimensions, dimensions_of
-from centrode.sweeps import limits
-from centrode.sweeps.arrays import ArraysExecutor, Results, Task
+from centrode.sweeps import designs
+from centrode.sweeps.arrays import ArraysExecutor, Results, SweepTask
 from centrode.sweeps.designs import Design, Rows
 from centrode.sweeps.machine import MachineCodeExecutor
 
@@ -32,12 +32,12 @@ class Executor(Protocol):
 
     @property
     def blocks(self) -> int:
-        """How many times `limits.BLOCK_POSITIONS` it computes in a few seconds."""
+        """How many times `designs.BLOCK_POSITIONS` it computes in a few seconds."""
 
-    def lanes(self, task: Task) -> int:
+    def lanes(self, task: SweepTask) -> int:
         """How many mechanisms are computed together."""
 
-    def run(self, task: Task, numbers: Dimensions, values: Rows, results: Results) -> None:
+    def run(self, task: SweepTask, numbers: Dimensions, values: Rows, results: Results) -> None:
         """Fill in all columns for the mechanisms of these dimensions; `values` are those that vary, one a mechanism."""
 
 
@@ -51,16 +51,16 @@ def check_executor(name: object) -> str:
 
 
 def check_threads(given: object) -> int:
-    """A number of threads; InputError for any other than 1 to `limits.THREADS`."""
-    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= limits.THREADS:
+    """A number of threads; InputError for any other than 1 to `designs.THREADS`."""
+    if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= designs.THREADS:
         what = _("{count} is no number of threads").format(count=shown(given))
         raise InputError(
-            "threads", what, _("give a whole number from 1 to {most}").format(most=limits.THREADS)
+            "threads", what, _("give a whole number from 1 to {most}").format(most=designs.THREADS)
         )
     return given
 
 
-def executor_of(name: str, task: Task, design: Design, threads: int = 1) -> tuple[Executor, str]:
+def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) -> tuple[Executor, str]:
     """The executor of a name for a task, and what a result says of it.
 
     "auto" is machine code where it can compute the task and the task is long enough to be worth compiling for.
@@ -70,7 +70,7 @@ def executor_of(name: str, task: Task, design: Design, threads: int = 1) -> tupl
     if task.asked.slopes:
         return _with_slopes(name, task, design, threads)
     positions = math.prod(design.shape) * task.places
-    if name == arrays.name or (name == AUTO and positions < limits.WORTH_COMPILING):
+    if name == arrays.name or (name == AUTO and positions < designs.WORTH_COMPILING):
         return arrays, arrays.name
     try:
         found = _traced(task, design, threads, MACHINE_CODE)
@@ -82,7 +82,7 @@ def executor_of(name: str, task: Task, design: Design, threads: int = 1) -> tupl
     return found, found.name
 
 
-def _traced(task: Task, design: Design, threads: int, kernels: str) -> MachineCodeExecutor:
+def _traced(task: SweepTask, design: Design, threads: int, kernels: str) -> MachineCodeExecutor:
     values = design.rows(0, 1)
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
     found = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
@@ -90,7 +90,7 @@ def _traced(task: Task, design: Design, threads: int, kernels: str) -> MachineCo
     return found
 
 
-def _with_slopes(name: str, task: Task, design: Design, threads: int) -> tuple[Executor, str]:
+def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tuple[Executor, str]:
     """Derivatives are those of expressions: on arrays these are computed by NumPy."""
     kernels = chosen(name) if name == AUTO else name
     try:

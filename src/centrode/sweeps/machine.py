@@ -7,40 +7,578 @@ higher class they are computed by arrays), and what is asked for is taken from t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from centrode.algebra import machine_code
-from centrode.algebra.executors import MACHINE_CODE
+from centrode.algebra.executors import MACHINE_CODE, streamer
+from centrode.algebra.expression_functions import EXPRESSIONS, Expressions
+from centrode.algebra.expressions import Node, Operand, as_node, variable
+from centrode.algebra.gradients import gradient
 from centrode.algebra.graph_arrays import evaluate
-from centrode.algebra.graphs import Graph
+from centrode.algebra.graphs import Graph, rebuilt, split
+from centrode.algebra.operations import CONSTANT, VARIABLE
 from centrode.algebra.reductions import Reduction, together
+from centrode.algebra.scans import Scan, room_of
 from centrode.errors import Status
+from centrode.kinematics.compiled.event_screening import EventScreening
 from centrode.kinematics.compiled.events import Eventful
-from centrode.kinematics.compiled.path_following import SURE, beginnings
-from centrode.kinematics.compiled.trace import Untraceable, traced
-from centrode.kinematics.compiled.variables import taken, varied_of
+from centrode.kinematics.compiled.path_following import SURE, Walk, Walking, Way, beginnings, way_of
+from centrode.kinematics.compiled.trace import Traced, Untraceable, traced
+from centrode.kinematics.compiled.variables import (
+    ALONG,
+    PARAMETER,
+    SCALE,
+    Pass,
+    Varied,
+    before_of,
+    boxed,
+    centre_of,
+    greatest,
+    inputs_of,
+    least,
+    taken,
+    varied_of,
+)
 from centrode.kinematics.sampling import CLOSED
 from centrode.locale import mark
 from centrode.structure.dimensions import Dimensions
-from centrode.sweeps import limits
-from centrode.sweeps.arrays import NUMBER, ArraysExecutor, Task, fill_columns
+from centrode.structure.gearing import Straight
+from centrode.sweeps import designs
+from centrode.sweeps.arrays import NUMBER, ArraysExecutor, SweepTask, fill_columns
 from centrode.sweeps.designs import Rows
-from centrode.sweeps.every_sample import EverySample
-from centrode.sweeps.expressed import RESIDUAL, SLACK, Expressed
-from centrode.sweeps.passing import Passing, judging_states, passing_of
-from centrode.sweeps.streams import Columns, columns_for
+from centrode.sweeps.outputs import SweepColumn
+
+# Folds of traced formulas: what is reduced over samples becomes a state of a scan, and then a number of the
+# mechanism.
+#
+# A fold of what another fold gave (`max(abs(x - mean(x)))`) needs that one first: samples are passed once for
+# each
+# depth of folds.
+
+
+@dataclass(frozen=True)
+class Fold:
+    """A fold: the name of its result, what is folded, and how often samples have been passed before."""
+
+    name: str
+    kind: str
+    value: Node
+    depth: int
+
+    @property
+    def state(self) -> Reduction:
+        """Its state in a scan over samples; NaN at a sample makes the whole NaN."""
+        m, so_far = EXPRESSIONS, variable(self.name)
+        if self.kind == "sum":
+            return Reduction({self.name: as_node(so_far + self.value)}, {self.name: 0.0})
+        extreme, start = (m.min, math.inf) if self.kind == "min" else (m.max, -math.inf)
+        return Reduction({self.name: as_node(extreme(self.value, so_far))}, {self.name: start})
+
+
+@dataclass
+class Folds(Expressions):
+    """Namespace that traces formulas of so many samples; the folds they ask for are listed in `found`."""
+
+    samples: int
+    found: dict[tuple[str, bytes], Fold] = field(default_factory=dict)
+
+    def fold(self, name: str, value: Operand) -> Operand:
+        """The number that a fold of FOLDS gives."""
+        if name == "range":
+            return self.fold("max", value) - self.fold("min", value)
+        if name == "mean":
+            return self.fold("sum", value) / float(self.samples)
+        node = as_node(value)
+        key = name, node.key
+        if key not in self.found:
+            self.found[key] = Fold(f"fold {len(self.found)}", name, node, self._depth(node))
+        return variable(self.found[key].name)
+
+    def at_depth(self, depth: int) -> Sequence[Fold]:
+        """The folds that need so many passes before their own."""
+        return [fold for fold in self.found.values() if fold.depth == depth]
+
+    @property
+    def passes(self) -> int:
+        """How often samples are passed, at least once."""
+        return 1 + max((fold.depth for fold in self.found.values()), default=0)
+
+    def _depth(self, node: Node) -> int:
+        used = set(Graph({"": node}).variables)
+        return 1 + max((fold.depth for fold in self.found.values() if fold.name in used), default=-1)
+
+
+# Derivatives of what is reduced by the values that vary, as expressions: reverse mode through samples and
+# folds.
+
+Through: TypeAlias = Sequence[tuple[Node, Operand]]
+"""The variables that a value moves, each with its derivative by that value."""
+
+m = EXPRESSIONS
+
+
+@dataclass(frozen=True)
+class States:
+    """Derivatives of a fold.
+
+    Attributes
+    ----------
+    parts : state -> what is folded into it: a derivative of the formula at a sample
+    at_end : path -> derivative by the value there, from the states when all samples are passed
+    """
+
+    parts: Mapping[str, Node]
+    at_end: Mapping[str, Node]
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Derivatives by values at paths.
+
+    Attributes
+    ----------
+    through : path -> the variables of the plan that it moves
+    standing : name -> whole turns in angles, which jump and have no derivative; what is found by iteration
+    folds : whose results have derivatives of their own
+    moving : variables that differ from sample to sample
+    known : fold -> its states, once they have been asked for
+    """
+
+    through: Mapping[str, Through]
+    standing: Mapping[str, Node]
+    folds: Folds
+    moving: frozenset[str]
+    known: dict[str, States] = field(default_factory=dict)
+
+    @classmethod
+    def of(
+        cls, paths: Sequence[str], varied: Varied, traced: Traced, folds: Folds, moving: frozenset[str]
+    ) -> Slopes:
+        """Derivatives by all paths that vary. Raises Untraceable for one that moves more than is known here."""
+        through = {path: _through(path, varied) for path in paths}
+        return cls(through, traced.standing, folds, moving)
+
+    def of_node(self, node: Node) -> dict[str, Node]:
+        """Path -> derivative of an expression, that of the folds it uses included."""
+        still = self._without_standing(node)
+        used = frozenset(Graph({"": still}).variables)
+        names = [fold.name for fold in self.folds.found.values() if fold.name in used]
+        moved = list(dict.fromkeys(x for path in self.through.values() for x, _factor in path))
+        parts = gradient(still, [*moved, *map(variable, names)])
+        partial = dict(zip(moved, parts, strict=False))
+        of_folds = dict(zip(names, parts[len(moved) :], strict=True))
+        found: dict[str, Operand] = {}
+        for path, through in self.through.items():
+            total: Operand = 0.0
+            for x, factor in through:
+                total = total + partial[x] * factor
+            for name, part in of_folds.items():
+                total = total + part * self.states_of(name).at_end[path]
+            found[path] = total
+        return dict(Graph.of(found).substituted(self.standing).outputs)
+
+    def of_fold(self, fold: Fold) -> Reduction:
+        """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""
+        so_far = variable(fold.name)
+        better = m.less(fold.value, so_far) if fold.kind == "min" else m.less(so_far, fold.value)
+        state = {}
+        for label, part in self.states_of(fold.name).parts.items():
+            more = variable(label) + part if fold.kind == "sum" else m.where(better, part, variable(label))
+            state[label] = as_node(more)
+        return Reduction(state, dict.fromkeys(state, 0.0))
+
+    def states_of(self, name: str) -> States:
+        """What a scan carries of the derivatives of a fold of this name: whichever is less work at a sample."""
+        if name not in self.known:
+            fold = next(fold for fold in self.folds.found.values() if fold.name == name)
+            ways = [self._by_paths(fold)]
+            if (
+                fold.kind == "sum"
+            ):  # an extreme selects for each state, and its two ends have the chain in common
+                ways.append(self._by_parts(fold))
+            self.known[name] = min(ways, key=self._work)
+        return self.known[name]
+
+    def _by_paths(self, fold: Fold) -> States:
+        """A state for each path."""
+        slopes = self.of_node(fold.value)
+        labels = {path: by(fold.name, path) for path in slopes}
+        parts = {labels[path]: slope for path, slope in slopes.items()}
+        return States(parts, {path: variable(label) for path, label in labels.items()})
+
+    def _by_parts(self, fold: Fold) -> States:
+        """A state for each part of the formula that stands while the samples are passed.
+
+        To fold is linear in derivatives. So the chain from these parts down to the values at paths is gone through
+        once a mechanism, at the end.
+        """
+        still = self._without_standing(fold.value)
+        jumping = self.moving | self.standing.keys()
+        variables = [x for x in Graph({"": still}).variables if x not in jumping]
+        parts, rest = split(Graph({"": still}), variables, f"{fold.name} part")
+        standing = {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
+        factors = {x: self.of_node(node) for x, node in standing.items()}
+        moved = [x for x, factor in factors.items() if any(map(_is_something, factor.values()))]
+        slopes = gradient(rest.outputs[""], [variable(x) for x in moved])
+        labels = {x: f"{fold.name} through {x}" for x in moved}
+        found = Graph.of(dict(zip(labels.values(), slopes, strict=True)))
+        ends: dict[str, Operand] = dict.fromkeys(self.through, 0.0)
+        for x in moved:
+            for path, factor in factors[x].items():
+                ends[path] = (
+                    ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
+                )
+        outputs = found.substituted({**self.standing, **parts.outputs}).outputs
+        return States(outputs, {path: as_node(end) for path, end in ends.items()})
+
+    def _without_standing(self, node: Node) -> Node:
+        standing = {x: variable(name) for name, x in self.standing.items()}
+        return rebuilt({"": node}, lambda x, _arguments: standing.get(x))[""]
+
+    def _work(self, states: States) -> int:
+        """Operations that are carried out at every sample."""
+        moving = set()
+        for node in Graph(states.parts).order:
+            own = node.operation == VARIABLE and node.detail in self.moving
+            if own or any(x in moving for x in node.arguments):
+                moving.add(node)
+        return len(moving) + len(states.parts)
+
+
+def _is_something(factor: Node) -> bool:
+    return factor.operation != CONSTANT or factor.detail != 0.0
+
+
+def by(name: str, path: str) -> str:
+    """Name of the derivative of a fold by the value at a path."""
+    return f"{name} by {path}"
+
+
+def _of_a_mass(path: str) -> bool:
+    """Whether a path is that of a mass, which no dimension of the plan is."""
+    room, *_name, last = path.split(".")
+    return room == "links" and (last in ("mass", "inertia", "radius", "centre_radius") or ".centre." in path)
+
+
+def _through(path: str, varied: Varied) -> Through:
+    """The variables that the value at a path moves: itself, or cosine and sine of a direction."""
+    if path in varied.names or _of_a_mass(path):
+        return [(variable(path), 1.0)]
+    directions = {f"guides.{guide}.direction": x for guide, x in varied.numbers.direction.items()}
+    for wheel, track in varied.numbers.gearing.track.items():
+        if isinstance(track, Straight):
+            directions[f"rolling.{wheel}.along.direction"] = track.direction
+    if path not in directions or not all(isinstance(x, Node) for x in directions[path]):
+        raise Untraceable(mark("derivatives by what moves nothing"))
+    cosine, sine = directions[path]
+    return [(cosine, -sine), (sine, cosine)]
+
+
+# What a sweep is asked for as expressions: columns of a sample, or of folds over samples, and derivatives.
 
 Array: TypeAlias = npt.NDArray[np.float64]
+Values: TypeAlias = dict[str, Array]
+
+RESIDUAL, SLACK = "worst residual", "slack at samples"
+
+
+@dataclass(frozen=True)
+class Expressed:
+    """A task as expressions.
+
+    Attributes
+    ----------
+    varied : the numbers that vary as variables
+    traced : the motion at one sample
+    kernels : what runs scans, see `algebra.executors`
+    threads : that share the mechanisms
+    """
+
+    task: SweepTask
+    varied: Varied
+    traced: Traced
+    kernels: str
+    threads: int
+
+    @cached_property
+    def folds(self) -> Folds:
+        """What is folded over samples, once `columns` are known."""
+        return Folds(len(self.task.span.parameter))
+
+    @cached_property
+    def columns(self) -> dict[str, list[Node]]:
+        """Column -> its numbers: of a sample, or reduced."""
+        asked, solved = self.task.asked, self.traced.solved
+        given = {path: boxed([variable(path)]) for path in self.task.paths}
+        if asked.formulas:
+            return {
+                formula.name: [as_node(formula.traced(self.folds, solved, given))]
+                for formula in asked.formulas
+            }
+        found = {output.name: output.of(solved, given).ravel().tolist() for output in asked.outputs}
+        if asked.reduction is None:
+            return {name: [as_node(x) for x in nodes] for name, nodes in found.items()}
+        return {
+            name: [as_node(self.folds.fold(asked.reduction, x)) for x in nodes]
+            for name, nodes in found.items()
+        }
+
+    @cached_property
+    def outputs(self) -> dict[str, Node]:
+        """All numbers of a sample, column by column."""
+        return {f"{name} {k}": node for name, nodes in self.columns.items() for k, node in enumerate(nodes)}
+
+    @cached_property
+    def slopes(self) -> Slopes:
+        """How derivatives are found. Raises Untraceable."""
+        return Slopes.of(self.task.paths, self.varied, self.traced, self.folds, self._moving)
+
+    @property
+    def _moving(self) -> frozenset[str]:
+        """Variables that differ from sample to sample."""
+        walked = Walk(self.traced, tuple(self.traced.turning)).state if self.traced.steps else ()
+        return frozenset([*self.inputs, *ALONG, *walked])
+
+    @cached_property
+    def final(self) -> dict[str, list[Node]]:
+        """Reduced columns, and those of derivatives, from the folds."""
+        found = dict(self.columns)
+        for name, slope in self.task.asked.slopes.items():
+            found[slope] = [x for node in found[name] for x in self.slopes.of_node(node).values()]
+        return found
+
+    @cached_property
+    def judging(self) -> EventScreening:
+        """How mechanisms are judged before."""
+        residual = as_node(self.traced.solved.residual[0, 0])
+        nodes = [node for column in self.columns.values() for node in column]
+        nodes += [fold.value for fold in self.folds.found.values()]
+        used = frozenset(Graph({str(k): node for k, node in enumerate([*nodes, residual])}).variables)
+        told_by = before_of if self.traced.steps else centre_of
+        links = tuple(link for link in self.traced.turning if told_by(link) in used)
+        names = tuple(dict.fromkeys([*self.varied.names, SCALE]))
+        return EventScreening(self.traced, self.task.span.parameter, names, links, self.kernels, self.threads)
+
+    @cached_property
+    def judges(self) -> dict[str, Node]:
+        """What is looked at in every sample: greatest residual, least slack of radicands."""
+        found = {RESIDUAL: as_node(self.traced.solved.residual[0, 0])}
+        slack = self.judging.slack_at_samples
+        return found if slack is None else {**found, SLACK: slack}
+
+    @property
+    def samples(self) -> int:
+        """How many there are."""
+        return len(self.task.span.parameter)
+
+    @cached_property
+    def inputs(self) -> Values:
+        """What the variables of a place stand for at the samples."""
+        return inputs_of(self.task.ready.kinematics.path, self.task.span)
+
+    @cached_property
+    def way(self) -> Way:
+        """The way past all samples, where there are groups of higher class."""
+        return way_of(self.task.ready.kinematics.path, self.inputs)
+
+    @property
+    def states(self) -> int:
+        """Numbers of one mechanism while samples are passed."""
+        folds = len(self.folds.found) if self.columns else 0
+        if self.task.asked.slopes:
+            folds += sum(len(self.slopes.states_of(fold.name).parts) for fold in self.folds.found.values())
+        angles = 10 * len(self.judging.links)
+        walked = 2 * len(self.judging.walk.state) if self.traced.steps else 0
+        return len(self.varied.names) + folds + angles + walked + 2 * len(self.traced.radicands) + 2
+
+
+# How machine code passes samples: each for itself, or along the path where groups of higher class ask for it.
+
+PassedValues: TypeAlias = Mapping[str, Array]
+"""Of mechanisms: name -> (lanes,)."""
+Rooms: TypeAlias = Iterable[tuple[slice, Array]]
+"""Some mechanisms after the other, and where their samples go: (numbers, lanes, samples)."""
+
+
+class Passing(Protocol):
+    """One way to pass the samples of mechanisms without events."""
+
+    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+        """The states when all samples are passed."""
+
+    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+        """Write every sample; returns what mechanisms are judged by."""
+
+
+def passing_of(asked: Expressed) -> Passing:
+    """How the samples of a task are passed."""
+    return Along(asked) if asked.traced.steps else EachForItself(asked)
+
+
+@dataclass(frozen=True)
+class EachForItself:
+    """Nothing is handed on but what is reduced. Every number that is written is one stream."""
+
+    asked: Expressed
+
+    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+        asked = self.asked
+        over_samples = Pass(reduction, tuple(rows), asked.inputs)
+        # where nothing moves the samples are counted all the same
+        return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
+
+    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+        scan = self._scan
+        along = np.stack([self.asked.inputs[name] for name in scan.parameters])
+        take = streamer(scan, along, self.asked.kernels, self.asked.threads)
+        for part, room in rooms:
+            take(np.stack([rows[name][part] for name in scan.inputs]) if scan.inputs else None, room)
+        return self.reduced(judging_states(self.asked), rows)
+
+    @cached_property
+    def _scan(self) -> Scan:
+        """Lanes are samples, steps are mechanisms."""
+        outputs = self.asked.outputs
+        used = Graph(outputs).variables
+        along = tuple(name for name in self.asked.inputs if name in used or name == PARAMETER)
+        return Scan(along, tuple(name for name in used if name not in along), outputs)
+
+
+@dataclass(frozen=True)
+class Along:
+    """Every place is found from the one before: what is written is judged on the same way."""
+
+    asked: Expressed
+
+    def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
+        asked = self.asked
+        return Walking(asked.judging.walk, reduction).reduced(asked.way, rows, asked.kernels, asked.threads)
+
+    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+        asked = self.asked
+        walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs)
+        parts = []
+        for part, room in rooms:
+            some = {name: row[part] for name, row in rows.items()}
+            parts.append(walking.written(asked.way, some, asked.kernels, asked.threads, room))
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def judging_states(asked: Expressed) -> Reduction:
+    """Greatest residual, least slack of radicands; NaN where one is."""
+    judges = asked.judges
+    parts = [greatest(RESIDUAL, judges[RESIDUAL], 0.0)]
+    if SLACK in judges:
+        parts.append(least(SLACK, judges[SLACK]))
+    return together(*parts)
+
+
+# The arrays of a result in memory: what is kept of every sample stands there number by number, as it is
+# computed.
+#
+# A number of a mechanism is one stream of its samples. The result's arrays are views that have the samples in
+# front
+# of the numbers; nothing is put in another order.
+
 AnyArray: TypeAlias = npt.NDArray[Any]
+
+
+class StreamedColumns(dict[str, AnyArray]):
+    """Arrays of some mechanisms by name: (mechanisms, ...).
+
+    `streams` is what is kept of every sample, in the order of the columns, where it stands like that in memory:
+    (numbers, mechanisms, samples).
+    """
+
+    streams: npt.NDArray[np.float64] | None = None
+
+    def part(self, rows: slice) -> StreamedColumns:
+        """A view of some mechanisms."""
+        found = StreamedColumns({name: array[rows] for name, array in self.items()})
+        found.streams = None if self.streams is None else self.streams[:, rows]
+        return found
+
+
+def streamed(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
+    """The columns that have a float64 of every sample."""
+    return [
+        column for column in columns if column.dimensions[:1] == ("sample",) and column.kind == np.float64
+    ]
+
+
+def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColumns:
+    """Fresh memory for columns, with streams where there is any."""
+    kept = streamed(columns)
+    found = StreamedColumns(
+        {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
+    )
+    if kept:
+        numbers = [math.prod(column.shape[1:]) for column in kept]
+        found.streams = np.empty((sum(numbers), mechanisms, kept[0].shape[0]))
+        first = 0
+        for column, count in zip(kept, numbers, strict=True):
+            streams = found.streams[first : first + count].reshape(
+                *column.shape[1:], *found.streams.shape[1:]
+            )
+            found[column.name] = np.moveaxis(streams, (-2, -1), (0, 1))
+            first += count
+    return found
+
+
+# Where every sample of mechanisms without events goes: straight to its place in a result, or by way of a
+# buffer.
+
+
+@dataclass(frozen=True)
+class EverySample:
+    """The columns of a result that have every sample.
+
+    Attributes
+    ----------
+    columns : column -> its numbers
+    results : column -> (mechanisms, ...)
+    at : the mechanisms among these that are written: a whole slice, or their numbers
+    samples : how many there are
+    """
+
+    columns: Mapping[str, Sequence[Node]]
+    results: Mapping[str, AnyArray]
+    at: Any
+    samples: int
+
+    def rooms(self) -> Iterator[tuple[slice, Array]]:
+        """Mechanisms and where their samples go, (numbers, lanes, samples); filled before the next is asked for."""
+        streams = self.results.streams if isinstance(self.results, StreamedColumns) else None
+        if streams is not None and isinstance(self.at, slice):
+            yield slice(0, streams.shape[1]), streams
+            return
+        numbers = sum(map(len, self.columns.values()))
+        places = np.arange(len(self.results["samples_ok"]))[self.at]
+        size = max(1, designs.KERNEL_BUFFER // (NUMBER * numbers * self.samples))
+        buffer = room_of(numbers, min(size, len(places)), self.samples)
+        for first in range(0, len(places), size):
+            where = places[first : first + size]
+            room = buffer[:, : len(where)]
+            yield slice(first, first + size), room
+            self._put(room, where)
+
+    def _put(self, room: Array, where: npt.NDArray[np.intp]) -> None:
+        stream = iter(room)
+        for name, nodes in self.columns.items():
+            target = self.results[name].reshape(*self.results[name].shape[:2], len(nodes))
+            for k in range(len(nodes)):
+                target[where, :, k] = next(stream)
+
+
 Mask: TypeAlias = npt.NDArray[np.bool_]
 Lanes: TypeAlias = npt.NDArray[np.intp]
-Values: TypeAlias = dict[str, Array]
 
 COPIES = 4
 """Of what a mechanism has while samples are passed: before, after, as kernels are given it."""
@@ -58,11 +596,11 @@ class MachineCodeExecutor:
     kernels : "machine code"; "arrays" runs the same scans on NumPy
     """
 
-    task: Task
+    task: SweepTask
     asked: Expressed
     threads: int
     kernels: str
-    blocks = limits.BLOCKS_OF_KERNELS
+    blocks = designs.BLOCKS_OF_KERNELS
     arrays = ArraysExecutor()
 
     @property
@@ -71,7 +609,7 @@ class MachineCodeExecutor:
 
     @classmethod
     def of(
-        cls, task: Task, numbers: Dimensions, values: Rows, threads: int = 1, kernels: str = MACHINE_CODE
+        cls, task: SweepTask, numbers: Dimensions, values: Rows, threads: int = 1, kernels: str = MACHINE_CODE
     ) -> MachineCodeExecutor:
         """The executor of a task; the numbers of one mechanism or more say what varies.
 
@@ -91,14 +629,17 @@ class MachineCodeExecutor:
             _ = asked.slopes  # what cannot be differentiated is told before anything is computed
         return cls(task, asked, threads, kernels)
 
-    def lanes(self, task: Task) -> int:
+    def lanes(self, task: SweepTask) -> int:
         """How many mechanisms are computed together."""
         written = 0 if task.asked.reduced else sum(column.bytes for column in task.asked.columns)
         return max(
-            1, min(limits.KERNEL_LANES, limits.WORKING_SET // (COPIES * NUMBER * self.asked.states + written))
+            1,
+            min(designs.KERNEL_LANES, designs.WORKING_SET // (COPIES * NUMBER * self.asked.states + written)),
         )
 
-    def run(self, task: Task, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]) -> None:
+    def run(
+        self, task: SweepTask, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
+    ) -> None:
         """Fill in all columns for the mechanisms of these dimensions."""
         rows = self.asked.varied.values(numbers) | {path: np.asarray(x) for path, x in values.items()}
         if self.asked.traced.steps:
@@ -112,7 +653,7 @@ class MachineCodeExecutor:
             some = rows if everywhere else {name: row[at] for name, row in rows.items()}
             clear[at] = self._without_events(some, at, results)
         left = np.nonzero(~clear)[0]
-        worth = len(left) * task.places >= limits.WORTH_COMPILING and self.kernels == MACHINE_CODE
+        worth = len(left) * task.places >= designs.WORTH_COMPILING and self.kernels == MACHINE_CODE
         if worth and self._eventful.possible:
             self._with_events(left, numbers, values, results)
         else:
@@ -143,7 +684,7 @@ class MachineCodeExecutor:
             self.arrays.run(self.task, taken(numbers, lanes), _rows_at(values, lanes), parts)
             _put(parts, lanes, results)
 
-    def _room(self, lanes: int) -> Columns:
+    def _room(self, lanes: int) -> StreamedColumns:
         """Columns of mechanisms that do not stand side by side."""
         return columns_for(self.task.asked.columns, lanes)
 
@@ -200,6 +741,6 @@ def _rows_at(values: Rows, lanes: Lanes) -> Rows:
     return {path: np.asarray(x)[lanes] for path, x in values.items()}
 
 
-def _put(parts: Columns, lanes: Lanes, results: Mapping[str, AnyArray]) -> None:
+def _put(parts: StreamedColumns, lanes: Lanes, results: Mapping[str, AnyArray]) -> None:
     for name, part in parts.items():
         results[name][lanes] = part

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeAlias
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.algebra.arrays import ARRAYS, Arrays
+from centrode.algebra.text import TEXT_LENGTH, TextFormula, compile_formula
+from centrode.algebra.vocabulary import CONSTANTS, FUNCTIONS
 from centrode.dynamics.reduction import REDUCED, Values, reduced_number
 from centrode.errors import InputError
 from centrode.kinematics.motion import by_time, kinds_of
@@ -17,7 +21,8 @@ from centrode.kinematics.solve import Solved
 from centrode.locale import _
 from centrode.model.problems import nearest, shown
 from centrode.quantities import QUANTITIES
-from centrode.sweeps import limits
+from centrode.sweeps import designs
+from centrode.sweeps.designs import MECHANISM, Design, Rows
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -84,9 +89,9 @@ def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, 
         raise InputError(
             "outputs", _("no output is asked for"), _('name one, such as "position.C" or "angle"')
         )
-    if len(names) > limits.OUTPUTS:
+    if len(names) > designs.OUTPUTS:
         what = _("{count} outputs are asked for").format(count=len(names))
-        raise InputError("outputs", what, _("ask for at most {most}").format(most=limits.OUTPUTS))
+        raise InputError("outputs", what, _("ask for at most {most}").format(most=designs.OUTPUTS))
     found: dict[str, Output] = {}
     for name in names:
         if name in found:
@@ -155,3 +160,334 @@ def _label(name: str, rest: str, labels: list[str]) -> tuple[str, str]:
     word = rest.partition(".")[0]
     what = _("there is no {word} in {name}").format(word=shown(word), name=shown(name))
     raise InputError("outputs", what, nearest(word, labels))
+
+
+# Many samples made one number: least, greatest, their difference, mean; samples that are not ok are left out.
+
+Mask: TypeAlias = npt.NDArray[np.bool_]
+
+REDUCTIONS = ("min", "max", "range", "mean")
+FOLDS = frozenset((*REDUCTIONS, "sum"))
+"""What formulas may do over samples; those of REDUCTIONS also stand alone."""
+
+
+def folded(name: str, values: Array, ok: Mask) -> Array:
+    """One number of the samples (axis 1) that are ok; NaN where none is.
+
+    Parameters
+    ----------
+    name : one of FOLDS
+    values : (lanes, n, ...)
+    ok : (lanes, n)
+
+    Notes
+    -----
+    Rounding of a mean stays below n eps times the mean of the absolute values. A NaN at an ok sample makes the
+    whole NaN.
+    """
+    counted = ok.reshape(*ok.shape, *[1] * (values.ndim - 2))
+    counts = counted.sum(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found = np.asarray(_fold(name, values, counted, counts))
+    return np.where(counts > 0, found, np.nan)
+
+
+def _fold(name: str, values: Array, counted: Mask, counts: Any) -> Any:
+    if name in ("mean", "sum"):
+        total = values.sum(axis=1, where=counted)
+        return total / counts if name == "mean" else total
+    least = values.min(axis=1, where=counted, initial=np.inf) if name != "max" else 0.0
+    if name == "min":
+        return least
+    return values.max(axis=1, where=counted, initial=-np.inf) - least
+
+
+class Folding(Arrays):
+    """Namespace of a formula of the motion: functions on arrays (lanes, n), and folds that give (lanes, 1)."""
+
+    def __init__(self, ok: Mask) -> None:
+        self.ok = ok
+
+    def fold(self, name: str, values: Any) -> Array:
+        """One number a mechanism of what may vary from sample to sample."""
+        return folded(name, np.broadcast_to(np.asarray(values, dtype=np.float64), self.ok.shape), self.ok)[
+            :, None
+        ]
+
+
+# Formulas of the motion: one number a mechanism, of anything the motion has at its samples.
+
+VALUE = "value"
+"""Name of the result of a formula that has none of its own."""
+RESERVED = frozenset({"samples_ok", "worst_residual", "status", "progress", "sample", "path", MECHANISM})
+
+_WORD = re.compile(r"(?<![\w.])[^\W\d]\w*")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,39}")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """What a name in a formula stands for: a number of the motion, the time, a drive's value, a varied value."""
+
+    kind: Literal["output", "time", "drive", "varied"]
+    source: str
+    output: Output | None = None
+
+    def of(self, solved: Solved, values: Rows) -> Array:
+        """Its values, (lanes, n) or what broadcasts to it."""
+        if self.output is not None:
+            return self.output.of(solved, values)
+        if self.kind == "varied":
+            return np.asarray(values[self.source])[:, None]
+        if self.kind == "time":
+            return solved.span.time[None, :]
+        path = solved.ready.kinematics.path
+        drives = path.drive_values(ARRAYS, solved.span.parameter)
+        return np.broadcast_to(drives[self.source], (1, len(solved.span.time)))
+
+
+@dataclass(frozen=True)
+class OutputFormula:
+    """A formula with what its names stand for."""
+
+    name: str
+    text: TextFormula
+    variables: Mapping[str, Variable]
+
+    def of(self, solved: Solved, values: Rows, ok: Mask) -> Array:
+        """Its value for each mechanism (lanes,); NaN where no sample is ok."""
+        given = {name: variable.of(solved, values) for name, variable in self.variables.items()}
+        with np.errstate(all="ignore"):
+            found = np.asarray(self.text(Folding(ok), **given), dtype=np.float64)
+        flat = np.broadcast_to(found, (len(ok), 1))[:, 0]
+        return np.where(ok.any(axis=1), flat, np.nan)
+
+    def traced(self, m: Any, solved: Solved, values: Mapping[str, Any]) -> Any:
+        """Its value where numbers are expressions: `solved` is of one sample, `m` folds."""
+        given = {name: variable.of(solved, values).item() for name, variable in self.variables.items()}
+        return self.text(m, **given)
+
+
+def formulas_of(
+    motion: xr.Dataset, design: Design, asked: Mapping[str, str] | str
+) -> tuple[OutputFormula, ...]:
+    """The formulas of these texts; `motion` is a motion of the mechanism.
+
+    Raises InputError: a name that is none, an unknown variable, not a formula, a value that still varies from
+    sample to sample.
+    """
+    texts = {VALUE: asked} if isinstance(asked, str) else dict(asked)
+    if not 1 <= len(texts) <= designs.OUTPUTS:
+        raise InputError("reduce", _("give 1 to {most} formulas").format(most=designs.OUTPUTS))
+    known = dict(_variables(motion, design))
+    return tuple(_formula(motion, name, text, known) for name, text in texts.items())
+
+
+def identifier(*words: str) -> str:
+    """The name that a formula may use: words joined by _, which also stands for signs a name cannot have."""
+    return "_".join(re.sub(r"\W", "_", word) for word in words)
+
+
+def _variables(motion: xr.Dataset, design: Design) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Name -> what it stands for, as words."""
+    yield "time", ("time",)
+    for drive in motion["drive"].values.tolist():
+        yield identifier("drive", drive), ("drive", drive)
+    for path in design.coordinates:
+        yield identifier(path), ("varied", path)
+    for words in every_number(motion):
+        yield identifier(*words), words
+
+
+def _formula(
+    motion: xr.Dataset, name: object, text: object, known: Mapping[str, tuple[str, ...]]
+) -> OutputFormula:
+    taken = isinstance(name, str) and (name in RESERVED or name in motion.dims)
+    if not isinstance(name, str) or not _NAME.fullmatch(name) or taken:
+        what = _("{name} cannot be the name of a result").format(name=shown(name))
+        raise InputError("reduce", what, _("use letters, digits and underscores"))
+    where = "reduce" if name == VALUE else f"reduce {name}"
+    if not isinstance(text, str):
+        raise InputError(where, _("a formula is a text"), _('such as "range(position_C_x)"'))
+    words = dict.fromkeys(_WORD.findall(text[:TEXT_LENGTH]))
+    used = tuple(word for word in words if word in known)
+    _refuse_unknown(where, words, known)
+    formula = compile_formula(text, used, where, FOLDS)
+    variables = {word: _variable(motion, known[word]) for word in used if word in formula.used}
+    _refuse_varying(where, formula, variables)
+    return OutputFormula(name, formula, variables)
+
+
+def _refuse_unknown(where: str, words: Iterable[str], known: Mapping[str, tuple[str, ...]]) -> None:
+    """A misspelt name is told with the nearest one: there may be hundreds."""
+    for word in words:
+        if word not in known and word not in CONSTANTS and word not in FUNCTIONS | FOLDS:
+            what = _("unknown name {name}").format(name=shown(word))
+            raise InputError(where, what, nearest(word, [*REDUCTIONS, *known]))
+
+
+def _variable(motion: xr.Dataset, words: tuple[str, ...]) -> Variable:
+    if words[0] == "time":
+        return Variable("time", "time")
+    if words[0] == "drive":
+        return Variable("drive", words[1])
+    if words[0] == "varied":
+        return Variable("varied", words[1])
+    rest = ".".join(words[1:])
+    return Variable("output", ".".join(words), numbered(motion, ".".join(words), words[0], rest))
+
+
+def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Variable]) -> None:
+    """The value must be one number a mechanism: two samples tell."""
+    two = {name: np.ones((1, 1 if variable.kind == "varied" else 2)) for name, variable in variables.items()}
+    with np.errstate(all="ignore"):
+        found = formula(Folding(np.ones((1, 2), dtype=bool)), **two)
+    if np.shape(found)[-1:] == (2,):
+        what = _("the formula has a value at every sample, not one a mechanism")
+        raise InputError(
+            where, what, _("say of which sample: min(...), max(...), range(...), mean(...), sum(...)")
+        )
+
+
+# What a sweep is asked for: outputs at every sample, outputs reduced, or formulas.
+
+AnyArray: TypeAlias = npt.NDArray[Any]
+Reduce: TypeAlias = str | Mapping[str, str] | None
+
+PATH = "path"
+"""Dimension of derivatives: one for each path that varies."""
+
+
+@dataclass(frozen=True)
+class SweepColumn:
+    """One variable of the result, the dimensions of the mechanisms left out.
+
+    `empty` stands for mechanisms that are not computed.
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    shape: tuple[int, ...]
+    kind: npt.DTypeLike
+    attributes: Mapping[str, Any]
+    empty: float | int = np.nan
+
+    @property
+    def bytes(self) -> int:
+        """What it takes for one mechanism."""
+        return int(np.prod(self.shape, dtype=np.int64)) * np.dtype(self.kind).itemsize
+
+
+JUDGED = (
+    SweepColumn("samples_ok", (), (), np.int32, {"units": "1", "long_name": "samples that are ok"}, -1),
+    SweepColumn("worst_residual", (), (), np.float64, {"units": "1", "long_name": "worst closure residual"}),
+)
+"""What every result says of each mechanism."""
+
+
+@dataclass(frozen=True)
+class SweepOutputs:
+    """Outputs, reduced by one of REDUCTIONS or not at all, or formulas; `columns` are those of the result."""
+
+    outputs: tuple[Output, ...]
+    reduction: str | None
+    formulas: tuple[OutputFormula, ...]
+    columns: tuple[SweepColumn, ...] = field(compare=False)
+
+    @property
+    def slopes(self) -> dict[str, str]:
+        """Column -> the column of its derivatives, where these are asked for."""
+        names = {column.name for column in self.columns}
+        return {name: slope_of(name) for name in names if slope_of(name) in names}
+
+    @property
+    def reduced(self) -> bool:
+        """Whether a mechanism has one number of its samples."""
+        return bool(self.reduction or self.formulas)
+
+    def results(self, solved: Solved, values: Rows, ok: npt.NDArray[np.bool_]) -> dict[str, AnyArray]:
+        """The columns of some mechanisms (lanes, ...) from their motion, but for those of JUDGED."""
+        if self.formulas:
+            return {formula.name: formula.of(solved, values, ok) for formula in self.formulas}
+        if self.reduction is not None:
+            return {
+                output.name: folded(self.reduction, output.of(solved, values), ok) for output in self.outputs
+            }
+        return {"status": solved.status} | {output.name: output.of(solved, values) for output in self.outputs}
+
+
+def slope_of(name: str) -> str:
+    """Name of the derivatives of a reduced column."""
+    return f"gradient.{name}"
+
+
+def with_slopes(asked: SweepOutputs, paths: int) -> SweepOutputs:
+    """The same with the derivatives of every reduced column by the values that vary.
+
+    Raises InputError where nothing is reduced.
+    """
+    if not asked.reduced:
+        what = _("derivatives are those of reduced outputs")
+        raise InputError("gradient", what, _("say how to reduce them"))
+    reduced = [column for column in asked.columns if column not in JUDGED]
+    words = "derivatives by the varied values [SI]; NaN for mechanisms that are not ok everywhere or meet an event"
+    slopes = [
+        SweepColumn(
+            slope_of(column.name),
+            (*column.dimensions, PATH),
+            (*column.shape, paths),
+            np.float64,
+            {"long_name": f"derivatives of {column.name}", "comment": words},
+        )
+        for column in reduced
+    ]
+    return replace(asked, columns=(*reduced, *slopes, *JUDGED))
+
+
+def asked_of(
+    motion: xr.Dataset, design: Design, outputs: Sequence[str] | str | None, reduce: Reduce
+) -> SweepOutputs:
+    """What these arguments of `sweep` mean; `motion` is a motion of the mechanism. Raises InputError."""
+    if reduce is None or (isinstance(reduce, str) and reduce in REDUCTIONS):
+        found = outputs_of(motion, outputs if outputs is not None else ())
+        return SweepOutputs(found, reduce, (), _columns(motion, found, reduce))
+    if not isinstance(reduce, str | Mapping):
+        raise InputError(
+            "reduce", _("it is one of {names}, or a formula").format(names=", ".join(REDUCTIONS))
+        )
+    if isinstance(reduce, str) and reduce.isidentifier():
+        what = _("unknown reduction {name}").format(name=shown(reduce))
+        raise InputError("reduce", what, nearest(reduce, REDUCTIONS))
+    if outputs:
+        raise InputError(
+            "outputs",
+            _("formulas name what they use themselves"),
+            _("leave outputs out, or reduce by one of {names}").format(names=", ".join(REDUCTIONS)),
+        )
+    formulas = formulas_of(motion, design, reduce)
+    columns = tuple(
+        SweepColumn(
+            formula.name, (), (), np.float64, {"long_name": formula.name, "formula": formula.text.text}
+        )
+        for formula in formulas
+    )
+    return SweepOutputs((), None, formulas, (*columns, *JUDGED))
+
+
+def _columns(
+    motion: xr.Dataset, outputs: tuple[Output, ...], reduction: str | None
+) -> tuple[SweepColumn, ...]:
+    along: tuple[str, ...] = () if reduction else ("sample",)
+    count = () if reduction else (motion.sizes["sample"],)
+    more = {"reduction": reduction} if reduction else {}
+    found = [
+        SweepColumn(x.name, along + x.dimensions, count + x.shape, np.float64, {**x.attributes, **more})
+        for x in outputs
+    ]
+    if reduction is None:
+        attributes = {
+            key: value.tolist() if isinstance(value, np.ndarray) else value
+            for key, value in motion["status"].attrs.items()
+        }
+        found.append(SweepColumn("status", along, count, np.int8, attributes, -1))
+    return (*found, *JUDGED)

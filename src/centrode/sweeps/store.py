@@ -14,14 +14,19 @@ import functools
 import hashlib
 import importlib.util
 import json
+import math
+import os
 import re
+import stat
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import lazy_loader
+import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
@@ -30,17 +35,443 @@ from centrode.files.drafts import clear_drafts, clear_folder, draft_folder, refu
 from centrode.files.inputs import keep_inputs_below
 from centrode.files.locks import locked
 from centrode.locale import _, ngettext
-from centrode.sweeps import limits
-from centrode.sweeps.arrays import Task
-from centrode.sweeps.blocks import Blocks
-from centrode.sweeps.designs import described
+from centrode.sweeps import designs
+from centrode.sweeps.arrays import SweepTask
+from centrode.sweeps.designs import Design, described
 from centrode.sweeps.executors import bare
-from centrode.sweeps.marks import GREATEST, Marks, read_bounded, read_small
-from centrode.sweeps.results import Frame
-from centrode.sweeps.streams import Columns
-from centrode.sweeps.tallies import Tally
+from centrode.sweeps.machine import StreamedColumns, columns_for
+from centrode.sweeps.outputs import PATH, SweepColumn, SweepOutputs
+
+# The blocks of a sweep: runs of mechanisms that are computed, kept and marked as done together.
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Blocks of a grid of a shape, its last dimension running fastest.
+
+    A block is a run of mechanisms in that order and at the same time a box of the grid (all of the dimensions
+    behind `axis`, at most `step` along it), so that it is one chunk of a stored array.
+    """
+
+    shape: tuple[int, ...]
+    axis: int
+    step: int
+
+    @classmethod
+    def of(cls, shape: tuple[int, ...], most: int) -> Blocks:
+        """Blocks as great as they may be: at most `most` mechanisms."""
+        axis, inner = len(shape) - 1, 1
+        while axis > 0 and inner * shape[axis] <= most:
+            inner *= shape[axis]
+            axis -= 1
+        pieces = math.ceil(shape[axis] / max(1, most // inner))
+        return cls(shape, axis, math.ceil(shape[axis] / pieces))
+
+    @property
+    def chunk(self) -> tuple[int, ...]:
+        """Extent of a whole block along each dimension."""
+        return (*[1] * self.axis, self.step, *self.shape[self.axis + 1 :])
+
+    @property
+    def pieces(self) -> int:
+        """Blocks along `axis`."""
+        return math.ceil(self.shape[self.axis] / self.step)
+
+    def __len__(self) -> int:
+        return math.prod(self.shape[: self.axis]) * self.pieces
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(range(len(self)))
+
+    def mechanisms(self, block: int) -> tuple[int, int]:
+        """First mechanism of a block, and the one behind its last."""
+        outer, piece = divmod(block, self.pieces)
+        inner = math.prod(self.shape[self.axis + 1 :])
+        first = (outer * self.shape[self.axis] + piece * self.step) * inner
+        end = (outer * self.shape[self.axis] + min((piece + 1) * self.step, self.shape[self.axis])) * inner
+        return first, end
+
+    def region(self, block: int) -> tuple[slice, ...]:
+        """Where a block stands in an array of the shape."""
+        outer, piece = divmod(block, self.pieces)
+        places: list[slice] = []
+        for extent in reversed(self.shape[: self.axis]):
+            outer, place = divmod(outer, extent)
+            places.insert(0, slice(place, place + 1))
+        along = slice(piece * self.step, min((piece + 1) * self.step, self.shape[self.axis]))
+        return (*places, along, *[slice(0, extent) for extent in self.shape[self.axis + 1 :]])
+
+
+# What a sweep came to: mechanisms by how far they move, worst residual, extremes; added up block by block.
+
+Extremes: TypeAlias = dict[str, list[list[float] | None]]
+"""Column -> for each of its components (in order) least and greatest value; None where there is no number."""
+
+
+@dataclass
+class Tally:
+    """Counts of mechanisms, and extremes of reduced columns.
+
+    Attributes
+    ----------
+    mechanisms : computed so far
+    whole, none : those of which every sample is ok, and none
+    worst_residual : the worst of all; NaN without any
+    """
+
+    mechanisms: int = 0
+    whole: int = 0
+    none: int = 0
+    worst_residual: float = math.nan
+    extremes: Extremes = field(default_factory=dict)
+
+    def add(self, other: Tally) -> None:
+        """Count the mechanisms of another block in."""
+        self.mechanisms += other.mechanisms
+        self.whole += other.whole
+        self.none += other.none
+        self.worst_residual = float(np.fmax(self.worst_residual, other.worst_residual))
+        for name, found in other.extremes.items():
+            own = self.extremes.get(name)
+            self.extremes[name] = (
+                found if own is None else [_wider(a, b) for a, b in zip(own, found, strict=True)]
+            )
+
+    def as_dict(self) -> dict[str, Any]:
+        """As a marker holds it; numbers survive to the last bit."""
+        worst = None if math.isnan(self.worst_residual) else self.worst_residual
+        return {
+            "mechanisms": self.mechanisms,
+            "whole": self.whole,
+            "none": self.none,
+            "worst_residual": worst,
+            "extremes": self.extremes,
+        }
+
+    @classmethod
+    def from_dict(cls, told: Mapping[str, Any], components: Mapping[str, int]) -> Tally:
+        """The tally of a mark; `components` says how many each column has.
+
+        Raises KeyError, TypeError, ValueError or OverflowError where it is none.
+        """
+        worst = told["worst_residual"]
+        extremes = {name: [_ends(pair) for pair in found] for name, found in told["extremes"].items()}
+        if any(components.get(name) != len(found) for name, found in extremes.items()):
+            raise ValueError("extremes of other columns")
+        return cls(
+            int(told["mechanisms"]),
+            int(told["whole"]),
+            int(told["none"]),
+            math.nan if worst is None else float(worst),
+            extremes,
+        )
+
+
+def _ends(pair: Sequence[float] | None) -> list[float] | None:
+    if pair is None:
+        return None
+    least, greatest = pair
+    return [float(least), float(greatest)]
+
+
+def _wider(one: Sequence[float] | None, other: Sequence[float] | None) -> list[float] | None:
+    if one is None or other is None:
+        both = one if other is None else other
+        return None if both is None else list(both)
+    return [min(one[0], other[0]), max(one[1], other[1])]
+
+
+def tally_of(asked: SweepOutputs, samples: int, results: Mapping[str, npt.NDArray[Any]]) -> Tally:
+    """The tally of one block."""
+    ok = results["samples_ok"]
+    worst = float(np.fmax.reduce(results["worst_residual"]))
+    extremes: Extremes = {}
+    if asked.reduced:
+        for column in asked.columns:
+            if column.name not in ("samples_ok", "worst_residual", *asked.slopes.values()):
+                flat = results[column.name].reshape(len(ok), math.prod(column.shape))
+                extremes[column.name] = [_extremes(flat[:, k]) for k in range(flat.shape[1])]
+    return Tally(len(ok), int(np.sum(ok == samples)), int(np.sum(ok == 0)), worst, extremes)
+
+
+def _extremes(values: npt.NDArray[np.float64]) -> list[float] | None:
+    finite = values[np.isfinite(values)]
+    return [float(finite.min()), float(finite.max())] if finite.size else None
+
+
+# The labelled result of a sweep: its frame without numbers, and results kept in memory.
 
 AnyArray: TypeAlias = npt.NDArray[Any]
+
+
+class Kept(Protocol):
+    """Where the blocks of a sweep go."""
+
+    blocks: Blocks
+    tally: Tally
+
+    def has(self, block: int) -> bool:
+        """Whether a block is there already."""
+
+    def room(self, block: int) -> StreamedColumns:
+        """Arrays that the results of a block are written to, before it is put."""
+
+    def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
+        """Keep what stands in the room of a block: all of it, or nothing."""
+
+
+@dataclass(frozen=True)
+class SweepFrame:
+    """Dimensions, coordinates and attributes of a result; `empty` holds no variables."""
+
+    design: Design
+    asked: SweepOutputs
+    empty: xr.Dataset
+
+    @property
+    def mechanisms(self) -> int:
+        """How many there are."""
+        return math.prod(self.design.shape)
+
+    @property
+    def bytes(self) -> int:
+        """What the columns take."""
+        return self.mechanisms * sum(column.bytes for column in self.asked.columns)
+
+    def room(self, mechanisms: int) -> StreamedColumns:
+        """Arrays for the columns of some mechanisms, as files have them."""
+        return StreamedColumns(
+            {
+                column.name: np.empty((mechanisms, *column.shape), dtype=column.kind)
+                for column in self.asked.columns
+            }
+        )
+
+
+def frame_of(
+    motion: xr.Dataset, design: Design, units: Mapping[str, str], asked: SweepOutputs, executor: str
+) -> SweepFrame:
+    """The frame of a sweep; `motion` is a motion of the mechanism, and gives it words and labels."""
+    used = {dimension for column in asked.columns for dimension in column.dimensions}
+    labels = [dimension for dimension in motion.dims if dimension in used and dimension in motion.coords]
+    coordinates: dict[Any, Any] = {dimension: motion.coords[dimension] for dimension in labels}
+    if "sample" in used:
+        coordinates |= {
+            "time": motion["time"],
+            "drive": motion["drive"],
+            "drive_value": motion["drive_value"],
+        }
+    if PATH in used:
+        coordinates[PATH] = (PATH, list(design.coordinates))
+    for path, (dimension, values) in design.coordinates.items():
+        coordinates[path] = ((dimension,), values, {"units": units[path]})
+    told = {key: motion.attrs[key] for key in ("title", "mechanism", "version", "mobility")}
+    return SweepFrame(
+        design,
+        asked,
+        xr.Dataset(
+            coords=coordinates, attrs={**told, "samples": motion.sizes["sample"], "executor": executor}
+        ),
+    )
+
+
+class InMemory:
+    """A result in arrays; what is not computed is empty."""
+
+    def __init__(self, frame: SweepFrame, blocks: Blocks) -> None:
+        self.frame = frame
+        self.blocks = blocks
+        self.tally = Tally()
+        self.arrays = columns_for(frame.asked.columns, frame.mechanisms)
+
+    def has(self, block: int) -> bool:
+        return False
+
+    def room(self, block: int) -> StreamedColumns:
+        return self.arrays.part(slice(*self.blocks.mechanisms(block)))
+
+    def put(self, block: int, results: Mapping[str, AnyArray], tally: Tally) -> None:
+        self.tally.add(tally)  # the results stand where they belong
+
+    def leave_the_rest_empty(self) -> None:
+        """Leave no part of a block that was being put when an interruption came."""
+        for column in self.frame.asked.columns:
+            self.arrays[column.name][self.tally.mechanisms :] = column.empty
+
+    def dataset(self) -> xr.Dataset:
+        """The labelled result."""
+        design = self.frame.design
+        variables = {
+            column.name: (
+                design.dimensions + column.dimensions,
+                self.arrays[column.name].reshape(design.shape + column.shape),
+                dict(column.attributes),
+            )
+            for column in self.frame.asked.columns
+        }
+        return told(self.frame.empty.assign(variables), self.frame, self.tally)
+
+
+def told(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
+    """The result with what it came to in its attributes."""
+    data.attrs |= {
+        "mechanisms": tally.mechanisms,
+        "mechanisms_whole": tally.whole,
+        "mechanisms_none": tally.none,
+        "worst_residual": tally.worst_residual,
+    }
+    for column in frame.asked.columns:
+        found = tally.extremes.get(column.name)
+        if found is None:
+            continue
+        ends = [(math.nan, math.nan) if pair is None else tuple(pair) for pair in found]
+        least, greatest = [end[0] for end in ends], [end[1] for end in ends]
+        single = not column.shape
+        data[column.name].attrs["least"] = least[0] if single else least
+        data[column.name].attrs["greatest"] = greatest[0] if single else greatest
+    return data
+
+
+# Marks of the blocks of a store that are done: what each came to, with a checksum of it and of the block's
+# chunks.
+#
+# A mark holds for exactly what was written: a chunk that was cut off, changed or taken away, a mark of
+# another block or
+# one that was edited give another checksum, and the block counts as damaged.
+
+GREATEST = 8_000_000
+"""Bytes of a small file of a store; a mark has some hundreds, the study holds the mechanism as text."""
+PIECE = 1 << 20
+"""Bytes of a chunk that are read at once."""
+CHECK = 4
+"""Bytes that the codec `crc32c` puts behind the numbers of a chunk."""
+TOGETHER = 1000
+"""Marks in one folder."""
+
+
+class Marks:
+    """The marks of a store whose columns are kept in chunks, a chunk of each column for every block."""
+
+    def __init__(self, folder: Path, store: Path, columns: Sequence[SweepColumn], blocks: Blocks) -> None:
+        self.folder = folder
+        self.store = store
+        self.columns = columns
+        self.blocks = blocks
+
+    def chunks(self, block: int) -> Iterator[tuple[Path, int]]:
+        """File of a block's chunk in each column, and the bytes that it has if it is there."""
+        extents = self.blocks.chunk
+        place = [
+            str(along.start // extent)
+            for along, extent in zip(self.blocks.region(block), extents, strict=True)
+        ]
+        for column in self.columns:
+            inner = ["0"] * len(column.shape)
+            size = math.prod(extents) * column.bytes + CHECK
+            yield self.store.joinpath(column.name, "c", *place, *inner), size
+
+    def remove_chunks(self, block: int) -> None:
+        """Remove a block's chunks: what is there must not be read where zarr writes a part of a chunk.
+
+        Raises InputError where one of them is a file that was read.
+        """
+        for file, _size in self.chunks(block):
+            remove_file(file)
+
+    def write(self, block: int, tally: Tally) -> None:
+        """Mark a block whose chunks are written."""
+        told = tally.as_dict()
+        checksum = self._checksum(block, told)
+        if checksum is None:
+            what = _("block {block} cannot be read back").format(block=block)
+            raise InputError(str(self.store), what, _("name another place"))
+        folder = self.folder / str(block // TOGETHER)
+        folder.mkdir(parents=True, exist_ok=True)
+        write_whole(folder / f"{block}.json", {"tally": told, "sha256": checksum})
+
+    def read(self) -> tuple[dict[int, Tally], list[int]]:
+        """Tallies of the blocks that are done, and the blocks that are damaged.
+
+        A mark that cannot be read, or is no mark of a block, counts for nothing.
+        """
+        done: dict[int, Tally] = {}
+        damaged: list[int] = []
+        for file in self.folder.glob("*/*.json"):
+            block = self._block(file)
+            told = read_small(file)
+            if block is None or told is None or not isinstance(told.get("sha256"), str):
+                continue
+            tally = self._tally(block, told.get("tally"))
+            if tally is not None and told["sha256"] == self._checksum(block, tally.as_dict()):
+                done[block] = tally
+            else:
+                damaged.append(block)
+        return done, sorted(damaged)
+
+    def _block(self, file: Path) -> int | None:
+        """The block whose mark has this name, if any has."""
+        if not (file.stem.isascii() and file.stem.isdigit()) or len(file.stem) > len(str(len(self.blocks))):
+            return None
+        block = int(file.stem)
+        own = block < len(self.blocks) and file.parent.name == str(block // TOGETHER)
+        return block if own and file.stem == str(block) else None
+
+    def _tally(self, block: int, told: object) -> Tally | None:
+        """The tally in a mark; None where it is none of this block."""
+        first, stop = self.blocks.mechanisms(block)
+        components = {column.name: math.prod(column.shape) for column in self.columns}
+        try:
+            tally = Tally.from_dict(told, components)  # type: ignore[arg-type]
+        except (ValueError, KeyError, TypeError, OverflowError, AttributeError):
+            return None
+        return tally if tally.mechanisms == stop - first else None
+
+    def _checksum(self, block: int, told: Mapping[str, Any]) -> str | None:
+        """Checksum of a block's tally and chunks; None where a file is no chunk.
+
+        A chunk that holds nothing but empty numbers has no file.
+        """
+        found = hashlib.sha256(json.dumps([block, told], sort_keys=True).encode())
+        for file, size in self.chunks(block):
+            try:
+                status = file.stat()
+                if not stat.S_ISREG(status.st_mode) or status.st_size != size:
+                    return None
+                with file.open("rb") as stream:
+                    found.update(b"chunk")
+                    for piece in iter(lambda: stream.read(PIECE), b""):
+                        found.update(piece)
+            except (FileNotFoundError, NotADirectoryError):
+                found.update(b"none")
+            except OSError:
+                return None
+        return found.hexdigest()
+
+
+def read_small(file: Path) -> dict[str, Any] | None:
+    """A small file of JSON that holds a table; None where it is anything else, or cannot be read."""
+    content = read_bounded(file, GREATEST)
+    if content is None:
+        return None
+    try:
+        told = json.loads(content)
+    except (ValueError, RecursionError):
+        return None
+    return told if isinstance(told, dict) else None
+
+
+def read_bounded(file: Path, most: int) -> bytes | None:
+    """Bytes of a regular file; None where it is none, cannot be read or has more than `most`."""
+    try:
+        status = os.stat(file)
+        if not stat.S_ISREG(status.st_mode) or status.st_size > most:
+            return None
+        with file.open("rb") as stream:
+            content = stream.read(most + 1)
+    except OSError:
+        return None
+    return content if len(content) <= most else None
+
 
 PROGRESS, LOCK, STUDY, DONE = "progress", "lock", "study.json", "done"
 METADATA = "zarr.json"
@@ -58,13 +489,13 @@ _storage = functools.partial(lazy_loader.load, "zarr.storage")
 class Store:
     """An open store; only the process that holds its lock has one."""
 
-    def __init__(self, path: Path, frame: Frame, blocks: Blocks) -> None:
+    def __init__(self, path: Path, frame: SweepFrame, blocks: Blocks) -> None:
         self.frame = frame
         self.blocks = blocks
         self.marks = Marks(path / PROGRESS / DONE, path, frame.asked.columns, blocks)
         root = _zarr().open_group(str(path), mode="r+", zarr_format=FORMAT)
         self.arrays = {column.name: root[column.name] for column in frame.asked.columns}
-        self._room = Columns()
+        self._room = StreamedColumns()
         self._roomy = 0
         done, damaged = self.marks.read()
         self.tally = Tally()
@@ -94,7 +525,7 @@ class Store:
     def has(self, block: int) -> bool:
         return block in self.done
 
-    def room(self, block: int) -> Columns:
+    def room(self, block: int) -> StreamedColumns:
         first, stop = self.blocks.mechanisms(block)
         if stop - first > self._roomy:
             self._room, self._roomy = self.frame.room(stop - first), stop - first
@@ -113,7 +544,7 @@ class Store:
 
 
 @contextmanager
-def opened(path: Path, frame: Frame, blocks: Blocks, task: Task) -> Iterator[Store]:
+def opened(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -> Iterator[Store]:
     """The store of a sweep, made or found; nobody else writes into it while the block runs.
 
     Blocks that are damaged are named in a DamageWarning, and are not done. Raises InputError: zarr is not installed,
@@ -141,7 +572,7 @@ def opened(path: Path, frame: Frame, blocks: Blocks, task: Task) -> Iterator[Sto
         yield Store(path, frame, blocks)
 
 
-def read(path: Path, frame: Frame) -> xr.Dataset:
+def read(path: Path, frame: SweepFrame) -> xr.Dataset:
     """The result in a store; numbers are read when they are used, coordinates are those of the sweep."""
     coordinates = frame.empty.coords
     data = xr.open_zarr(str(path), chunks=None, drop_variables=list(map(str, coordinates)))
@@ -174,7 +605,7 @@ def _found(path: Path) -> dict[str, Any] | None:
         raise _damaged(path) from None
 
 
-def _blocks_of(found: Mapping[str, Any], path: Path, frame: Frame) -> Blocks:
+def _blocks_of(found: Mapping[str, Any], path: Path, frame: SweepFrame) -> Blocks:
     """The blocks that a store says it has; InputError where there cannot be such."""
     try:
         axis, step = map(int, found["blocks"])
@@ -194,14 +625,14 @@ def _damaged(path: Path, name: str = f"{PROGRESS}/{STUDY}") -> InputError:
     return InputError(str(path), what, _("delete the folder, or name another place"))
 
 
-def _too_great(blocks: Blocks, frame: Frame) -> bool:
+def _too_great(blocks: Blocks, frame: SweepFrame) -> bool:
     """Whether a block would take more memory than those that a sweep makes."""
     _first, stop = blocks.mechanisms(0)
     each = max(1, sum(column.bytes for column in frame.asked.columns))
-    return stop > max(1, limits.BLOCK_BYTES // each)
+    return stop > max(1, designs.BLOCK_BYTES // each)
 
 
-def _study(frame: Frame, task: Task) -> dict[str, Any]:
+def _study(frame: SweepFrame, task: SweepTask) -> dict[str, Any]:
     """What must be the same for a run to go on: all that the numbers depend on."""
     asked, parameter = task.asked, task.span.parameter
     told = frame.empty.attrs
@@ -225,7 +656,7 @@ def _refuse_other_studies(path: Path, found: Mapping[str, Any], study: Mapping[s
     raise InputError(str(path), what, _("name another place, or delete it"))
 
 
-def _make(path: Path, frame: Frame, blocks: Blocks, study: Mapping[str, Any]) -> None:
+def _make(path: Path, frame: SweepFrame, blocks: Blocks, study: Mapping[str, Any]) -> None:
     """Make the arrays, without numbers, and keep what they are of; what is left of a making cut short is removed."""
     _clear(path, frame)
     files = _empty_store(frame, blocks)
@@ -238,7 +669,7 @@ def _make(path: Path, frame: Frame, blocks: Blocks, study: Mapping[str, Any]) ->
     write_whole(path / PROGRESS / STUDY, told)
 
 
-def _clear(path: Path, frame: Frame) -> None:
+def _clear(path: Path, frame: SweepFrame) -> None:
     """Remove what is left of a making that was cut short; InputError where there is anything else."""
     clear_drafts(path)
     names = {column.name for column in frame.asked.columns}
@@ -281,7 +712,7 @@ def _as_made(file: Path, content: bytes, checksum: object) -> bool:
         return False
 
 
-def _empty_store(frame: Frame, blocks: Blocks) -> dict[str, bytes]:
+def _empty_store(frame: SweepFrame, blocks: Blocks) -> dict[str, bytes]:
     """The files of the store before there are results: metadata, coordinates."""
     files: dict[str, Any] = {}
     memory = _storage().MemoryStore(files)
