@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.model.bodies import Link
+from centrode.model.links import Link
 from centrode.model.mechanism import Mechanism
 
 Array = npt.NDArray[np.float64]

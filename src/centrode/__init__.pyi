@@ -11,20 +11,20 @@ from .model.mechanism import Study as Study
 from .model.files import read_mechanism as read_mechanism
 from .model.files import parse_mechanism as parse_mechanism
 from .model.files import mechanism_text as mechanism_text
-from .model.paths import value_at as value_at
-from .model.paths import with_value as with_value
-from .model.placing import replace_placed as replace_placed
+from .model.files import value_at as value_at
+from .model.files import with_value as with_value
+from .model.placement import replace_placed as replace_placed
 
 from .model.schema import mechanism_schema as mechanism_schema
 
 # The description of a cam
-from .model.cams.description import Cam as Cam
-from .model.cams.plate import PlateCam as PlateCam
-from .model.cams.description import varied as varied
-from .model.cams.files import read_cam as read_cam
-from .model.cams.files import parse_cam as parse_cam
-from .model.cams.files import cam_text as cam_text
-from .model.cams.schema import cam_schema as cam_schema
+from .model.cam import Cam as Cam
+from .model.follower_cam import PlateCam as PlateCam
+from .model.cam import varied as varied
+from .model.cam_files import read_cam as read_cam
+from .model.cam_files import parse_cam as parse_cam
+from .model.cam_files import cam_text as cam_text
+from .model.schema import cam_schema as cam_schema
 
 # Built-in mechanisms and classics
 from .model.examples.loading import load as load
@@ -112,8 +112,8 @@ from .dynamics.steady_motion.flywheel import Flywheel as Flywheel
 from .dynamics.steady_motion.machine import machine_results as machine_results
 
 # Motion under loads and a drive
-from .model.simulations import Simulation as Simulation
-from .model.simulations import Motor as Motor
+from .model.simulation import Simulation as Simulation
+from .model.simulation import Motor as Motor
 from .dynamics.simulation.simulate import simulate as simulate
 from .dynamics.simulation.steady_state import steady_regime as steady_regime
 from .dynamics.simulation.steady_state import Regime as Regime
@@ -224,7 +224,7 @@ from .analysis.instant_centres.kennedy import MOST_BODIES as MOST_BODIES
 from .analysis.instant_centres.centrodes import centrodes as centrodes
 from .analysis.instant_centres.curvature import curvature as curvature
 from .study.centres import body_names as body_names
-from .model.spoken import body_name as body_name
+from .model.labels import body_name as body_name
 from .study.centres import initial_place as initial_place
 from .study.centres import place_words as place_words
 from .study.centres import centres_header as centres_header

@@ -24,7 +24,7 @@ from centrode.cams.parameter_choice.search import (
 from centrode.cams.path_series import path_of
 from centrode.cams.return_arc import designed, working_arc
 from centrode.cams.walking_wheel import mover
-from centrode.model.cams.description import Cam, varied
+from centrode.model.cam import Cam, varied
 
 WHEELS = ["walking-wheel-four-legs", "walking-wheel-three-legs"]
 

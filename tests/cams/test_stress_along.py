@@ -14,8 +14,8 @@ from centrode.cams.curvature_laws import ExponentialCurvature, LinearCurvature
 from centrode.cams.path_series import expanded_path
 from centrode.cams.results import cam_contact
 from centrode.errors import InputError
-from centrode.model.cams.description import Cam
-from centrode.model.cams.files import parse_cam
+from centrode.model.cam import Cam
+from centrode.model.cam_files import parse_cam
 from circle_path import CirclePath
 
 EPS = 2.0**-52

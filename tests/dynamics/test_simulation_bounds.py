@@ -12,7 +12,7 @@ from centrode.algebra.machine_code import PRESENT
 from centrode.dynamics.simulation import equation_of_motion
 from centrode.dynamics.simulation.stepping import Stepper
 from centrode.kinematics.solve import BYTES, GREATEST_RESULT
-from centrode.model.simulations import MOST_TURNS
+from centrode.model.simulation import MOST_TURNS
 from simulated import crank_rocker, rotor
 
 EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]

@@ -14,7 +14,7 @@ from hypothesis.extra.numpy import arrays
 import centrode as ct
 from centrode.dynamics.masses import masses_of, massless_links
 from centrode.dynamics.state import Radial, Spread
-from centrode.model.tensors import principal
+from centrode.model.values import principal
 from growing_sphere import unit
 from mechanisms import EPS
 from spherical_bodies import Array, Cloud, triad

@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.linalg import norm
 
 import centrode as ct
-from centrode.model.sphere import unit_vector
+from centrode.model.values import unit_vector
 from mechanisms import EPS, OPERATIONS, Array, events, statuses
 
 ORACLE: dict[str, Any] = json.loads(

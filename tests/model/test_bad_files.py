@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from centrode.errors import InputError
-from centrode.model import limits
+from centrode.model import reading
 from centrode.model.files import mechanism_text, parse_mechanism, read_mechanism
 
 from .conftest import FOUR_BAR, FULL, SPHERE
@@ -142,7 +142,7 @@ def test_bad_descriptions_are_told(complaint: Complaint, old: str, new: str, mes
         ("[" + ".".join(["'a'"] * 50_000) + "]", "press.toml: the text nests too deeply"),
         ("a = 2000-13-45", "not TOML"),
         ("a = " + "9" * 5000, "press.toml: not TOML"),
-        ("x" * (limits.FILE_SIZE + 1), "press.toml: the text has 1000001 characters"),
+        ("x" * (reading.FILE_SIZE + 1), "press.toml: the text has 1000001 characters"),
         (
             FOUR_BAR + "[study]\nsamples = 1000000000",
             "[study]: samples must lie between 1 and 1000000, got 1000000000",
@@ -220,7 +220,7 @@ def test_bad_texts_are_told(complaint: Complaint, text: str, message: str) -> No
 
 def test_first_problems_of_a_file_are_told_together(complaint: Complaint) -> None:
     told = complaint("\n".join(f"[links.L{i}]\nlength = -1" for i in range(9))).splitlines()
-    assert len(told) == limits.PROBLEMS_SHOWN + 1
+    assert len(told) == reading.PROBLEMS_SHOWN + 1
     assert told[-1] == "and 4 more problems"
 
 

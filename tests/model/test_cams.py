@@ -11,8 +11,8 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.model.cams.files import cam_text, parse_cam, read_cam
-from centrode.model.cams.schema import CAM_PROPERTIES
+from centrode.model.cam_files import cam_text, parse_cam, read_cam
+from centrode.model.schema import CAM_PROPERTIES
 
 from .test_schema import fits
 

@@ -9,9 +9,8 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.model.cams.files import cam_text, parse_cam
-from centrode.model.cams.follower_schema import PLATE_PROPERTIES
-from centrode.model.cams.schema import cam_schema
+from centrode.model.cam_files import cam_text, parse_cam
+from centrode.model.schema import PLATE_PROPERTIES, cam_schema
 
 from .test_schema import fits
 

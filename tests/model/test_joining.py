@@ -6,8 +6,8 @@ from collections.abc import Callable
 import pytest
 
 from centrode.model.files import mechanism_text, parse_mechanism
+from centrode.model.links import Gear, Rolling, Track
 from centrode.model.mechanism import Mechanism
-from centrode.model.pairs import Gear, Rolling, Track
 
 Complaint = Callable[[str], str]
 

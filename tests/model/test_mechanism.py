@@ -8,12 +8,11 @@ from typing import Any
 import pytest
 
 from centrode.errors import CentrodeError, InputError
-from centrode.model.connection import disconnected_parts
+from centrode.model.checks import disconnected_parts
 from centrode.model.description import Description
 from centrode.model.files import parse_mechanism
-from centrode.model.frozen import FrozenMap
 from centrode.model.mechanism import Drive, Frame, Guide, Link, Mechanism, Placed, Study
-from centrode.model.names import two_points
+from centrode.model.reading import FrozenMap, two_points
 
 from .conftest import FULL
 

@@ -5,9 +5,8 @@ import math
 import pytest
 
 from centrode.errors import InputError
-from centrode.model.files import parse_mechanism
+from centrode.model.files import parse_mechanism, value_at, with_value
 from centrode.model.mechanism import Mechanism, Placed
-from centrode.model.paths import value_at, with_value
 
 from .conftest import FULL
 

@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 
 from centrode.errors import InputError
 from centrode.model.description import Description
-from centrode.model.files import parse_mechanism
+from centrode.model.files import parse_mechanism, with_value
 from centrode.model.mechanism import Mechanism, Placed
-from centrode.model.paths import with_value
-from centrode.model.placing import place, replace_placed
+from centrode.model.placement import place, replace_placed
 
 ANGLE = st.floats(-7, 7)
 LENGTH = st.floats(0.1, 9)

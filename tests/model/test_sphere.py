@@ -8,11 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from centrode.errors import InputError
-from centrode.model.files import mechanism_text, parse_mechanism
+from centrode.model.files import mechanism_text, parse_mechanism, value_at, with_value
 from centrode.model.mechanism import Mechanism
-from centrode.model.paths import value_at, with_value
-from centrode.model.placing import replace_placed
-from centrode.model.sphere import angle_between, arc, dot, longitude_latitude, unit_vector
+from centrode.model.placement import replace_placed
+from centrode.model.values import angle_between, arc, dot, longitude_latitude, unit_vector
 
 Complaint = Callable[[str], str]
 EPS = 2.0**-52

@@ -8,14 +8,7 @@ import pytest
 
 import centrode as ct
 from centrode.locale import LANGUAGES, speaking
-from centrode.model.spoken import (
-    LOADS,
-    body_name,
-    constraint_name,
-    load_name,
-    reaction_name,
-    side_name,
-)
+from centrode.model.labels import LOADS, body_name, constraint_name, load_name, reaction_name, side_name
 
 PRESS = ct.example("six-bar-press")
 FRAME = {"en": "frame", "ru": "стойка", "uk": "стояк"}

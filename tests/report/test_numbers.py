@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from centrode.locale import speaking
-from centrode.model.asked import Display
+from centrode.model.settings import Display
 from centrode.render.document.numbers import MINUS, Numbers, respelled, spelled_unit
 
 FINITE = st.floats(-1e9, 1e9, allow_subnormal=False)

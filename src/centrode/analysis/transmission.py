@@ -29,7 +29,7 @@ from centrode.kinematics.sampling import MotionOnPath
 from centrode.kinematics.solve import asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.sphere import unit_vector
+from centrode.model.values import unit_vector
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Aim, Group, Meet, Rail, Rod, Slot, Stop, Stroke, links_of, points_of
 

@@ -27,9 +27,9 @@ from centrode.cams.path_series import (
 from centrode.cams.roller_path import RollerPath, SymmetricPath, angles_of
 from centrode.errors import Status
 from centrode.kinematics.motion import Variable, labels_of, named
-from centrode.model.cams.description import Cam
-from centrode.model.cams.files import AnyCam, cam_text
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam import Cam
+from centrode.model.cam_files import AnyCam, cam_text
+from centrode.model.follower_cam import PlateCam
 from centrode.version import __version__
 
 Array = npt.NDArray[np.float64]

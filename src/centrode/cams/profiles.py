@@ -29,9 +29,8 @@ from centrode.cams.roller_path import Array, Frames, PolarCurve, RollerPath, fra
 from centrode.cams.walking_wheel import Shoe
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.model.cams.description import Cam
-from centrode.model.cams.files import AnyCam, curved
-from centrode.model.cams.parts import Return
+from centrode.model.cam import Cam, Return
+from centrode.model.cam_files import AnyCam, curved
 from centrode.numerics.search import extremes, roots
 
 # Equidistants of a roller's path: the cam's profile one radius inside, the wall of a groove one radius

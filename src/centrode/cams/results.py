@@ -22,10 +22,10 @@ from centrode.cams.walking_wheel import Shoe, WheelMover, mover
 from centrode.errors import InputError
 from centrode.kinematics.motion import named
 from centrode.locale import _
-from centrode.model import limits
-from centrode.model.cams.description import Cam
-from centrode.model.cams.files import AnyCam, curved
-from centrode.model.cams.plate import PlateCam
+from centrode.model import reading
+from centrode.model.cam import Cam
+from centrode.model.cam_files import AnyCam, curved
+from centrode.model.follower_cam import PlateCam
 
 DEFAULT_SAMPLES = 361
 AXES = ["x", "y"]
@@ -166,11 +166,11 @@ def count_of(cam: Cam, samples: int | None) -> int:
     """The number of samples asked for; InputError if it is none."""
     asked = samples if samples is not None else cam.study.samples
     count = DEFAULT_SAMPLES if asked is None else asked
-    if isinstance(count, bool) or not 2 <= count <= limits.SAMPLES:
+    if isinstance(count, bool) or not 2 <= count <= reading.SAMPLES:
         raise InputError(
             _("samples"),
             _("{samples} samples were asked for").format(samples=count),
-            _("ask for {least} to {most}").format(least=2, most=limits.SAMPLES),
+            _("ask for {least} to {most}").format(least=2, most=reading.SAMPLES),
         )
     return count
 

@@ -22,9 +22,9 @@ from centrode.algebra.jets import Jet
 from centrode.cams.curvature_laws import CurvatureLaw, derivatives
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model import limits
-from centrode.model.cams.files import AnyCam
-from centrode.model.cams.plate import PlateCam
+from centrode.model import reading
+from centrode.model.cam_files import AnyCam
+from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import Extremes as PathExtremes
 from centrode.numerics.search import Function, extremes
 
@@ -433,12 +433,12 @@ def angles_of(cam: AnyCam, samples: int | None = None, at: npt.ArrayLike | None 
     if at is None:
         asked = samples if samples is not None else cam.study.samples
         count = DEFAULT_SAMPLES if asked is None else asked
-        if isinstance(count, bool) or not 2 <= count <= limits.SAMPLES:
+        if isinstance(count, bool) or not 2 <= count <= reading.SAMPLES:
             what = _("{samples} samples were asked for").format(samples=count)
-            raise InputError(_("samples"), what, _("ask for 2 to {most}").format(most=limits.SAMPLES))
+            raise InputError(_("samples"), what, _("ask for 2 to {most}").format(most=reading.SAMPLES))
         return np.linspace(*ends_of(cam), count)
     places = np.asarray(at, dtype=np.float64)
-    if places.ndim != 1 or not 1 <= len(places) <= limits.SAMPLES or not np.isfinite(places).all():
+    if places.ndim != 1 or not 1 <= len(places) <= reading.SAMPLES or not np.isfinite(places).all():
         raise InputError("at", _("it needs finite angles of the carrier, one or more, in one dimension"))
     return places
 

@@ -30,10 +30,10 @@ from centrode.dynamics.state import (
 from centrode.errors import InputError
 from centrode.geometry.sphere import add, basis, cross, dot, half_arc, subtract, times, unit_vector
 from centrode.locale import _
-from centrode.model import sphere
-from centrode.model.bodies import RING_AND_POINT
+from centrode.model import values
+from centrode.model.links import RING_AND_POINT
 from centrode.model.mechanism import FRAME, Mechanism, Vector
-from centrode.model.tensors import principal, tensor_of
+from centrode.model.values import principal, tensor_of
 
 # Masses of spherical links: centre of mass, and inertia about it as mass spread along three directions.
 #
@@ -179,13 +179,13 @@ class InertiaReader(LinkNumbers):
 
     def _ends(self) -> tuple[str, str]:
         """The points between which an arc reaches: the two farthest, all others on their great circle."""
-        places = {point: sphere.unit_vector(at) for point, at in self.link.coordinates.items()}
+        places = {point: values.unit_vector(at) for point, at in self.link.coordinates.items()}
         pairs = list(combinations(places, 2))
         if not pairs:
             what = _("an arc lies between two points, and this link has one")
             raise InputError(self.where, what, _("give centre and inertia in place of shape"))
-        first, second = max(pairs, key=lambda pair: sphere.arc(places[pair[0]], places[pair[1]]))
-        if not sphere.makes_arc(places[first], places[second]):
+        first, second = max(pairs, key=lambda pair: values.arc(places[pair[0]], places[pair[1]]))
+        if not values.makes_arc(places[first], places[second]):
             what = _("its farthest points lie opposite, so that no one arc joins them")
             raise InputError(self.where, what, _("give centre and inertia in place of shape"))
         normal = cross(places[first], places[second])

@@ -16,7 +16,7 @@ from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import PlanLayout
 from centrode.kinematics.sampling import Samples
 from centrode.kinematics.solve import Solved
-from centrode.model.bodies import Link
+from centrode.model.links import Link
 from centrode.model.mechanism import FRAME, Mechanism
 
 # What a mass is to the computation: centre of mass and inertia about it, in the plane and on the sphere.

@@ -33,7 +33,7 @@ from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.numerics.search import bisect
 from centrode.structure.dimensions import Dimensions
 

@@ -19,7 +19,7 @@ from centrode.equations.symbols import BEARING, ROUNDING, SIMPLE, TURN, ZERO, An
 from centrode.errors import InputError
 from centrode.kinematics.prepared import Ready
 from centrode.locale import _
-from centrode.model.sphere import makes_arc, unit_vector
+from centrode.model.values import makes_arc, unit_vector
 from centrode.structure.constraints import FRAME
 from centrode.structure.groups import Group, Meet, Rail, RigidPoint, Rod, TurnedLink, Turning, TwoPointLink
 

@@ -21,10 +21,10 @@ from centrode.errors import InputError
 from centrode.kinematics.law_jumps import Jump, first_jump
 from centrode.laws import Law, ShaftLaw
 from centrode.locale import _
-from centrode.model import limits
-from centrode.model.chain import chain_of
+from centrode.model import reading
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.motion_parameter import MotionParameter
+from centrode.model.placement import chain_of
 
 # How fast several drives move together: the unit of time on which events are looked for, stretch by stretch.
 #
@@ -404,11 +404,11 @@ def span_of(
     `reach` are the nearest limits: the range of a displacement drive where none is asked for, and that of any drive
     where the `reachable` range is.
     """
-    if isinstance(samples, bool) or not 1 <= samples <= limits.SAMPLES:
+    if isinstance(samples, bool) or not 1 <= samples <= reading.SAMPLES:
         raise InputError(
             _("samples"),
             _("{samples} samples were asked for").format(samples=samples),
-            _("ask for 1 to {most}").format(most=limits.SAMPLES),
+            _("ask for 1 to {most}").format(most=reading.SAMPLES),
         )
     for name, value in (("from", start), ("to", stop)):
         if value is not None and not np.isfinite(value):
@@ -429,7 +429,7 @@ def span_of(
 
 def span_at(path: Path, places: Array) -> SampleGrid:
     """Samples at given places: values of the drive [rad or m], or times [s] where the drive is a law."""
-    if places.ndim != 1 or not 1 <= len(places) <= limits.SAMPLES or not np.isfinite(places).all():
+    if places.ndim != 1 or not 1 <= len(places) <= reading.SAMPLES or not np.isfinite(places).all():
         raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
     span = _at_values(path, places) if path.parameter.is_uniform else _at_times(path, places)
     _check_extent(path, span)

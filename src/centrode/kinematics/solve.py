@@ -18,7 +18,7 @@ from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, Pla
 from centrode.kinematics.prepared import Ready
 from centrode.kinematics.sampling import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
 from centrode.locale import _
-from centrode.model.asked import REACHABLE
+from centrode.model.settings import REACHABLE
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -2,27 +2,374 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from itertools import chain, islice
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain, islice, pairwise
+from typing import TYPE_CHECKING
 
 from centrode.locale import _
-from centrode.model import limits
-from centrode.model.bodies import Link
-from centrode.model.cam_driving import follower_problems
-from centrode.model.connection import disconnected_parts
-from centrode.model.description import Description
-from centrode.model.joining import cylinder_problems, joining_problems
-from centrode.model.known import is_link, known, link_known, points_on, two_known_points
-from centrode.model.names import two_points
-from centrode.model.on_sphere import space_problems
-from centrode.model.problems import Place, Problem, nearest, shown
+from centrode.model import reading
+from centrode.model.description import Description, value_at_start
+from centrode.model.drives import Drive
+from centrode.model.links import Gear, Link, Rolling
+from centrode.model.reading import FRAME, Place, Problem, nearest, shown, two_points
+from centrode.model.values import Placed, Vector, makes_arc, unit_vector
+
+if TYPE_CHECKING:
+    from centrode.model.follower_cam import PlateCam
+
+# Checks that a name in a description is one of something: a point, a link, a guide.
+
+
+def known(name: str, names: Iterable[str], kind: str, at: Place, link: str = "") -> Iterator[Problem]:
+    """The problem, if any, of a name that is none of `names`; `link` is the one whose points they are."""
+    candidates = list(names)
+    if name in candidates:
+        return
+    sentences = {
+        "point": _("{link} has no point {name}") if link else _("unknown point {name}"),
+        "link": _("unknown link {name}"),
+        "guide": _("unknown guide {name}"),
+        "point, link or guide": _("unknown point, link or guide {name}"),
+    }
+    yield Problem(sentences[kind].format(name=shown(name), link=link), nearest(name, candidates), at)
+
+
+def link_known(mechanism: Description, name: str, at: Place, moving: bool = False) -> Iterator[Problem]:
+    """The problem, if any, of a link that is not there; the frame counts as one unless it has to move."""
+    yield from known(name, list(mechanism.links) if moving else [FRAME, *mechanism.links], "link", at)
+
+
+def two_known_points(mechanism: Description, points: tuple[str, ...] | None, at: Place) -> Iterator[Problem]:
+    """Problems of a pair of points, where one is given: they are known and differ."""
+    if points is None:
+        return
+    if len(set(points)) != 2 or len(points) != 2:
+        yield Problem(_('two different points are needed: ["A", "B"]'), "", at)
+    for point in points:
+        yield from known(point, mechanism.points, "point", at)
+
+
+def points_on(mechanism: Description, link: str) -> Iterable[str]:
+    """Names of the points of a link, or of the frame."""
+    return mechanism.frame.points if link == FRAME else mechanism.links[link].coordinates
+
+
+def is_link(mechanism: Description, name: str) -> bool:
+    """Whether a name is the frame's or a link's."""
+    return name == FRAME or name in mechanism.links
+
+
+# Checks of what joins links besides hinges and guides: gears, rolling, cylinders.
+
+SAME = 1e-9
+"""Radii that differ by less than this part of the greater are equal, as a wheel that fills its ring."""
+
+
+def joining_problems(mechanism: Description) -> Iterator[Problem]:
+    """Problems of gears and rolling wheels."""
+    identities: set[str] = set()
+    for index, gear in enumerate(mechanism.gears):
+        at: Place = ("gears", index)
+        yield from _gear(mechanism, gear, at)
+        yield from _once(gear.id, identities, at)
+    for index, wheel in enumerate(mechanism.rolling):
+        at = ("rolling", index)
+        yield from _rolling(mechanism, wheel, at)
+        yield from _once(wheel.id, identities, at)
+
+
+def _once(identity: str, identities: set[str], at: Place) -> Iterator[Problem]:
+    if identity in identities:
+        what = _("there are two gears or rolling wheels {name}").format(name=shown(identity))
+        yield Problem(what, _("give one of them a name of its own: name = ..."), at)
+    identities.add(identity)
+
+
+def _gear(mechanism: Description, gear: Gear, at: Place) -> Iterator[Problem]:
+    if len(gear.links) != 2 or gear.links[0] == gear.links[-1]:
+        yield Problem(_("a gear needs two different links"), _('name them: links = ["OA", "wheel"]'), at)
+    elif FRAME in gear.links and gear.carrier == FRAME:
+        what = _("a gear with the frame as one of its wheels needs a carrier that moves")
+        yield Problem(what, _("name the link that holds both axes: carrier = ..."), at)
+    elif gear.carrier in gear.links:
+        what = _("link {link} cannot be a wheel and the carrier of one gear").format(link=gear.carrier)
+        yield Problem(what, _("name the link that holds both axes: carrier = ..."), at)
+    for name in gear.links:
+        yield from link_known(mechanism, name, (*at, "links"))
+    yield from link_known(mechanism, gear.carrier, (*at, "carrier"))
+
+
+def _rolling(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Problem]:
+    unknown = list(link_known(mechanism, wheel.link, (*at, "link"), moving=True))
+    yield from unknown
+    if not unknown:
+        local = mechanism.links[wheel.link].coordinates
+        yield from known(wheel.centre, local, "point", (*at, "centre"), wheel.link)
+    yield from link_known(mechanism, wheel.on, (*at, "on"))
+    if wheel.link == wheel.on:
+        what = _("link {link} cannot roll on itself").format(link=wheel.link)
+        yield Problem(what, _("name another link"), at)
+    elif is_link(mechanism, wheel.on):
+        yield from _on_track(mechanism, wheel, at)
+    circle, inside = wheel.along.radius, wheel.along.inside
+    if inside and circle is not None and abs(circle - wheel.radius) <= SAME * max(circle, wheel.radius):
+        what = _("a wheel as large as the circle fills it and cannot roll inside")
+        yield Problem(what, _("change one of the radii, or take inside out"), (*at, "radius"))
+
+
+def _on_track(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Problem]:
+    points = points_on(mechanism, wheel.on)
+    if isinstance(wheel.along.centre, str):
+        yield from known(wheel.along.centre, points, "point", (*at, "along", "centre"), wheel.on)
+    if wheel.centre in points:
+        what = _("point {point} is a point of {link} already, the wheel cannot roll on it")
+        repair = _("take it out of the link, or let the wheel roll on another one")
+        yield Problem(what.format(point=shown(wheel.centre), link=wheel.on), repair, at)
+
+
+def cylinder_problems(mechanism: Description, drive: Drive, at: Place) -> Iterator[Problem]:
+    """Problems of a driven distance between two known points: something has to be able to change it."""
+    first, second = drive.distance or ("", "")
+    for body in (FRAME, *mechanism.links):
+        if {first, second} <= set(points_on(mechanism, body)):
+            what = _("points {first} and {second} both belong to {link}: their distance cannot change")
+            repair = _("name points of two different links")
+            told = what.format(first=shown(first), second=shown(second), link=body)
+            yield Problem(told, repair, (*at, "distance"))
+    value = value_at_start(drive)
+    if value is not None and value <= 0:
+        what = _("a cylinder shorter than zero: its length at t = 0 is {value:g} m")
+        yield Problem(what.format(value=value), _("give the distance of the points as start"), at)
+
+
+# Checks of what belongs to the sphere only, or to the plane only.
+
+SPHERE_LINK_KEYS = ("reference", "centre_radius", "model")
+
+
+def space_problems(mechanism: Description) -> Iterator[Problem]:
+    """Keys of the other space, and what the sphere asks for."""
+    if mechanism.space == "sphere":
+        yield from _planar_keys(mechanism)
+        yield from _angles(mechanism)
+        return
+    yield from _spherical_keys(mechanism)
+
+
+def _spherical_keys(mechanism: Description) -> Iterator[Problem]:
+    """Keys that mean something on the sphere only."""
+    if mechanism.radius is not None:
+        yield _spherical("radius", _("take it out"), ("radius",))
+    for name, link in mechanism.links.items():
+        for key in SPHERE_LINK_KEYS:
+            if getattr(link, key) is not None:
+                repair = _("take it out")
+                if key == "reference":
+                    repair = _("take it out; in the plane angles are measured from the x axis")
+                yield _spherical(key, repair, ("links", name, key))
+        if link.shape == "arc":
+            yield _spherical("arc", _("write rod, disc or ring"), ("links", name, "shape"))
+    for index, load in enumerate(mechanism.loads):
+        if load.axis is not None:
+            yield _spherical("axis", _("take it out"), ("loads", index, "axis"))
+
+
+def _spherical(key: str, repair: str, at: Place) -> Problem:
+    return Problem(_("{key} belongs to the sphere").format(key=key), repair, at)
+
+
+def _planar_keys(mechanism: Description) -> Iterator[Problem]:
+    """Keys that mean something in the plane only."""
+    for name, link in mechanism.links.items():
+        if link.shape == "rod":
+            yield _planar("rod", _("write arc, disc or ring"), ("links", name, "shape"))
+        if link.model is not None and link.shape is not None:
+            what = _("shape and model are given together")
+            yield Problem(what, _("keep one of them"), ("links", name))
+        if link.model is not None and isinstance(link.inertia, tuple):
+            what = _("a ring has one moment of inertia, about the axis through its centre")
+            yield Problem(what, _("give one number"), ("links", name, "inertia"))
+        if link.model is not None and link.centre_radius is not None:
+            what = _("the mass of a ring and point mass lies on the sphere")
+            yield Problem(what, _("take centre_radius out"), ("links", name, "centre_radius"))
+    for index, guide in enumerate(mechanism.guides):
+        if isinstance(guide.pole, Placed):
+            what = _("a pole cannot be placed")
+            repair = _("give its [longitude, latitude], or the name of a point")
+            yield Problem(what, repair, ("guides", index, "pole"))
+    for name, side in mechanism.assembly.sides.items():
+        if side in ("ahead", "behind"):
+            repair = _('write "left" or "right" of the arc between the two known points or poles')
+            yield _planar(side, repair, ("assembly", "sides", name))
+    for index, load in enumerate(mechanism.loads):
+        if isinstance(load.axis, str):
+            yield from known(load.axis, mechanism.points, "point", ("loads", index, "axis"))
+
+
+def _planar(key: str, repair: str, at: Place) -> Problem:
+    return Problem(_("{key} belongs to the plane").format(key=key), repair, at)
+
+
+def _angles(mechanism: Description) -> Iterator[Problem]:
+    """A link whose angle is given needs the arc that it is measured from."""
+    driven = {drive.link: drive.relative_to for drive in mechanism.drives if drive.link}
+    for name, link in mechanism.links.items():
+        at: Place = ("links", name)
+        if link.reference is not None:
+            wrong = list(two_known_points(mechanism, link.reference, (*at, "reference")))
+            yield from wrong or _reference(mechanism, link, driven.get(name, FRAME), (*at, "reference"))
+        elif link.angle is not None or name in driven:
+            first = shown(next(iter(link.coordinates), "A"))
+            what = _("reference is missing: on the sphere the angle is measured from an arc")
+            yield Problem(what, _("add reference = [{first}, ...]").format(first=first), at)
+
+
+def _reference(mechanism: Description, link: Link, against: str, at: Place) -> Iterator[Problem]:
+    points = tuple(link.coordinates)
+    arcs = link.reference or ()
+    if len(points) < 2:
+        what = _("a link of one point has no angle on the sphere")
+        yield Problem(what, _("name its second point, or take the reference out"), at)
+    elif arcs[0] != points[0]:
+        what = _("the reference starts at {point}, the link's first point is {first}")
+        repair = _("a link's angle is measured in its first point: start the reference there")
+        yield Problem(what.format(point=shown(arcs[0]), first=shown(points[0])), repair, at)
+    else:
+        yield from _lengths_of(mechanism, link, at)
+        if against != FRAME and against in mechanism.links:
+            yield from _carried(mechanism, arcs, against, at)
+
+
+def _lengths_of(mechanism: Description, link: Link, at: Place) -> Iterator[Problem]:
+    """An arc has a direction at its start unless its ends coincide or lie opposite."""
+    ends = tuple(link.coordinates.values())[:2]
+    known: list[tuple[Vector, ...]] = [ends] if link.length is None else []
+    fixed = [mechanism.frame.points.get(point) for point in link.reference or ()]
+    known.append(tuple(place for place in fixed if isinstance(place, tuple)))
+    for places in known:
+        for one, other in pairwise(places):
+            if not makes_arc(unit_vector(one), unit_vector(other)):
+                what = _("two points that coincide or lie opposite make no arc to measure an angle from")
+                yield Problem(what, _("choose another second point"), at)
+
+
+def _carried(mechanism: Description, arcs: tuple[str, ...], link: str, at: Place) -> Iterator[Problem]:
+    missing = [point for point in arcs if point not in points_on(mechanism, link)]
+    if missing:
+        what = _("the drive is relative to {link}, but {point} of the reference is no point of it")
+        repair = _("name two points of {link}").format(link=link)
+        yield Problem(what.format(link=link, point=shown(missing[0])), repair, at)
+
+
+# Checks of a cam's follower against the link that it is.
+
+NEAR = 1e-9
+"""Share of an arm by which its length may miss that of the cam's description."""
+
+
+def pivot_of(mechanism: Description, link: str) -> str | None:
+    """The point of the frame about which a link turns; None where it has none or several."""
+    found = [name for name in mechanism.links[link].coordinates if name in mechanism.frame.points]
+    return found[0] if len(found) == 1 else None
+
+
+def follower_problems(mechanism: Description, drive: Drive, at: Place) -> Iterator[Problem]:
+    """What is wrong with the point of a link that is said to touch the cam."""
+    link = drive.link or ""
+    if drive.cam is None or drive.cam_point is None or link not in mechanism.links:
+        return
+    points = mechanism.links[link].coordinates
+    unknown = list(known(drive.cam_point, points, "point", (*at, "cam_point"), link))
+    pivot = pivot_of(mechanism, link)
+    yield from unknown
+    if unknown or pivot is None:
+        return
+    if pivot == drive.cam_point:
+        what = _("{point} is the pivot of the follower").format(point=shown(pivot))
+        yield Problem(what, _("name the roller's centre, or the edge"), (*at, "cam_point"))
+    elif not _fits(drive.cam, length := math.dist(points[pivot], points[drive.cam_point])):
+        what = _("the cam's follower has an arm of {arm:.9g} m, but {point} is {length:.9g} m from its pivot")
+        told = what.format(arm=drive.cam.follower.arm, point=shown(drive.cam_point), length=length)
+        yield Problem(told, _("correct one of them"), (*at, "cam_point"))
+
+
+def _fits(cam: PlateCam, length: float) -> bool:
+    arm = cam.follower.arm
+    return arm is None or cam.follower.contact == "flat" or abs(length - arm) <= NEAR * arm
+
+
+# Which parts of a mechanism hang together with the frame.
+
+Node = tuple[str, str]
+"""("link", name) or ("point", name)."""
+
+
+@dataclass(frozen=True)
+class LoosePart:
+    """Links and points that hang together, but not with the frame."""
+
+    links: tuple[str, ...]
+    points: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return ", ".join(self.links or self.points)
+
+
+def joints(mechanism: Description) -> Iterator[tuple[Node, Node]]:
+    """Pairs of links and points that touch: points in links, guides, gears, rolling, cylinders."""
+    for point in mechanism.frame.points:
+        yield ("link", FRAME), ("point", point)
+    for name, link in mechanism.links.items():
+        yield from ((("link", name), ("point", point)) for point in link.coordinates)
+    for guide in mechanism.guides:
+        yield ("point", guide.point), ("link", guide.on)
+    for gear in mechanism.gears:
+        yield from ((("link", name), ("link", gear.carrier)) for name in gear.links)
+    for wheel in mechanism.rolling:
+        yield ("link", wheel.link), ("link", wheel.on)
+    for drive in mechanism.drives:
+        if drive.distance:
+            yield ("point", drive.distance[0]), ("point", drive.distance[1])
+
+
+def disconnected_parts(mechanism: Description) -> tuple[LoosePart, ...]:
+    """Parts that nothing joins to the frame, in description order; empty for a mechanism in one piece."""
+    neighbours: dict[Node, set[Node]] = {("link", FRAME): set()}
+    for name in mechanism.links:
+        neighbours[("link", name)] = set()
+    for one, other in joints(mechanism):
+        neighbours.setdefault(one, set()).add(other)
+        neighbours.setdefault(other, set()).add(one)
+    reached = _reached(("link", FRAME), neighbours)
+    parts = []
+    for node in neighbours:
+        if node not in reached:
+            part = _reached(node, neighbours)
+            reached |= part
+            links = tuple(name for name in mechanism.links if ("link", name) in part)
+            parts.append(
+                LoosePart(links, tuple(name for name in mechanism.points if ("point", name) in part))
+            )
+    return tuple(parts)
+
+
+def _reached(start: Node, neighbours: dict[Node, set[Node]]) -> set[Node]:
+    reached, waiting = {start}, [start]
+    while waiting:
+        for node in neighbours[waiting.pop()]:
+            if node not in reached:
+                reached.add(node)
+                waiting.append(node)
+    return reached
 
 
 def problems_of_parts(mechanism: Description) -> list[Problem]:
     """Everything wrong among the parts; the parts that do not hang together are told only if nothing else is."""
     checks = (_links, _guides, joining_problems, _drives, space_problems, _rest)
     found = chain.from_iterable(check(mechanism) for check in checks)
-    return list(islice(found, limits.PROBLEMS_SOUGHT)) or list(_loose(mechanism))
+    return list(islice(found, reading.PROBLEMS_SOUGHT)) or list(_loose(mechanism))
 
 
 def _links(mechanism: Description) -> Iterator[Problem]:
@@ -30,8 +377,8 @@ def _links(mechanism: Description) -> Iterator[Problem]:
         yield Problem(_("there are no links"), _("describe at least one, such as [links.OA] with a length"))
     for name, link in mechanism.links.items():
         yield from _link(name, link, ("links", name))
-    if len(mechanism.points) > limits.POINTS:
-        yield Problem(_("at most {most} points are allowed").format(most=limits.POINTS))
+    if len(mechanism.points) > reading.POINTS:
+        yield Problem(_("at most {most} points are allowed").format(most=reading.POINTS))
     for name, link in mechanism.links.items():
         if isinstance(link.centre, str):
             yield from known(link.centre, link.coordinates, "point", ("links", name, "centre"), name)

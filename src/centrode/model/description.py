@@ -12,26 +12,19 @@ from pydantic import AfterValidator, ModelWrapValidatorHandler, PlainValidator, 
 from centrode.algebra.text import SCALARS
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model import limits
-from centrode.model.asked import Assembly, Display, Study
-from centrode.model.bodies import Frame, Link
-from centrode.model.driving import Drive
-from centrode.model.entries import choice, listed
-from centrode.model.frozen import FrozenMap
+from centrode.model import reading
+from centrode.model.drives import Drive
+from centrode.model.links import Frame, Gear, Guide, Link, Rolling
 from centrode.model.loads import Load
-from centrode.model.machines import Machine
 from centrode.model.motion_parameter import (
     UNDRIVEN,
     DriveCoordinate,
     MotionParameter,
     drive_coordinate,
 )
-from centrode.model.names import FRAME, two_points
-from centrode.model.pairs import Gear, Guide, Rolling
-from centrode.model.part import Part
-from centrode.model.problems import nearest, shown
-from centrode.model.reports import ReportWishes
-from centrode.model.simulations import Simulation
+from centrode.model.reading import FRAME, FrozenMap, Part, choice, listed, nearest, shown, two_points
+from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
+from centrode.model.simulation import Simulation
 from centrode.model.values import (
     READING,
     Placed,
@@ -70,12 +63,12 @@ class Description(Part):
     display: Display = Display()
     frame: Frame = Frame()
     links: Annotated[Mapping[str, Link], link_table, AfterValidator(_filled)]
-    guides: Annotated[tuple[Guide, ...], listed(limits.GUIDES)] = ()
-    gears: Annotated[tuple[Gear, ...], listed(limits.LINKS)] = ()
-    rolling: Annotated[tuple[Rolling, ...], listed(limits.LINKS)] = ()
-    drives: Annotated[tuple[Drive, ...], listed(limits.DRIVES)] = ()
+    guides: Annotated[tuple[Guide, ...], listed(reading.GUIDES)] = ()
+    gears: Annotated[tuple[Gear, ...], listed(reading.LINKS)] = ()
+    rolling: Annotated[tuple[Rolling, ...], listed(reading.LINKS)] = ()
+    drives: Annotated[tuple[Drive, ...], listed(reading.DRIVES)] = ()
     assembly: Assembly = Assembly()
-    loads: Annotated[tuple[Load, ...], listed(limits.LOADS)] = ()
+    loads: Annotated[tuple[Load, ...], listed(reading.LOADS)] = ()
     machine: Machine | None = None
     simulation: Simulation | None = None
     study: Study = Study()

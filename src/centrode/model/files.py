@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -11,10 +12,23 @@ import tomli_w
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.document import document
+from centrode.model.description import Description
+from centrode.model.links import part_tables
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import read_file
-from centrode.model.toml_text import described, is_cam, toml_tables
+from centrode.model.reading import PLACED, nearest, read_file, shown, two_points
+from centrode.model.toml import described, is_cam, toml_tables
+
+# A mechanism as the tables of its file, with only what differs from the defaults.
+
+
+def document(mechanism: Description) -> dict[str, Any]:
+    """Tables, lists, texts and SI numbers that read back as the same mechanism."""
+    tables = part_tables(mechanism)
+    for name, link in mechanism.links.items():
+        if link.points == two_points(name):
+            del tables["links"][name]["points"]
+    return tables
+
 
 _HEADING = re.compile(r"^(\[\[?)", re.MULTILINE)
 _SHORT_LIST = re.compile(r"\[\n((?: +[^\[\]\n]*,\n)+) *\]")
@@ -83,3 +97,176 @@ def in_short_lines(text: str) -> str:
 
 def _in_one_line(match: re.Match[str]) -> str:
     return "[" + ", ".join(line.strip().removesuffix(",") for line in match.group(1).splitlines()) + "]"
+
+
+# Values of a mechanism by their paths: links.AC.length, frame.points.D.x, guides.C.through.y,
+# drives.OA.speed.
+
+_AXES = {"plane": ("x", "y"), "sphere": ("longitude", "latitude")}
+Spot = tuple[Any, Any]
+"""A table or list of the document, and the key or index in it."""
+
+
+def value_at(mechanism: Mechanism, path: str) -> float:
+    """Number [SI] at a path; raises InputError where there is none.
+
+    `guides.C.direction` is an angle however it is given; `links.K.points.C.x` is a local coordinate of a
+    link whose points have coordinates. On the sphere, coordinates are `longitude` and `latitude`.
+    """
+    words = _words(mechanism, path)
+    if words[0] == "guides" and words[2:] == ["direction"]:
+        return mechanism.guide(words[1]).direction_angle
+    if words[0] == "guides" and words[2:] == ["radius"] and mechanism.space == "sphere":
+        return mechanism.guide(words[1]).arc
+    if words[0] == "rolling" and words[2:] == ["along", "direction"]:
+        return _direction_of_track(mechanism, words[1], path)
+    container, key = _spot(document(mechanism), words, path)
+    value = container.get(key) if isinstance(container, dict) else container[key]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        what = _("{path} is not a number here").format(path=path)
+        raise InputError("", what, _("give it a value first"))
+    return float(value)
+
+
+def with_value(mechanism: Mechanism, path: str, value: float | str) -> Mechanism:
+    """The mechanism with another number, or text with a unit, at a path.
+
+    What was `placed` stays where it is, unless it is what the path names (then it counts as given from
+    now on); `replace_placed` places anew. Raises InputError where there is no such path, or where the
+    value does not fit.
+    """
+    return with_values(mechanism, {path: value})
+
+
+def with_values(mechanism: Mechanism, values: Mapping[str, float | str]) -> Mechanism:
+    """The same with several numbers at once: only all of them together have to fit."""
+    tables = document(mechanism)
+    for path, value in values.items():
+        container, key = _spot(tables, _words(mechanism, path), path)
+        container[key] = value
+    return mechanism_from(tables)
+
+
+def kind_at(mechanism: Mechanism, path: str) -> str:
+    """Kind of quantity that a path names ("length", "angle", ...); raises InputError where there is no such path."""
+    words = _words(mechanism, path)
+    _spot(document(mechanism), words, path)
+    key, on_sphere = words[-1], mechanism.space == "sphere"
+    if words[0] == "drives":
+        coordinate = mechanism.motion_parameter.drive(words[1])
+        return {"start": coordinate.kind, "speed": coordinate.speed_kind}.get(key, key)
+    if words[0] == "links" and key in ("radius", "centre_radius"):
+        return "length"
+    if key in ("length", "radius"):
+        return "arc" if on_sphere else "length"
+    coordinates = {"x": "length", "y": "length", "longitude": "angle", "latitude": "angle"}
+    return {**coordinates, "direction": "angle"}.get(key, key)
+
+
+def _direction_of_track(mechanism: Mechanism, identity: str, path: str) -> float:
+    track = next(wheel.along for wheel in mechanism.rolling if wheel.id == identity)
+    if track.direction is None:
+        what = _("{path} is not a number here").format(path=path)
+        raise InputError("", what, _("the wheel rolls on a circle: give its radius or its centre"))
+    return math.atan2(*reversed(track.unit)) if isinstance(track.direction, tuple) else track.direction
+
+
+def _words(mechanism: Mechanism, path: str) -> list[str]:
+    """The path's parts; a name may itself hold dots, so known names are tried first."""
+    room, _dot, rest = path.partition(".")
+    names: dict[str, list[str]] = {
+        "links": list(mechanism.links),
+        "frame": ["points"],
+        "guides": [guide.id for guide in mechanism.guides],
+        "gears": [gear.id for gear in mechanism.gears],
+        "rolling": [wheel.id for wheel in mechanism.rolling],
+        "drives": [drive.id for drive in mechanism.drives],
+    }
+    if room not in names:
+        raise _unknown(path, room, list(names))
+    name, tail = _first(rest, names[room], path)
+    if tail.startswith("points.") or name == "points":
+        inner = tail.removeprefix("points.")
+        known = list(mechanism.frame.points if room == "frame" else mechanism.links[name].coordinates)
+        point, axis = _first(inner, known, path)
+        return [room, name, point, axis] if room == "frame" else [room, name, "points", point, axis]
+    return [room, name, *tail.split(".")] if tail else [room, name]
+
+
+def _first(rest: str, known: list[str], path: str) -> tuple[str, str]:
+    for name in sorted(known, key=len, reverse=True):
+        if rest == name or rest.startswith(name + "."):
+            return name, rest[len(name) + 1 :]
+    raise _unknown(path, rest.split(".")[0], known)
+
+
+def _unknown(path: str, word: str, known: list[str]) -> InputError:
+    what = _("there is no {word} in the path {path}").format(word=shown(word), path=shown(path))
+    return InputError("", what, nearest(word, known))
+
+
+_NUMBERS = {
+    "links": ("length", "angle", "mass", "inertia", "radius", "centre_radius"),
+    "guides": ("direction", "angle", "radius"),
+    "gears": ("ratio",),
+    "rolling": ("radius",),
+    "along": ("direction", "radius"),
+    "drives": ("start", "speed"),
+}
+
+
+def _spot(tables: dict[str, Any], words: list[str], path: str) -> Spot:
+    room, name, *rest = words
+    axes = _AXES[tables.get("space", "plane")]
+    if room == "frame":
+        return _coordinate(tables["frame"]["points"], rest, path, axes)
+    if room == "links":
+        return _in_link(tables["links"][name], words, path, axes)
+    entry = next(entry for entry in tables[room] if _identity(room, entry) == name)
+    if room == "guides" and rest[:1] in (["through"], ["pole"]):
+        return _coordinate(entry, rest, path, axes)
+    if room == "rolling" and rest[:1] == ["along"]:
+        entry, room, rest = entry["along"], "along", rest[1:]
+        if rest[:1] in (["through"], ["centre"]):
+            return _coordinate(entry, rest, path, axes)
+    return _number(entry, room, rest, path)
+
+
+def _in_link(link: dict[str, Any], words: list[str], path: str, axes: tuple[str, str]) -> Spot:
+    room, name, *rest = words
+    if rest[:1] == ["points"]:
+        if not isinstance(link.get("points"), dict):
+            what = _("the points of link {name} have no coordinates of their own").format(name=name)
+            raise InputError("", what, f"links.{name}.length")
+        return _coordinate(link["points"], rest[1:], path, axes)
+    if rest[:1] == ["centre"]:
+        return _coordinate(link, rest, path, axes)
+    return _number(link, room, rest, path)
+
+
+def _identity(room: str, entry: dict[str, Any]) -> str:
+    if room == "guides":
+        return str(entry.get("name") or entry["point"])
+    if room == "gears":
+        return str(entry.get("name") or "-".join(entry["links"]))
+    if room == "rolling":
+        return str(entry.get("name") or entry["link"])
+    return str(entry.get("link") or entry.get("guide") or "-".join(entry.get("distance", ())))
+
+
+def _number(table: dict[str, Any], room: str, rest: list[str], path: str) -> Spot:
+    if len(rest) != 1 or rest[0] not in _NUMBERS[room]:
+        raise _unknown(path, ".".join(rest), list(_NUMBERS[room]))
+    return table, rest[0]
+
+
+def _coordinate(table: dict[str, Any], rest: list[str], path: str, axes: tuple[str, str]) -> Spot:
+    """The list of a point's coordinates and the axis; a placed one becomes given."""
+    if len(rest) != 2 or rest[1] not in axes:
+        raise _unknown(path, ".".join(rest[1:]), list(axes))
+    name, axis = rest
+    if isinstance(table.get(name), dict):
+        table[name] = table[name][PLACED]
+    if not isinstance(table.get(name), list):
+        raise InputError("", _("{path} is not a number here").format(path=path), _("give coordinates"))
+    return table[name], axes.index(axis)

@@ -6,19 +6,15 @@ from typing import TYPE_CHECKING, Any, Self
 
 from pydantic import model_validator
 
-from centrode.model.asked import Assembly, Display, Study
-from centrode.model.bodies import Frame, Link
 from centrode.model.checks import problems_of_parts
 from centrode.model.description import Description
-from centrode.model.driving import Drive
+from centrode.model.drives import Drive
+from centrode.model.links import Frame, Gear, Guide, Link, Rolling, Track
 from centrode.model.loads import Load
-from centrode.model.machines import Machine
-from centrode.model.names import FRAME
-from centrode.model.pairs import Gear, Guide, Rolling, Track
-from centrode.model.placing import resolved
-from centrode.model.problems import Problems
-from centrode.model.reports import ReportWishes
-from centrode.model.simulations import Simulation
+from centrode.model.placement import resolved
+from centrode.model.reading import FRAME, Problems
+from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
+from centrode.model.simulation import Simulation
 from centrode.model.values import Placed, Vector
 
 __all__ = [

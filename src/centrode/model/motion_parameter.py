@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.model.units import KINDS, to_si
 
 if TYPE_CHECKING:
-    from centrode.model.driving import Drive
+    from centrode.model.drives import Drive
 
 Kind: TypeAlias = Literal["time", "angle", "length"]
 """A kind of quantity by its name in `units.KINDS`."""

@@ -2,14 +2,191 @@
 
 from __future__ import annotations
 
+import difflib
+import re
 import stat
+import unicodedata
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
 
 from centrode.errors import InputError
 from centrode.files.inputs import note
-from centrode.locale import _
-from centrode.model import limits
-from centrode.model.problems import shown
+from centrode.locale import _, ngettext
+
+# What a file may ask for at most: a text that asks for more is refused before anything is built from it.
+
+FILE_SIZE = 1_000_000
+"""Bytes of a description or of a drive's table."""
+
+LINKS = 200
+"""Structure and systems of equations grow with their square and more: a check takes seconds here, a run a minute."""
+POINTS = 2000
+GUIDES = 500
+DRIVES = 100
+LOADS = 500
+SAMPLES = 1_000_000
+INSTANTS = 1000
+TABLE_ROWS = 10_000
+
+GREATEST = 1e50
+"""Greatest number; fourth powers of it can still be computed with."""
+
+GREATEST_ANGLE = 1e6
+"""Greatest angle [rad]: of a greater one the place within a turn is lost in rounding."""
+
+LEAST = 1e-50
+"""Least length and other number that has to be positive."""
+
+NAME_LENGTH = 40
+TEXT_LENGTH = 1000
+"""Characters of a title or a formula."""
+
+QUANTITY_LENGTH = 100
+"""Characters of a number with its unit."""
+
+UNIT_LENGTH = 40
+NESTING = 12
+"""Tables and lists inside each other; the grammar needs five."""
+
+PROBLEMS_SOUGHT = 20
+"""Problems of one table after which no more are looked for."""
+
+PROBLEMS_SHOWN = 5
+"""Problems of one file that are told together."""
+
+
+# Problems of a description while it is read, and the sentences they become.
+
+Place = tuple[str | int, ...]
+"""Keys and indices from the top of the description to the value a problem is about."""
+
+TABLES = (
+    *("display", "frame", "assembly", "machine", "study", "report"),
+    *("curvature", "start", "range", "roller", "return", "mover", "contact", "choose"),
+    *("cam", "follower", "bounds", "tool"),
+)
+
+KEY = "{key}"
+"""Stands in a problem's sentence for the key it is about, which only the reader of the whole knows."""
+
+
+class Problem(ValueError):
+    """One thing wrong with a description; pydantic gathers these and adds the place above `at`."""
+
+    def __init__(self, what: str, repair: str = "", at: Place = ()) -> None:
+        super().__init__(what)
+        self.what = what
+        self.repair = repair
+        self.at = at
+
+
+class Problems(ValueError):
+    """Several problems found by one check."""
+
+    def __init__(self, problems: Sequence[Problem]) -> None:
+        super().__init__("; ".join(problem.what for problem in problems))
+        self.problems = tuple(problems)
+
+
+def shown(value: object) -> str:
+    """A value as a sentence shows it: texts in quotes, numbers as written, anything else by its kind."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        text = value if len(value) <= 60 else value[:57] + "..."
+        return '"' + "".join(c if c.isprintable() else repr(c)[1:-1] for c in text) + '"'
+    if isinstance(value, float):
+        return repr(value)
+    if isinstance(value, int):
+        return str(value) if abs(value) < 10**30 else _("a number of that size")
+    if isinstance(value, dict):
+        return _("a table")
+    if isinstance(value, list | tuple):
+        count = len(value)
+        return ngettext("a list of {count} value", "a list of {count} values", count).format(count=count)
+    return _("a value of another kind")
+
+
+def likely(name: str, known: Iterable[str]) -> str:
+    """Repair of a misspelt name: the nearest known one, if one is near."""
+    names = list(known)
+    folded = [other for other in names if other.casefold() == name.casefold()]
+    cutoff = 0.5 if len(name) <= 3 else 0.6  # AO is near OA; "angle" is not near "machine"
+    close = folded or difflib.get_close_matches(name[:NAME_LENGTH], names, n=1, cutoff=cutoff)
+    return _("did you mean {name}?").format(name=shown(close[0])) if close else ""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Repair of a misspelt name: the nearest known one, else what is known."""
+    names = list(known)
+    repair = likely(name, names)
+    if repair or not names:
+        return repair
+    few = ", ".join(names[:20]) + (", ..." if len(names) > 20 else "")
+    return _("known are: {names}").format(names=few)
+
+
+def location(place: Place) -> tuple[str, str]:
+    """Table and key of a place as the file spells them: ("[links.BC]", "length"), ("[[guides]] 2", "point")."""
+    place = tuple(part if isinstance(part, int) else shown(str(part))[1:-1] for part in place)
+    if len(place) >= 2 and isinstance(place[1], int):
+        return f"[[{place[0]}]] {place[1] + 1}", ".".join(str(p) for p in place[2:])
+    if len(place) >= 3 and place[:2] == ("machine", "shafts") and isinstance(place[2], int):
+        return f"[[machine.shafts]] {place[2] + 1}", ".".join(str(p) for p in place[3:])
+    if (len(place) == 2 and place[0] == "links") or place == ("frame", "points"):
+        return "[" + ".".join(str(p) for p in place) + "]", ""
+    if len(place) >= 2 and isinstance(place[-1], int):
+        return "[" + ".".join(str(p) for p in place[:-2]) + "]", str(place[-2])
+    if len(place) >= 2:
+        return "[" + ".".join(str(p) for p in place[:-1]) + "]", str(place[-1])
+    if place and place[0] in TABLES:
+        return f"[{place[0]}]", ""
+    return "", str(place[0]) if place else ""
+
+
+def told(problem: Problem, place: Place, source: str) -> InputError:
+    """The sentence of a problem at a place of a source (a file's name; empty in Python)."""
+    table, key = location(place + problem.at)
+    what = problem.what
+    if KEY in what:
+        what = what.replace(KEY, key, 1)
+    elif key:
+        table = f"{table} {key}" if not table.startswith("[[") else f"{table}, {key}"
+    where = ", ".join(part for part in (source, table.strip()) if part)
+    return InputError(where, what, problem.repair)
+
+
+def problems_of(error: dict[str, Any]) -> list[Problem]:
+    """The problems that one of pydantic's errors carries; its own kinds are told without its words."""
+    cause = error.get("ctx", {}).get("error")
+    if isinstance(cause, Problems):
+        return list(cause.problems)
+    if isinstance(cause, Problem):
+        return [cause]
+    return [Problem(_("this value does not fit here: {value}").format(value=shown(error.get("input"))))]
+
+
+def input_error(error: ValidationError, source: str) -> InputError:
+    """One InputError that tells the first few problems pydantic gathered, one a line."""
+    found: list[InputError] = []
+    for entry in error.errors(include_url=False):
+        place: Place = tuple(part for part in entry["loc"] if part != "[key]")
+        found += [told(problem, place, source) for problem in problems_of(dict(entry))]
+    first, rest = found[0], found[1:PROBLEMS_SHOWN]
+    lines = [str(other) for other in rest]
+    left = len(found) - 1 - len(rest)
+    if left > 0:
+        lines.append(
+            ngettext("and {count} more problem", "and {count} more problems", left).format(count=left)
+        )
+    tail = "".join("\n" + line for line in lines)
+    if first.repair:
+        return InputError(first.where, first.what, first.repair + tail)
+    return InputError(first.where, first.what + tail)
 
 
 def read_file(path: Path) -> str:
@@ -26,13 +203,13 @@ def read_file(path: Path) -> str:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
             raise InputError(where, _("this is not a file"), _("give the path of a file"))
-        if status.st_size <= limits.FILE_SIZE:
+        if status.st_size <= FILE_SIZE:
             with path.open("rb") as stream:
-                content = stream.read(limits.FILE_SIZE + 1)
+                content = stream.read(FILE_SIZE + 1)
             note(path, status)
-        if status.st_size > limits.FILE_SIZE or len(content) > limits.FILE_SIZE:
+        if status.st_size > FILE_SIZE or len(content) > FILE_SIZE:
             what = _("the file has {size} bytes, at most {most} are allowed")
-            raise InputError(where, what.format(size=status.st_size, most=limits.FILE_SIZE))
+            raise InputError(where, what.format(size=status.st_size, most=FILE_SIZE))
         return content.decode("utf-8-sig")
     except FileNotFoundError:
         raise InputError(where, _("there is no such file"), _("check the path")) from None
@@ -42,3 +219,233 @@ def read_file(path: Path) -> str:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(where, _("the file cannot be read: {reason}").format(reason=reason)) from None
+
+
+# What every part of a description is: frozen data that names what it does not know.
+
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)  # its name is private to pydantic
+
+
+class _Telling(ModelMetaclass):
+    """Makes a wrong value given in Python an InputError; parts inside parts are gathered by pydantic first."""
+
+    def __call__(cls, *args: Any, **values: Any) -> Any:  # noqa: N805
+        try:
+            return super().__call__(*args, **values)
+        except ValidationError as error:
+            raise input_error(error, "") from None
+
+
+class Part(BaseModel, metaclass=_Telling):
+    """Frozen data with known keys only; a wrong value raises InputError."""
+
+    model_config = ConfigDict(
+        frozen=True,
+        extra="forbid",
+        validate_by_name=True,
+        validate_by_alias=True,
+        arbitrary_types_allowed=True,
+    )
+
+    @classmethod
+    def keys(cls) -> dict[str, str]:
+        """Field of each key, the key as the file spells it."""
+        return {field.alias or name: name for name, field in cls.model_fields.items()}
+
+    @classmethod
+    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
+        """What is wrong with the keys that are given; a part adds its own rules."""
+        keys = cls.keys()
+        known = {**keys, **{name: name for name in cls.model_fields}}
+        unknown = [
+            Problem(_("unknown key {key}").format(key=shown(key)), nearest(str(key), keys))
+            for key in islice((key for key in given if key not in known), PROBLEMS_SOUGHT)
+        ]
+        missing = [
+            missing_key(key)
+            for key, name in keys.items()
+            if cls.model_fields[name].is_required() and key not in given and name not in given
+        ]
+        return unknown + missing
+
+    @model_validator(mode="before")
+    @classmethod
+    def _keys_known(cls, data: Any) -> Any:
+        if isinstance(data, cls):
+            return data
+        if not isinstance(data, Mapping):
+            raise Problem(_("expected a table, got {value}").format(value=shown(data)))
+        problems = cls.key_problems(data)
+        if problems:
+            raise Problems(problems)
+        return dict(data)
+
+
+def missing_key(key: str) -> Problem:
+    """The problem of a key that has to be given."""
+    return Problem(_("{key} is missing").format(key=shown(key)))
+
+
+def one_of(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
+    """The problem, if any, of not giving exactly one of `keys`."""
+    names = [key for key in keys if given.get(key) is not None]
+    if len(names) == 1:
+        return []
+    words = ", ".join(keys)
+    if not names:
+        return [Problem(_("one of {keys} is missing").format(keys=words))]
+    return [Problem(_("{names} are given together").format(names=", ".join(names)), _("keep one of them"))]
+
+
+# Words, lists and tables in a description, of bounded sizes.
+
+
+def choice(*options: str) -> BeforeValidator:
+    """One of a few words."""
+
+    def read(value: object) -> object:
+        if isinstance(value, str) and value in options:
+            return value
+        words = ", ".join(shown(option) for option in options)
+        repair = likely(value, options) if isinstance(value, str) else ""
+        raise Problem(
+            _("expected one of {words}, got {value}").format(words=words, value=shown(value)), repair
+        )
+
+    return BeforeValidator(read)
+
+
+def entries(value: object, most: int) -> tuple[object, ...]:
+    """The entries of a list, at most `most`."""
+    if not isinstance(value, list | tuple):
+        repair = _("write each entry below a [[...]] heading, or values in [...]")
+        raise Problem(_("expected a list, got {value}").format(value=shown(value)), repair)
+    _bounded(len(value), most)
+    return tuple(value)
+
+
+def listed(most: int) -> BeforeValidator:
+    """A list of at most `most` entries, kept as a tuple."""
+    return BeforeValidator(lambda value: entries(value, most))
+
+
+def named_entries(value: object, read_key: Callable[[object], str], most: int) -> dict[str, Any]:
+    """The entries of a table, at most `most`; the names are read first, so that no two become one."""
+    if not isinstance(value, Mapping):
+        raise Problem(_("expected a table, got {value}").format(value=shown(value)))
+    _bounded(len(value), most)
+    named: dict[str, Any] = {}
+    wrong: list[Problem] = []
+    for key, entry in value.items():
+        try:
+            name = read_key(key)
+        except Problem as problem:
+            wrong.append(problem)
+            continue
+        if name in named:
+            wrong.append(
+                Problem(_("{name} is named twice").format(name=shown(name)), _("rename one of them"))
+            )
+        named[name] = entry
+    if wrong:
+        raise Problems(wrong)
+    return named
+
+
+def _bounded(count: int, most: int) -> None:
+    if count > most:
+        what = _("at most {most} entries are allowed, got {count}")
+        raise Problem(what.format(most=most, count=count))
+
+
+def table(read_key: Callable[[object], str], most: int) -> BeforeValidator:
+    """A table of at most `most` named entries."""
+    return BeforeValidator(lambda value: named_entries(value, read_key, most))
+
+
+# Names of points, links and guides: what one may look like, and when a link's name is made of two points.
+
+FRAME = "frame"
+"""The fixed link's name wherever a link is named."""
+
+PLACED = "placed"
+
+# Primes may stand in a name (B'), other quotes would have to be escaped in files, tables and drawings.
+_REFUSED = set('/\\,"`´“”„«»')
+_POINT = r"[^\W\d_]\d*['’′]*"
+_TWO_POINTS = re.compile(rf"({_POINT})({_POINT})")
+
+
+def read_name(value: object) -> str:
+    """A name in composed form (NFC); a Problem if it cannot stand in a file, a table and a drawing."""
+    if not isinstance(value, str):
+        raise Problem(_("expected a name (text), got {value}").format(value=shown(value)))
+    if len(value) > NAME_LENGTH:
+        what = _("a name has at most {most} characters, got {count}")
+        raise Problem(what.format(most=NAME_LENGTH, count=len(value)), _("shorten it"))
+    name = unicodedata.normalize("NFC", value)
+    repair = _("use letters, digits, primes, spaces, hyphens or underscores")
+    if not name or name != name.strip():
+        raise Problem(_("{name} is not a name").format(name=shown(value)), repair)
+    if not name.isprintable() or name.startswith(".") or _REFUSED & set(name):
+        raise Problem(_("{name} has characters a name may not have").format(name=shown(value)), repair)
+    if name == PLACED:
+        raise Problem(
+            _('"placed" cannot be a name: it asks for a place along the chain'), _("choose another name")
+        )
+    return name
+
+
+def read_link_name(value: object) -> str:
+    """A link's name: any name but the fixed link's."""
+    name = read_name(value)
+    if name == FRAME:
+        repair = _("choose another name, or put its points in [frame.points]")
+        raise Problem(_('"frame" is the fixed link, a moving link has another name'), repair)
+    return name
+
+
+def two_points(name: str) -> tuple[str, str] | None:
+    """Points of a link's name that is made of two: O1A -> (O1, A), AB' -> (A, B'); None for other names."""
+    match = _TWO_POINTS.fullmatch(name)
+    if not match or match.group(1) == match.group(2):
+        return None
+    return match.group(1), match.group(2)
+
+
+def body_word(name: str) -> str:
+    """A link by its name, the frame by its word in the reader's language."""
+    return _("frame") if name == FRAME else name
+
+
+# A mapping that cannot change.
+
+K = TypeVar("K")
+V_co = TypeVar("V_co", covariant=True)
+
+
+class FrozenMap(Mapping[K, V_co]):
+    """A mapping that cannot change, keeps its order, equals a dict of the same items and can be hashed."""
+
+    __slots__ = ("_items",)
+
+    def __init__(self, items: Mapping[K, V_co]) -> None:
+        self._items = dict(items)
+
+    def __getitem__(self, key: K) -> V_co:
+        return self._items[key]
+
+    def __iter__(self) -> Iterator[K]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._items.items()))
+
+    def __repr__(self) -> str:
+        return repr(self._items)

@@ -2,31 +2,132 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
+from centrode import laws
 from centrode.laws import MOST_DEGREE, SEGMENT_CURVES
-from centrode.model import limits, segments
-from centrode.model.asked import REACHABLE, Assembly, Display, Study
-from centrode.model.bodies import RING_AND_POINT, SHAPES, Frame, Link
-from centrode.model.description import Description
-from centrode.model.driving import Drive
-from centrode.model.loads import FITS, FORMS, KINDS, Load
-from centrode.model.machines import SHAFTS, FlywheelShape, Machine, Shaft
-from centrode.model.pairs import Gear, Guide, Rolling, Track
-from centrode.model.part import Part
-from centrode.model.reports import LEAST_DIGITS, MOST_CHAPTERS, MOST_DIGITS, ReportWishes
-from centrode.model.schema_parts import (
-    AMOUNT,
-    NAME,
-    TEXT,
-    Schema,
-    above_zero,
-    list_of,
-    quantity_schema,
-    reference_to,
-    schema_of,
-    table_of,
+from centrode.model import reading, segments
+from centrode.model.cam import (
+    CONSTANT,
+    LAWS,
+    LEAST_LEGS,
+    LETTER,
+    MEASURED,
+    MINIMISED,
+    MOST_LEGS,
+    MOST_TERMS,
+    PARAMETERS,
+    POINT,
+    Cam,
+    CamContact,
+    CamMover,
+    CamStudy,
+    Choose,
+    Curvature,
+    Material,
+    NumberRange,
+    Return,
+    Roller,
+    Start,
 )
-from centrode.model.segments import Segment
-from centrode.model.simulations import MOST_STEPS, SCHEMES, Motor, Simulation
+from centrode.model.description import Description
+from centrode.model.drives import Drive
+from centrode.model.follower_cam import (
+    CONTACTS,
+    MOST,
+    MOST_RATES,
+    TURNS,
+    CamBody,
+    Follower,
+    FollowerBounds,
+    FollowerStudy,
+    LiftSegment,
+    PlateCam,
+    Spring,
+    Tool,
+)
+from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
+from centrode.model.links import RING_AND_POINT, SHAPES, Frame, Gear, Guide, Link, Rolling, Track
+from centrode.model.loads import FITS, FORMS, KINDS, Load
+from centrode.model.reading import Part
+from centrode.model.segments import MOST_THROUGH, Segment
+from centrode.model.settings import (
+    LEAST_DIGITS,
+    MOST_CHAPTERS,
+    MOST_DIGITS,
+    REACHABLE,
+    SHAFTS,
+    Assembly,
+    CamReportWishes,
+    Display,
+    FlywheelShape,
+    Machine,
+    ReportWishes,
+    Shaft,
+    Study,
+)
+from centrode.model.simulation import MOST_STEPS, SCHEMES, Motor, Simulation
+from centrode.model.units import KINDS as QUANTITIES
+
+# What schemas of descriptions are made of: quantities, names, lists, tables, and the whole of one.
+
+Schema = dict[str, Any]
+
+
+def quantity_schema(kind: str) -> Schema:
+    """A number in SI, or a text with a unit."""
+    named = QUANTITIES[kind]
+    text = f"{named.name} in {named.unit}, or a text with a unit" if named.unit else named.name
+    bounded = {"type": "string", "maxLength": reading.QUANTITY_LENGTH}
+    return {"description": text, "anyOf": [{"type": "number"}, bounded]}
+
+
+def above_zero(kind: str) -> Schema:
+    """The same, positive where it is a number."""
+    schema = quantity_schema(kind)
+    schema["anyOf"][0] = {"type": "number", "exclusiveMinimum": 0}
+    return schema
+
+
+def list_of(item: Schema, least: int, most: int) -> Schema:
+    """A list with bounds of its length."""
+    return {"type": "array", "items": item, "minItems": least, "maxItems": most}
+
+
+def table_of(entry: Schema, most: int) -> Schema:
+    """A table of at most so many entries of one kind."""
+    return {"type": "object", "additionalProperties": entry, "maxProperties": most}
+
+
+def reference_to(part: type[Part]) -> Schema:
+    """Where the schema of a part stands."""
+    return {"$ref": f"#/$defs/{part.__name__}"}
+
+
+NAME: Schema = {"type": "string", "minLength": 1, "maxLength": reading.NAME_LENGTH}
+TEXT: Schema = {"type": "string", "maxLength": reading.TEXT_LENGTH}
+AMOUNT: Schema = {
+    "anyOf": [{"type": "number"}, TEXT],
+    "description": "a number in SI, a text with a unit, a formula",
+}
+
+
+def schema_of(title: str, whole: type[Part], properties: Mapping[type[Part], Schema]) -> Schema:
+    """JSON Schema of a file that one part describes, with the parts inside it as definitions."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": title,
+        **_object(whole, properties),
+        "$defs": {part.__name__: _object(part, properties) for part in properties if part is not whole},
+    }
+
+
+def _object(part: type[Part], properties: Mapping[type[Part], Schema]) -> Schema:
+    required = [key for key, name in part.keys().items() if part.model_fields[name].is_required()]
+    schema: Schema = {"type": "object", "properties": properties[part], "additionalProperties": False}
+    return {**schema, "required": required} if required else schema
+
 
 CHAPTERS = list_of(NAME, 0, MOST_CHAPTERS)
 REPORT_DIGITS: Schema = {"type": "integer", "minimum": LEAST_DIGITS, "maximum": MOST_DIGITS}
@@ -45,12 +146,12 @@ _PLACED: Schema = {
 _POSITION: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED]}
 _THROUGH: Schema = {"anyOf": [_COORDINATES, {"const": "placed"}, _PLACED, NAME]}
 _DIRECTION: Schema = {"anyOf": [_PAIR, *quantity_schema("angle")["anyOf"]]}
-_POINTS: Schema = {"anyOf": [table_of(_COORDINATES, limits.POINTS), list_of(NAME, 1, 2)]}
+_POINTS: Schema = {"anyOf": [table_of(_COORDINATES, reading.POINTS), list_of(NAME, 1, 2)]}
 _SIDES: Schema = {"enum": ["left", "right", "ahead", "behind"]}
 
 PROPERTIES: dict[type[Part], Schema] = {
     Display: {"length": TEXT, "angle": TEXT},
-    Frame: {"points": table_of(_POSITION, limits.POINTS)},
+    Frame: {"points": table_of(_POSITION, reading.POINTS)},
     Link: {
         "points": _POINTS,
         "length": above_zero("length"),
@@ -99,7 +200,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "start": AMOUNT,
         "speed": AMOUNT,
         "law": {**TEXT, "description": "a formula in t [s], such as 0.3*sin(2*t)"},
-        "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 2), 2, limits.TABLE_ROWS)]},
+        "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 2), 2, reading.TABLE_ROWS)]},
         "segments": list_of(reference_to(Segment), 1, segments.MOST),
         "repeat": {"type": "boolean"},
         "cam": {
@@ -119,7 +220,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "through": list_of(list_of(AMOUNT, 2, 2), 0, max(segments.MOST_THROUGH.values())),
         "degree": {"type": "integer", "minimum": 1, "maximum": MOST_DEGREE},
     },
-    Assembly: {"sides": table_of(_SIDES, limits.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
+    Assembly: {"sides": table_of(_SIDES, reading.POINTS), "continuation": {"enum": ["smooth", "keep"]}},
     Load: {
         "kind": {"enum": list(KINDS)},
         "name": NAME,
@@ -130,7 +231,7 @@ PROPERTIES: dict[type[Part], Schema] = {
         "vector": list_of(AMOUNT, 2, 3),
         "axes": NAME,
         "value": AMOUNT,
-        "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 3), 2, limits.TABLE_ROWS)]},
+        "table": {"anyOf": [TEXT, list_of(list_of(AMOUNT, 2, 3), 2, reading.TABLE_ROWS)]},
         "stiffness": quantity_schema("stiffness"),
         "damping": quantity_schema("damping"),
         "viscous": quantity_schema("damping"),
@@ -180,19 +281,19 @@ PROPERTIES: dict[type[Part], Schema] = {
         "scheme": {"enum": list(SCHEMES)},
         "steps": {"type": "integer", "minimum": 1, "maximum": MOST_STEPS},
         "tolerance": above_zero("ratio"),
-        "samples": {"type": "integer", "minimum": 2, "maximum": limits.SAMPLES},
+        "samples": {"type": "integer", "minimum": 2, "maximum": reading.SAMPLES},
     },
     Study: {
-        "samples": {"type": "integer", "minimum": 1, "maximum": limits.SAMPLES},
-        "instants": list_of(AMOUNT, 0, limits.INSTANTS),
+        "samples": {"type": "integer", "minimum": 1, "maximum": reading.SAMPLES},
+        "instants": list_of(AMOUNT, 0, reading.INSTANTS),
         "from": AMOUNT,
         "to": AMOUNT,
         "range": {"enum": [REACHABLE]},
     },
     ReportWishes: {
         "chapters": CHAPTERS,
-        "instants": list_of(AMOUNT, 0, limits.INSTANTS),
-        "points": list_of(NAME, 0, limits.POINTS),
+        "instants": list_of(AMOUNT, 0, reading.INSTANTS),
+        "points": list_of(NAME, 0, reading.POINTS),
         "digits": REPORT_DIGITS,
     },
     Description: {
@@ -202,13 +303,13 @@ PROPERTIES: dict[type[Part], Schema] = {
         "radius": above_zero("length"),
         "display": reference_to(Display),
         "frame": reference_to(Frame),
-        "links": table_of(reference_to(Link), limits.LINKS),
-        "guides": list_of(reference_to(Guide), 0, limits.GUIDES),
-        "gears": list_of(reference_to(Gear), 0, limits.LINKS),
-        "rolling": list_of(reference_to(Rolling), 0, limits.LINKS),
-        "drives": list_of(reference_to(Drive), 0, limits.DRIVES),
+        "links": table_of(reference_to(Link), reading.LINKS),
+        "guides": list_of(reference_to(Guide), 0, reading.GUIDES),
+        "gears": list_of(reference_to(Gear), 0, reading.LINKS),
+        "rolling": list_of(reference_to(Rolling), 0, reading.LINKS),
+        "drives": list_of(reference_to(Drive), 0, reading.DRIVES),
         "assembly": reference_to(Assembly),
-        "loads": list_of(reference_to(Load), 0, limits.LOADS),
+        "loads": list_of(reference_to(Load), 0, reading.LOADS),
         "machine": reference_to(Machine),
         "simulation": reference_to(Simulation),
         "study": reference_to(Study),
@@ -221,3 +322,187 @@ PROPERTIES: dict[type[Part], Schema] = {
 def mechanism_schema() -> Schema:
     """JSON Schema (draft 2020-12) of a description's file; what parts say about each other is not in it."""
     return schema_of("centrode mechanism", Description, PROPERTIES)
+
+
+# JSON Schema of the parts of a cam that is given by its follower's lift.
+
+_RATES = list_of(AMOUNT, 0, MOST_RATES)
+
+PLATE_PROPERTIES: dict[type[Part], Schema] = {
+    Display: PROPERTIES[Display],
+    Material: {"elasticity": above_zero("pressure"), "poisson": quantity_schema("ratio")},
+    CamBody: {
+        "base_radius": above_zero("length"),
+        "turn": {"enum": list(TURNS)},
+        "speed": above_zero("angular speed"),
+        "thickness": above_zero("length"),
+        "material": reference_to(Material),
+    },
+    Spring: {"stiffness": AMOUNT, "preload": AMOUNT},
+    Follower: {
+        "kind": {"enum": list(FOLLOWER_KINDS)},
+        "contact": {"enum": list(CONTACTS)},
+        "roller_radius": above_zero("length"),
+        "offset": quantity_schema("length"),
+        "arm": above_zero("length"),
+        "pivot_distance": above_zero("length"),
+        "face_offset": quantity_schema("length"),
+        "mass": quantity_schema("mass"),
+        "inertia": quantity_schema("inertia"),
+        "spring": reference_to(Spring),
+        "load": AMOUNT,
+        "friction": quantity_schema("ratio"),
+        "material": reference_to(Material),
+    },
+    LiftSegment: {
+        "angle": above_zero("angle"),
+        "from": quantity_schema("angle"),
+        "to": AMOUNT,
+        "curve": {"enum": list(laws.SEGMENT_CURVES)},
+        "at_start": _RATES,
+        "at_end": _RATES,
+        "through": list_of(list_of(AMOUNT, 2, 2), 0, max(MOST_THROUGH.values())),
+        "degree": {"type": "integer", "minimum": 1, "maximum": laws.MOST_DEGREE},
+    },
+    FollowerBounds: {
+        "pressure_angle": above_zero("angle"),
+        "return_pressure_angle": above_zero("angle"),
+        "curvature_radius": above_zero("length"),
+        "stress": above_zero("pressure"),
+    },
+    Tool: {"radius": above_zero("length")},
+    FollowerStudy: {
+        "samples": {"type": "integer", "minimum": 1, "maximum": reading.SAMPLES},
+        "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
+        "chord_tolerance": above_zero("length"),
+        "show_undercut": {"type": "boolean"},
+    },
+    CamReportWishes: {
+        "chapters": CHAPTERS,
+        "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
+        "digits": REPORT_DIGITS,
+    },
+    PlateCam: {
+        "title": TEXT,
+        "kind": {"const": "cam"},
+        "display": reference_to(Display),
+        "cam": reference_to(CamBody),
+        "follower": reference_to(Follower),
+        "segments": list_of(reference_to(LiftSegment), 1, MOST),
+        "bounds": reference_to(FollowerBounds),
+        "tool": reference_to(Tool),
+        "study": reference_to(FollowerStudy),
+        "report": reference_to(CamReportWishes),
+    },
+}
+"""Keys of every part as a file spells them; a test compares them with the parts themselves."""
+
+
+# JSON Schema of a cam's description.
+
+_FLAG: Schema = {"type": "boolean"}
+_BOUNDS = list_of(AMOUNT, 2, 2)
+
+CAM_PROPERTIES: dict[type[Part], Schema] = {
+    Display: PROPERTIES[Display],
+    Curvature: {
+        "law": {"enum": list(LAWS)},
+        "k0": above_zero("curvature"),
+        "k1": AMOUNT,
+        "points": {"anyOf": [TEXT, list_of(_BOUNDS, 2, reading.TABLE_ROWS)]},
+        "constants": {
+            "type": "object",
+            "patternProperties": {f"^{LETTER.pattern}$": AMOUNT},
+            "additionalProperties": False,
+        },
+        "formula": {**TEXT, "description": "K [1/m] as a formula of phi [rad]"},
+        "symmetric": _FLAG,
+    },
+    Start: {"radius": above_zero("length"), "pressure_angle": quantity_schema("angle")},
+    NumberRange: {"from": quantity_schema("angle"), "to": quantity_schema("angle")},
+    Roller: {"radius": above_zero("length")},
+    Return: {
+        "kind": {"enum": ["designed", "mirrored"]},
+        "least_radius": above_zero("length"),
+        "greatest_radius": above_zero("length"),
+        "least_curvature_radius": above_zero("length"),
+        "pressure_angle": above_zero("angle"),
+        "convex": _FLAG,
+    },
+    CamMover: {
+        "legs": {"type": "integer", "minimum": LEAST_LEGS, "maximum": MOST_LEGS},
+        "post": quantity_schema("length"),
+        "working_arc": list_of(quantity_schema("angle"), 2, 2),
+    },
+    Material: {"elasticity": above_zero("pressure"), "poisson": quantity_schema("ratio")},
+    CamContact: {
+        "force": above_zero("force"),
+        "width": above_zero("length"),
+        "cam": reference_to(Material),
+        "roller": reference_to(Material),
+        "admissible": above_zero("pressure"),
+        "outer": _FLAG,
+    },
+    Choose: {
+        "parameters": {
+            "type": "object",
+            "properties": dict.fromkeys(PARAMETERS, _BOUNDS),
+            "patternProperties": {f"^{one.pattern}$": _BOUNDS for one in (POINT, CONSTANT)},
+            "additionalProperties": False,
+        },
+        "minimise": {"enum": list(MINIMISED)},
+        "stress": above_zero("pressure"),
+        "pressure_angle": above_zero("angle"),
+        "size": above_zero("length"),
+        "lift": above_zero("length"),
+        "gap": above_zero("length"),
+        "trade_off": {"enum": list(MEASURED)},
+    },
+    CamStudy: {
+        "samples": {"type": "integer", "minimum": 1, "maximum": reading.SAMPLES},
+        "terms": {"type": "integer", "minimum": 2, "maximum": MOST_TERMS},
+        "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
+    },
+    CamReportWishes: {
+        "chapters": CHAPTERS,
+        "instants": list_of(quantity_schema("angle"), 0, reading.INSTANTS),
+        "digits": REPORT_DIGITS,
+    },
+    Cam: {
+        "title": TEXT,
+        "kind": {"const": "cam"},
+        "display": reference_to(Display),
+        "curvature": reference_to(Curvature),
+        "start": reference_to(Start),
+        "range": reference_to(NumberRange),
+        "roller": reference_to(Roller),
+        "return": reference_to(Return),
+        "mover": reference_to(CamMover),
+        "contact": reference_to(CamContact),
+        "choose": reference_to(Choose),
+        "study": reference_to(CamStudy),
+        "report": reference_to(CamReportWishes),
+    },
+}
+"""Keys of every part as a file spells them; a test compares them with the parts themselves."""
+
+
+def cam_schema() -> Schema:
+    """JSON Schema (draft 2020-12) of a cam's file; what parts say about each other is not in it.
+
+    A file is that of a cam by a curvature law, or of one by its follower's lift.
+    """
+    curved, plate = (
+        schema_of("centrode cam", Cam, CAM_PROPERTIES),
+        schema_of("", PlateCam, PLATE_PROPERTIES),
+    )
+    words = ("$schema", "title")
+    kinds = {
+        name: {key: one for key, one in whole.items() if key not in (*words, "$defs")}
+        for name, whole in (("Cam", curved), ("PlateCam", plate))
+    }
+    return {
+        **{word: curved[word] for word in words},
+        "anyOf": [reference_to(Cam), reference_to(PlateCam)],
+        "$defs": {**curved["$defs"], **plate["$defs"], **kinds},
+    }

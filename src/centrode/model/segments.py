@@ -12,9 +12,17 @@ from pydantic import PlainValidator, ValidationError, ValidationInfo, field_vali
 from centrode import laws
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.entries import choice, entries
-from centrode.model.part import Part, missing_key
-from centrode.model.problems import KEY, Problem, Problems, input_error, shown
+from centrode.model.reading import (
+    KEY,
+    Part,
+    Problem,
+    Problems,
+    choice,
+    entries,
+    input_error,
+    missing_key,
+    shown,
+)
 from centrode.model.values import numbers, positive, si
 
 MOST = 500

@@ -13,8 +13,8 @@ import lazy_loader
 from centrode.algebra.text import SCALARS, compile_formula
 from centrode.errors import InputError
 from centrode.locale import _, mark
-from centrode.model import limits
-from centrode.model.problems import shown
+from centrode.model import reading
+from centrode.model.reading import shown
 
 # Costs three times the import of NumPy: asked for by the first unit that is not in COMMON.
 _pint = functools.partial(lazy_loader.load, "pint")
@@ -104,7 +104,7 @@ def to_si(value: object, kind: str) -> float:
 def unit_factor(unit: str, kind: str) -> float:
     """SI value of one `unit` of a kind; raises InputError for an unknown unit or one of another kind."""
     unit = unit.strip()
-    if len(unit) > limits.UNIT_LENGTH or not _UNIT.fullmatch(unit):
+    if len(unit) > reading.UNIT_LENGTH or not _UNIT.fullmatch(unit):
         raise InputError("", _("{unit} is not a unit").format(unit=shown(unit)), _example(kind))
     accepted = (KINDS[kind].unit, *KINDS[kind].also)
     for si, units in COMMON.items():
@@ -116,11 +116,11 @@ def unit_factor(unit: str, kind: str) -> float:
 
 
 def _text_to_si(text: str, kind: str) -> float:
-    if len(text) > limits.QUANTITY_LENGTH:
+    if len(text) > reading.QUANTITY_LENGTH:
         what = _(
             "a text of {count} characters is too long for a number with its unit, at most {most} are allowed"
         )
-        raise InputError("", what.format(count=len(text), most=limits.QUANTITY_LENGTH), _("shorten it"))
+        raise InputError("", what.format(count=len(text), most=reading.QUANTITY_LENGTH), _("shorten it"))
     number, unit = _split(text, kind)
     if not unit:
         return _finite(number, text)

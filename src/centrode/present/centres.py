@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from centrode.analysis.instant_centres.centres import bearing
 from centrode.locale import _, ngettext
-from centrode.model.spoken import body_name
+from centrode.model.labels import body_name
 from centrode.present.curves import write_title
 from centrode.present.drawing import draw_mechanism
 from centrode.present.obstacles import lines

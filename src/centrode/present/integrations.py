@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.model.spoken import constraint_name
+from centrode.model.labels import constraint_name
 from centrode.present.abscissa import Abscissa, over_time
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.panels import Motion, Rows, of_guides, of_links, of_points

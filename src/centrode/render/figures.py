@@ -22,7 +22,7 @@ from centrode.sheets.plots import Abscissa, CurvePanel, Diagram, EventKind, Plot
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from centrode.model.asked import Display
+    from centrode.model.settings import Display
     from centrode.sheets.sheet import Picture
 
 INCHES = 4.6

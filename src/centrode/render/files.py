@@ -16,7 +16,7 @@ from centrode.present.tables import write_motion_netcdf
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
-    from centrode.model.asked import Display
+    from centrode.model.settings import Display
     from centrode.sheets.sheet import Column, Scalar, Sheet, Table
 
 BLOCK = 10_000

@@ -23,7 +23,7 @@ from centrode.sheets.texts import (
 )
 
 if TYPE_CHECKING:
-    from centrode.model.asked import Display
+    from centrode.model.settings import Display
     from centrode.sheets.plots import AxisLabel
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from centrode.render.spelling import PlainSpelling
 
 if TYPE_CHECKING:
-    from centrode.model.asked import Display
+    from centrode.model.settings import Display
     from centrode.sheets.sheet import Fact
 
 

@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from centrode.errors import CentrodeError
 from centrode.locale import _, chosen_language, speaking
-from centrode.model.cams.files import AnyCam
+from centrode.model.cam_files import AnyCam
 from centrode.model.mechanism import Mechanism
 from centrode.render.document.blocks import Chapter, Report
 from centrode.report.chapters import CHAPTERS, Kind

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from centrode.locale import _
-from centrode.model.asked import Display
+from centrode.model.settings import Display
 from centrode.present.animations.followers import GAP, WALLS, FollowerLayer
 from centrode.present.animations.layers import View
 from centrode.present.drawing import MARGIN

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.model.sphere import unit_vector
+from centrode.model.values import unit_vector
 from centrode.present import signs
 from centrode.present.drawing import nearest
 from centrode.present.scene import Scene, span

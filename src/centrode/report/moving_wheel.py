@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from centrode.cams.roller_path import frames
 from centrode.locale import _
-from centrode.model.asked import Display
+from centrode.model.settings import Display
 from centrode.present.cams.walking_drawing import (
     CAM,
     CARRIER,

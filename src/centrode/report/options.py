@@ -8,11 +8,11 @@ from typing import TypeVar
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cams.files import AnyCam
+from centrode.model.cam_files import AnyCam
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import ANGLE
-from centrode.model.problems import nearest, shown
-from centrode.model.reports import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
+from centrode.model.reading import nearest, shown
+from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
 
 Wished = TypeVar("Wished")
 

@@ -9,9 +9,9 @@ import xarray as xr
 
 from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
 from centrode.equations.derivation import Equations, equations
-from centrode.model.cams.description import Cam
-from centrode.model.cams.files import AnyCam
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam import Cam
+from centrode.model.cam_files import AnyCam
+from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import Mechanism
 from centrode.render.document.numbers import Numbers
 from centrode.report.options import Wishes

@@ -12,7 +12,7 @@ import lazy_loader
 from centrode.errors import InputError
 from centrode.files.drafts import draft_folder, refusals
 from centrode.locale import _, speaking
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.render.document.blocks import Report
 
 # What documents need is an extra: only where they are asked for.

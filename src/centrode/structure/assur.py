@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
-from centrode.model.names import body_word
+from centrode.model.reading import body_word
 from centrode.structure.groups import (
     Aim,
     AngleGiven,

@@ -11,7 +11,7 @@ from centrode.errors import InputError
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 
 ALL = "all"
 

@@ -15,8 +15,8 @@ from centrode.analysis.instant_centres.kennedy import Construction, KennedyStep
 from centrode.errors import Status
 from centrode.kinematics.prepared import ready
 from centrode.locale import _
+from centrode.model.labels import body_name
 from centrode.model.mechanism import FRAME, Display, Mechanism
-from centrode.model.spoken import body_name
 from centrode.quantities import display_unit, status_word
 from centrode.study.wording import value_text
 

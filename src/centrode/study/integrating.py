@@ -9,8 +9,8 @@ import numpy as np
 from centrode.errors import Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _, ngettext
+from centrode.model.labels import constraint_name
 from centrode.model.mechanism import Mechanism
-from centrode.model.spoken import constraint_name
 from centrode.quantities import status_word
 from centrode.study.wording import value_text
 

@@ -12,7 +12,7 @@ from centrode.analysis.rotatability.rotatability import LimitFound, LinkTurning,
 from centrode.analysis.rotatability.tours import Dwell, StrokeExtreme, Swing
 from centrode.locale import _, mark, ngettext
 from centrode.model.mechanism import Mechanism
-from centrode.model.names import body_word
+from centrode.model.reading import body_word
 from centrode.study.wording import value_text
 
 Rows: TypeAlias = list[tuple[str, str]]

@@ -19,9 +19,9 @@ import numpy.typing as npt
 from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
+from centrode.model.files import value_at
 from centrode.model.mechanism import Mechanism
-from centrode.model.paths import value_at
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.model.units import to_si
 from centrode.structure.dimensions import dimensions_of
 

@@ -13,7 +13,7 @@ from centrode.algebra.executors import AUTO, MACHINE_CODE, chosen
 from centrode.errors import InputError
 from centrode.kinematics.compiled.trace import Untraceable
 from centrode.locale import _
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.structure.dimensions import Dimensions, dimensions_of
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor, Results, SweepTask

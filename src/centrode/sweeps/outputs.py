@@ -19,7 +19,7 @@ from centrode.errors import InputError
 from centrode.kinematics.motion import by_time, kinds_of
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.quantities import QUANTITIES
 from centrode.sweeps import designs
 from centrode.sweeps.designs import MECHANISM, Design, Rows

@@ -19,9 +19,8 @@ from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
 from centrode.model.examples.loading import load
 from centrode.model.mechanism import Mechanism
-from centrode.model.problems import nearest, shown
-from centrode.model.reading import read_file
-from centrode.model.toml_text import toml_tables
+from centrode.model.reading import nearest, read_file, shown
+from centrode.model.toml import toml_tables
 from centrode.structure.dimensions import dimensions_of
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import SweepTask

@@ -21,11 +21,10 @@ import xarray as xr
 from centrode.errors import InputError
 from centrode.kinematics.motion import BATCH
 from centrode.locale import _
-from centrode.model.files import parse_mechanism
+from centrode.model.files import parse_mechanism, with_value
 from centrode.model.mechanism import FRAME, Guide, Mechanism
-from centrode.model.paths import with_value
-from centrode.model.problems import nearest, shown
-from centrode.model.sphere import unit_vector
+from centrode.model.reading import nearest, shown
+from centrode.model.values import unit_vector
 from centrode.structure.dimensions import dimensions_of
 
 Array: TypeAlias = npt.NDArray[np.float64]

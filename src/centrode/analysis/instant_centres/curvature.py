@@ -30,7 +30,7 @@ from centrode.kinematics.sampling import start_of
 from centrode.kinematics.solve import fit_for, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.structure.constraints import Positions
 
 Local: TypeAlias = Mapping[str, tuple[float, float]]

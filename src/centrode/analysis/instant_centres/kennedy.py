@@ -43,7 +43,7 @@ from centrode.analysis.instant_centres.centres import (
 )
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.sphere import unit_vector
+from centrode.model.values import unit_vector
 
 # What a construction of instant centres gives: its steps in their order.
 

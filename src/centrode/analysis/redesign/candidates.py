@@ -18,10 +18,10 @@ from centrode.kinematics.dyads import solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
 from centrode.kinematics.prepared import Ready
 from centrode.locale import _
-from centrode.model.frozen import FrozenMap
+from centrode.model.files import value_at, with_value
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.paths import value_at, with_value
-from centrode.model.placing import replace_placed
+from centrode.model.placement import replace_placed
+from centrode.model.reading import FrozenMap
 from centrode.model.units import to_si
 from centrode.model.values import Placed
 from centrode.structure.constraints import Positions

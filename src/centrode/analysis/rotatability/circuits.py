@@ -28,7 +28,7 @@ from centrode.kinematics.plan_evaluation import Branches, Event
 from centrode.kinematics.prepared import Ready
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
-from centrode.model.names import body_word
+from centrode.model.reading import body_word
 from centrode.quantities import display_unit
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions

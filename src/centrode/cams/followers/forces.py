@@ -20,9 +20,9 @@ from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.roller_path import angles_of
 from centrode.errors import Status
 from centrode.kinematics.motion import Variable, named
-from centrode.model.cams.files import AnyCam, cam_text, with_follower
-from centrode.model.cams.parts import Material as DescribedMaterial
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam import Material as DescribedMaterial
+from centrode.model.cam_files import AnyCam, cam_text, with_follower
+from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import tops
 from centrode.version import __version__
 

@@ -17,7 +17,7 @@ from centrode.cams.profiles import CamOutline, Layer
 from centrode.errors import InputError
 from centrode.kinematics.motion import Variable, named
 from centrode.locale import _
-from centrode.model.cams.files import AnyCam, with_follower
+from centrode.model.cam_files import AnyCam, with_follower
 
 LEAST_SPACES = 8
 """Least number of spaces between the points of a piece."""

@@ -23,9 +23,9 @@ from centrode.errors import InputError, Status
 from centrode.kinematics.motion import Variable, labels_of, named
 from centrode.laws import CURVES, Segment, SegmentedLaw
 from centrode.locale import _, mark
-from centrode.model.cams.files import AnyCam, cam_text, with_follower
-from centrode.model.cams.plate import PlateCam
-from centrode.model.problems import nearest, shown
+from centrode.model.cam_files import AnyCam, cam_text, with_follower
+from centrode.model.follower_cam import PlateCam
+from centrode.model.reading import nearest, shown
 from centrode.numerics.search import Extremes, extremes
 from centrode.quantities import QUANTITIES
 from centrode.version import __version__

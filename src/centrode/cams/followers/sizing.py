@@ -31,8 +31,8 @@ from centrode.cams.nodes import nodes_of
 from centrode.cams.profiles import Undercut
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.model.cams.files import AnyCam, with_follower
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam_files import AnyCam, with_follower
+from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import root, roots
 
 # What a follower is and how it stands to its cam, before the size of the cam is chosen.

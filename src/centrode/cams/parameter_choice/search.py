@@ -26,10 +26,9 @@ from centrode.cams.parameter_choice.problem import (
 from centrode.cams.path_series import law_of, path_of
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cams.description import Cam, varied
-from centrode.model.cams.files import AnyCam, curved
-from centrode.model.cams.values import CONSTANT, POINT
-from centrode.model.frozen import FrozenMap
+from centrode.model.cam import CONSTANT, POINT, Cam, varied
+from centrode.model.cam_files import AnyCam, curved
+from centrode.model.reading import FrozenMap
 
 # The search for the best design: sequential quadratic programming from several starts, then more angles.
 #

@@ -15,7 +15,7 @@ from centrode.dynamics.state import Mass, State
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Link, Mechanism
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.model.units import to_si
 
 # How counterweights are made: mass, radius and inertia that go with a product of mass and radius.

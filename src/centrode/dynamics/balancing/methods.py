@@ -37,8 +37,8 @@ from centrode.dynamics.balancing.shaking import (
 from centrode.dynamics.state import Mass
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
+from centrode.model.links import Gear
 from centrode.model.mechanism import Link, Mechanism
-from centrode.model.pairs import Gear
 
 # Full balance of the shaking force: the common centre of mass is brought to rest.
 #

@@ -46,7 +46,7 @@ from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Mechanism
-from centrode.model.problems import nearest
+from centrode.model.reading import nearest
 from centrode.quantities import status_word
 from centrode.structure.plan import Structure
 

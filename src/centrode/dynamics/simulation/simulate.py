@@ -44,7 +44,7 @@ from centrode.kinematics.solve import Solved, check_size, solve
 from centrode.locale import _
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
-from centrode.model.simulations import MOST_TURNS, Simulation
+from centrode.model.simulation import MOST_TURNS, Simulation
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 

@@ -18,7 +18,7 @@ from centrode.dynamics.simulation.stepping import Stepper, Until
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.model.simulations import Simulation
+from centrode.model.simulation import Simulation
 from centrode.numerics.search import tops
 
 # The return map of a machine: from the speed at one value of the drive to that a period later, and its fixed

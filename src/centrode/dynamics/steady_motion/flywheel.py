@@ -10,8 +10,8 @@ from centrode.dynamics.steady_motion.speed import MeanSpeed, Tangents, with_iner
 from centrode.dynamics.steady_motion.steady import SteadySolution, in_other_mean, solution_of
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.machines import FlywheelShape
 from centrode.model.mechanism import Mechanism
+from centrode.model.settings import FlywheelShape
 
 # Sizes of flywheels of a given moment of inertia: a rim on thin spokes, a disc.
 #

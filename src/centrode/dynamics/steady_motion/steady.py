@@ -40,9 +40,9 @@ from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
 from centrode.locale import _
-from centrode.model import limits
-from centrode.model.machines import DRIVING_VARIABLES, Machine
+from centrode.model import reading
 from centrode.model.mechanism import Mechanism
+from centrode.model.settings import DRIVING_VARIABLES, Machine
 
 # Fixed points of functions of many numbers: iteration that learns from its former steps.
 #
@@ -324,15 +324,15 @@ def turned_at(found: SteadySolution, samples: int | None = None, at: npt.ArrayLi
     if at is None:
         asked = samples if samples is not None else found.prepared.mechanism.study.samples
         count = DEFAULT_SAMPLES if asked is None else asked
-        if isinstance(count, bool) or not 1 <= count <= limits.SAMPLES:
+        if isinstance(count, bool) or not 1 <= count <= reading.SAMPLES:
             raise InputError(
                 _("samples"),
                 _("{samples} samples were asked for").format(samples=count),
-                _("ask for 1 to {most}").format(most=limits.SAMPLES),
+                _("ask for 1 to {most}").format(most=reading.SAMPLES),
             )
         return np.linspace(0.0, cycle.period, count)
     values = np.asarray(at, dtype=np.float64)
-    if values.ndim != 1 or not 1 <= len(values) <= limits.SAMPLES or not np.isfinite(values).all():
+    if values.ndim != 1 or not 1 <= len(values) <= reading.SAMPLES or not np.isfinite(values).all():
         raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))
     turned = cycle.sense * (values - cycle.first)
     return np.asarray(turned - cycle.period * np.floor(turned / cycle.period))

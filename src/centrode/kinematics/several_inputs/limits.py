@@ -24,7 +24,7 @@ from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.laws import Uniform
 from centrode.locale import _
 from centrode.model.mechanism import Drive, Mechanism
-from centrode.model.problems import nearest
+from centrode.model.reading import nearest
 from centrode.structure.assur import name_of
 from centrode.structure.groups import Newton
 

@@ -7,15 +7,14 @@ from typing import Literal, TypeAlias, overload
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cams.description import Cam
-from centrode.model.cams.files import AnyCam, parse_cam, read_cam
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam import Cam
+from centrode.model.cam_files import AnyCam, parse_cam, read_cam
 from centrode.model.examples import example_names, example_text
 from centrode.model.files import parse_mechanism, read_mechanism
+from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import Mechanism
-from centrode.model.problems import likely, shown
-from centrode.model.reading import read_file
-from centrode.model.toml_text import is_cam, toml_tables
+from centrode.model.reading import likely, read_file, shown
+from centrode.model.toml import is_cam, toml_tables
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
 PlateName: TypeAlias = Literal["indexing-cam", "valve-cam"]

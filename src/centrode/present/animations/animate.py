@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
-from centrode.model.cams.description import Cam
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam import Cam
+from centrode.model.follower_cam import PlateCam
 from centrode.present.animations.captions import instant_captions
 from centrode.present.animations.encoding import Said, need_video, no_progress
 from centrode.present.animations.layers import Layer

@@ -27,7 +27,7 @@ from centrode.study.moving.films import frame_ways
 if TYPE_CHECKING:
     from centrode.cams.profiles import ProfileBody
     from centrode.cams.walking_wheel import WheelMover
-    from centrode.model.asked import Display
+    from centrode.model.settings import Display
     from centrode.study.moving.courses import Loop
 
 POINTS = 720

@@ -16,7 +16,7 @@ from centrode.quantities import QUANTITIES, status_word, typeset_unit
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
-    from centrode.model.asked import Display
+    from centrode.model.settings import Display
     from centrode.study.moving.films import Film
 
 DIGITS = 4

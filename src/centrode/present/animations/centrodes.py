@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from centrode.analysis.instant_centres.centrodes import centrodes
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.names import FRAME
-from centrode.model.spoken import body_name
+from centrode.model.labels import body_name
+from centrode.model.reading import FRAME
 from centrode.present.animations.layers import WHOLE, Array
 from centrode.present.animations.motions import FAR, MotionLayer
 from centrode.present.scene import Scene

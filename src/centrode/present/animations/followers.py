@@ -26,7 +26,7 @@ from centrode.study.moving.films import frame_ways
 
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
-    from centrode.model.asked import Display
+    from centrode.model.settings import Display
 
 GAP, WALLS, ABOVE = 0.12, 0.4, 0.15
 """Between the highest place of a translating follower and its guide, length of the guide, and stem above it; as parts

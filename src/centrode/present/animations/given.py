@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.profiles import ProfileBody
     from centrode.cams.walking_wheel import WheelMover
-    from centrode.model.asked import Display
     from centrode.model.mechanism import Mechanism
+    from centrode.model.settings import Display
 
 FRAMES = 48
 FRAMES_OF_A_STEP = 36

@@ -11,8 +11,8 @@ from centrode.cams.profiles import cam_body
 from centrode.cams.results import walking_wheel
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cams.files import AnyCam, curved
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam_files import AnyCam, curved
+from centrode.model.follower_cam import PlateCam
 from centrode.present.animations.cams import loop_of, roller_stage, walking_stage
 from centrode.present.animations.encoding import Said
 from centrode.present.animations.followers import follower_stage

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import FRAME
-from centrode.model.problems import nearest
+from centrode.model.reading import nearest
 from centrode.present.animations.centres import CentresLayer
 from centrode.present.animations.centrodes import CentrodesLayer
 from centrode.present.animations.forces import joint_layer, load_layer

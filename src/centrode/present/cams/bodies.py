@@ -14,7 +14,7 @@ from centrode.present.cams.profile_drawing import profile_figure
 from centrode.present.cams.walking_drawing import walking_figure
 
 if TYPE_CHECKING:
-    from centrode.model.cams.files import AnyCam
+    from centrode.model.cam_files import AnyCam
 
 INSTANTS = 6
 """Instants over a step, where the description names none."""

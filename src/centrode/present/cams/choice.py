@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 
 from centrode.cams.parameter_choice.problem import MEASURES
 from centrode.locale import _
-from centrode.model.cams.values import CONSTANT, POINT
+from centrode.model.cam import CONSTANT, POINT
 from centrode.present.curves import legend_width, write_legend, write_title
 from centrode.present.shown import formula, labelled, shown_as
 from centrode.present.style import INK, MUTED, PALETTE, Decimals, house_style
 
 if TYPE_CHECKING:
     from centrode.cams.parameter_choice.search import CamChoice, TradeOff
-    from centrode.model.asked import Display
-    from centrode.model.cams.description import Cam
+    from centrode.model.cam import Cam
+    from centrode.model.settings import Display
 
 Array = NDArray[np.float64]
 

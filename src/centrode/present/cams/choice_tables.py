@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.model.cams.files import cam_text
+from centrode.model.cam_files import cam_text
 from centrode.present.cams.choice import measure_shown, parameter_unit
 from centrode.present.shown import shown_as
 

@@ -19,7 +19,7 @@ from centrode.present.style import DASHES, INK, PALETTE, Decimals, house_style
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.cams.files import AnyCam
+    from centrode.model.cam_files import AnyCam
 
 Array = NDArray[np.float64]
 HIGH, LOW = 3.6, 2.0

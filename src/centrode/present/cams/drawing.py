@@ -26,7 +26,7 @@ from centrode.present.style import GROUND, INK, MUTED, PALETTE, Decimals, house_
 from centrode.quantities import QUANTITIES
 
 if TYPE_CHECKING:
-    from centrode.model.cams.files import AnyCam
+    from centrode.model.cam_files import AnyCam
 
 Array = NDArray[np.float64]
 

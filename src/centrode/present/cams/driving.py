@@ -12,7 +12,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.cams.followers.geometry import FollowerCam, Oscillating
 from centrode.cams.followers.sizing import bounded, follower_cam
 from centrode.errors import CentrodeError
-from centrode.model.cam_driving import pivot_of
+from centrode.model.checks import pivot_of
 from centrode.present.cams.driving_cam import Array, DrivingCam
 
 if TYPE_CHECKING:

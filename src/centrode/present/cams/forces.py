@@ -17,7 +17,7 @@ from centrode.quantities import QUANTITIES
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.cams.files import AnyCam
+    from centrode.model.cam_files import AnyCam
 
 PANELS = ("follower_push", "follower_moment", "contact_force", "cam_torque", "contact_stress")
 SCALES = {"Pa": (1e-6, "MPa")}

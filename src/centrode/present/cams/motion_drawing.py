@@ -20,7 +20,7 @@ from centrode.quantities import QUANTITIES
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.cams.files import AnyCam
+    from centrode.model.cam_files import AnyCam
 
 Array = NDArray[np.float64]
 WIDTH, PANEL = 7.6, 1.75

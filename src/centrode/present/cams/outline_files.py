@@ -12,7 +12,7 @@ from centrode.present.cams.outline_dxf import write_outlines_dxf
 from centrode.present.cams.outline_svg import write_outlines_svg
 
 if TYPE_CHECKING:
-    from centrode.model.cams.files import AnyCam
+    from centrode.model.cam_files import AnyCam
 
 SAMPLES = 720
 """Spaces between the points of an outline over a turn."""

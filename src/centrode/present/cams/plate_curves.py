@@ -19,7 +19,7 @@ from centrode.quantities import QUANTITIES
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.cams.plate import PlateCam
+    from centrode.model.follower_cam import PlateCam
     from centrode.present.scene import Array
 
 WIDTH, PANEL = 7.6, 2.4

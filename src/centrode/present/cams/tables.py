@@ -14,7 +14,7 @@ from centrode.views.columns import columns_of, unit_of
 if TYPE_CHECKING:
     import xarray
 
-    from centrode.model.cams.files import AnyCam
+    from centrode.model.cam_files import AnyCam
 
 Column = tuple[str, str, "xarray.DataArray"]
 

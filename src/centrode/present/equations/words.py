@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from centrode.locale import _
-from centrode.model.spoken import GEAR, ROLLING
+from centrode.model.labels import GEAR, ROLLING
 from centrode.quantities import display_unit
 
 if TYPE_CHECKING:

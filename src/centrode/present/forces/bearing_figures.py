@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.model.names import body_word
+from centrode.model.reading import body_word
 from centrode.present.abscissa import main_abscissa
 from centrode.present.curves import say_nothing_known, write_title
 from centrode.present.forces.force_picture import force_page

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from centrode.analysis.graphic.stage import round_scale
 from centrode.locale import _
-from centrode.model.spoken import side_name
+from centrode.model.labels import side_name
 from centrode.present.cams.driving_drawing import draw_cams
 from centrode.present.diagram_drawing import COLUMN, CORNER, SIZE, TOP, arrow, write_head
 from centrode.present.drawing import draw_frame, draw_hinges, draw_links

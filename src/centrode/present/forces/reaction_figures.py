@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from centrode.locale import _
-from centrode.model.spoken import reaction_name, side_name
+from centrode.model.labels import reaction_name, side_name
 from centrode.present.abscissa import main_abscissa
 from centrode.present.curves import Panel, sheet
 from centrode.present.shown import formula, labelled

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.model.sphere import unit_vector
+from centrode.model.values import unit_vector
 from centrode.present.scene import box
 from centrode.present.sheet import Sheet
 

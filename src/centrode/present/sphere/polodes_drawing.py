@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from centrode.locale import _
-from centrode.model.sphere import unit_vector
+from centrode.model.values import unit_vector
 from centrode.present.sphere.axes_drawing import CENTRE, NAMED, arcs_on_paper, draw_bodies, name_points
 from centrode.present.sphere.globe import Array, Globe
 from centrode.present.sphere.globe_drawing import draw_line

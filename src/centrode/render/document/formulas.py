@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from centrode.model.asked import Display
+from centrode.model.settings import Display
 from centrode.present.equations.typst import quoted
 from centrode.render.document.numbers import Numbers
 

@@ -8,8 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from centrode.locale import decimal_mark
-from centrode.model.asked import Display
-from centrode.model.reports import DIGITS
+from centrode.model.settings import DIGITS, Display
 from centrode.present.equations.typst import decimal
 from centrode.quantities import display_unit, typeset_unit
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _, chosen_language, ngettext
-from centrode.model.paths import kind_at
+from centrode.model.files import kind_at
 from centrode.model.units import KINDS
 from centrode.render.document.blocks import Block, Chapter, Paragraph, Report, Section, Table, shown
 from centrode.render.document.numbers import NOTHING, Numbers

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.mechanism import Mechanism
-from centrode.model.reports import DIGITS
+from centrode.model.settings import DIGITS
 from centrode.present.variant_folders import Progress, write_variants
 from centrode.render.document.blocks import Report
 from centrode.report.chapters import CHAPTERS

@@ -5,8 +5,7 @@ from __future__ import annotations
 from centrode.cams.parameter_choice.problem import MEASURES
 from centrode.cams.parameter_choice.search import CamChoice, choose_cam
 from centrode.locale import _, ngettext
-from centrode.model.cams.description import Cam
-from centrode.model.cams.values import CONSTANT
+from centrode.model.cam import CONSTANT, Cam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Table, Units
 

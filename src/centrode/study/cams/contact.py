@@ -9,7 +9,7 @@ import xarray as xr
 
 from centrode.cams.results import cam_contact
 from centrode.locale import _
-from centrode.model.cams.description import Cam
+from centrode.model.cam import Cam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
 

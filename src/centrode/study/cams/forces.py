@@ -11,7 +11,7 @@ from centrode.cams.followers.sizing import bounded
 from centrode.cams.roller_path import angles_of
 from centrode.errors import MotionError
 from centrode.locale import _
-from centrode.model.cams.plate import PlateCam
+from centrode.model.follower_cam import PlateCam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 from centrode.cams.followers.motion import cam_laws, motion_names
 from centrode.locale import _, mark
-from centrode.model.cams.plate import PlateCam
+from centrode.model.follower_cam import PlateCam
 from centrode.quantities import QUANTITIES
 from centrode.study.cams.said import Asked, CamPart, Table, Units
 

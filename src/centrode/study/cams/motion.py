@@ -20,7 +20,7 @@ from centrode.cams.followers.motion import (
 )
 from centrode.cams.roller_path import angles_of
 from centrode.locale import _, mark
-from centrode.model.cams.plate import PlateCam
+from centrode.model.follower_cam import PlateCam
 from centrode.quantities import QUANTITIES
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Table, Units

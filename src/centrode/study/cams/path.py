@@ -20,7 +20,7 @@ from centrode.cams.roller_path import (
 )
 from centrode.errors import CentrodeError
 from centrode.locale import _
-from centrode.model.cams.description import Cam
+from centrode.model.cam import Cam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
 

@@ -18,7 +18,7 @@ from centrode.cams.nodes import nodes_of
 from centrode.cams.roller_path import angles_of
 from centrode.errors import MotionError
 from centrode.locale import _
-from centrode.model.cams.plate import PlateCam
+from centrode.model.follower_cam import PlateCam
 from centrode.numerics.search import roots
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.plate_bounds import bounds_told

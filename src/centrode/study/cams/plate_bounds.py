@@ -17,7 +17,7 @@ from centrode.cams.followers.sizing import (
 )
 from centrode.errors import MotionError
 from centrode.locale import _, mark
-from centrode.model.cams.plate import PlateCam
+from centrode.model.follower_cam import PlateCam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Rows, Units
 

@@ -8,7 +8,7 @@ from centrode.cams.profiles import ProfileBody, Undercut, cam_body
 from centrode.cams.results import count_of, profile_dataset
 from centrode.errors import MotionError
 from centrode.locale import _
-from centrode.model.cams.description import Cam
+from centrode.model.cam import Cam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
 

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from centrode.model.cams.description import Cam
-from centrode.model.cams.files import AnyCam
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam import Cam
+from centrode.model.cam_files import AnyCam
+from centrode.model.follower_cam import PlateCam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part

@@ -9,7 +9,7 @@ import xarray as xr
 
 from centrode.cams.cam import cam_routes
 from centrode.locale import _, ngettext
-from centrode.model.cams.description import Cam
+from centrode.model.cam import Cam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Table, Units
 

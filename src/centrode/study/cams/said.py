@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import xarray as xr
 
-from centrode.model.cams.files import AnyCam
+from centrode.model.cam_files import AnyCam
 from centrode.quantities import display_unit
 from centrode.sheets.sheet import Scalar
 

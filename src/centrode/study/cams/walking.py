@@ -9,7 +9,7 @@ from centrode.cams.results import count_of, shoe_dataset, wheel_of
 from centrode.cams.walking_wheel import WheelMover, WheelRolling, rolling
 from centrode.errors import MotionError
 from centrode.locale import _
-from centrode.model.cams.description import Cam
+from centrode.model.cam import Cam
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.said import Asked, CamPart, Rows, Units
 

@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.locale import _
-from centrode.model.spoken import body_name, load_name
+from centrode.model.labels import body_name, load_name
 
 if TYPE_CHECKING:
     from centrode.dynamics.force_polygons.polygons import (

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.locale import _
+from centrode.model.labels import side_name
 from centrode.model.mechanism import Mechanism
-from centrode.model.names import body_word
-from centrode.model.spoken import side_name
+from centrode.model.reading import body_word
 
 if TYPE_CHECKING:
     import xarray

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from centrode.dynamics.masses import massless_links
 from centrode.errors import Status
 from centrode.locale import _
+from centrode.model.labels import reaction_name, side_name
 from centrode.model.mechanism import Mechanism
-from centrode.model.spoken import reaction_name, side_name
 from centrode.quantities import status_word
 from centrode.study.forces.named_reactions import ROUNDING, Array, each_reaction
 from centrode.study.forces.rubbing import friction_rows

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from centrode.dynamics.masses import massless_links
 from centrode.errors import Status
 from centrode.locale import _
+from centrode.model.labels import load_name
 from centrode.model.mechanism import Mechanism
-from centrode.model.spoken import load_name
 from centrode.quantities import status_word
 from centrode.study.wording import value_text
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from centrode.locale import _, ngettext
-from centrode.model.spoken import reaction_name
+from centrode.model.labels import reaction_name
 
 if TYPE_CHECKING:
     import xarray

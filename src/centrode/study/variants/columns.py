@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
+from centrode.model.files import kind_at
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.paths import kind_at
-from centrode.model.problems import nearest, shown
+from centrode.model.reading import nearest, shown
 from centrode.model.units import unit_factor
 
 NAME = "variant"

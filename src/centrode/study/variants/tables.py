@@ -11,13 +11,11 @@ from typing import TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model import limits
+from centrode.model import reading
+from centrode.model.files import with_values
 from centrode.model.mechanism import Mechanism
-from centrode.model.names import read_name
-from centrode.model.paths import with_values
-from centrode.model.placing import replace_placed
-from centrode.model.problems import Problem, shown
-from centrode.model.reading import read_file
+from centrode.model.placement import replace_placed
+from centrode.model.reading import Problem, read_file, read_name, shown
 from centrode.model.units import to_si
 from centrode.study.variants.columns import NAME, Column, columns_of
 
@@ -59,9 +57,9 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
         ) from None
     if not rows:
         raise InputError(where, _("it has no variants"), _("write one row below the headers for each"))
-    if len(rows) > limits.TABLE_ROWS:
+    if len(rows) > reading.TABLE_ROWS:
         what = _("a table has at most {most} rows, got {count}").format(
-            most=limits.TABLE_ROWS, count=len(rows)
+            most=reading.TABLE_ROWS, count=len(rows)
         )
         raise InputError(where, what, _("cut it into several"))
     found = [

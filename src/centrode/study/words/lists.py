@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from centrode.locale import _
-from centrode.model.names import two_points
+from centrode.model.reading import two_points
 
 
 def called(name: str) -> str:

@@ -10,7 +10,7 @@ from centrode.render.document.blocks import Block, Paragraph, Table, shown
 from centrode.render.document.numbers import Numbers
 
 if TYPE_CHECKING:
-    from centrode.model.cams.description import Cam
+    from centrode.model.cam import Cam
     from centrode.report.study import ReportStudy
 
 

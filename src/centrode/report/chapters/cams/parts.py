@@ -16,7 +16,7 @@ from centrode.views.columns import rows_shown
 if TYPE_CHECKING:
     import xarray as xr
 
-    from centrode.model.cams.description import Cam
+    from centrode.model.cam import Cam
     from centrode.report.study import ReportStudy
 
 MEGA = 1e-6

@@ -13,8 +13,8 @@ from centrode.cams.followers.geometry import Oscillating
 from centrode.render.document.formulas import factor, in_si, with_unit
 
 if TYPE_CHECKING:
-    from centrode.model.cams.parts import Material
-    from centrode.model.cams.plate import PlateCam
+    from centrode.model.cam import Material
+    from centrode.model.follower_cam import PlateCam
     from centrode.render.document.numbers import Numbers
 
 Lines = Iterator[tuple[str, ...]]

@@ -15,9 +15,8 @@ from centrode.report.chapters.forces.tables import Column, over_samples
 from centrode.study.cams.motion import CONTACTS, KINDS
 
 if TYPE_CHECKING:
-    from centrode.model.cams.lifting import LiftSegment
-    from centrode.model.cams.parts import Material
-    from centrode.model.cams.plate import PlateCam
+    from centrode.model.cam import Material
+    from centrode.model.follower_cam import LiftSegment, PlateCam
     from centrode.render.document.numbers import Numbers
     from centrode.report.study import ReportStudy
 

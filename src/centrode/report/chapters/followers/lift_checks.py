@@ -15,7 +15,7 @@ from centrode.report.telling import measured
 
 if TYPE_CHECKING:
     from centrode.cams.followers.motion import FollowerMotion
-    from centrode.model.cams.plate import PlateCam
+    from centrode.model.follower_cam import PlateCam
     from centrode.render.document.blocks import Check
 
 INSIDE = np.linspace(0.0, 1.0, 99)[1:-1]

@@ -17,7 +17,7 @@ from centrode.report.chapters.followers.parts import letter_of, motion_of, rate
 
 if TYPE_CHECKING:
     from centrode.laws.rises import Piece
-    from centrode.model.cams.lifting import LiftSegment
+    from centrode.model.follower_cam import LiftSegment
     from centrode.report.study import ReportStudy
 
 NAMES = ("v", "a", "j")

@@ -22,7 +22,7 @@ from centrode.report.chapters.followers.spelled import Spelled
 if TYPE_CHECKING:
     from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.followers.sizing import Least
-    from centrode.model.cams.plate import PlateCam
+    from centrode.model.follower_cam import PlateCam
     from centrode.report.study import ReportStudy
 
 SHARES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0)

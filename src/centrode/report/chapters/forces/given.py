@@ -9,7 +9,7 @@ import numpy as np
 from centrode.dynamics.masses import masses_of, massless_links
 from centrode.dynamics.state import Centre
 from centrode.locale import _, mark
-from centrode.model.spoken import LOADS, load_name
+from centrode.model.labels import LOADS, load_name
 from centrode.quantities import display_unit
 from centrode.render.document.blocks import Block, Chapter, Paragraph, Section, Table
 from centrode.render.document.rows import told

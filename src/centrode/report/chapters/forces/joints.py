@@ -8,7 +8,7 @@ import numpy as np
 
 from centrode.errors import InputError, NotComputedYet
 from centrode.locale import _
-from centrode.model.spoken import reaction_name
+from centrode.model.labels import reaction_name
 from centrode.present.forces.bearing_figures import bearing_figures
 from centrode.present.forces.reaction_figures import reaction_figures
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph, Section, shown

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from centrode.locale import _
-from centrode.model.spoken import load_name
+from centrode.model.labels import load_name
 from centrode.render.document.blocks import Block, Check, Formula, Paragraph, Section, Table, shown
 from centrode.render.document.formulas import factor, in_si, indexed, squared, sum_of, with_unit
 from centrode.report.chapters.forces.by_links import LinkMotion, motions_of_links

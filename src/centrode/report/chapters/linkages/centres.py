@@ -10,8 +10,8 @@ import numpy as np
 from centrode.analysis.instant_centres.centres import instant_centres
 from centrode.analysis.instant_centres.kennedy import MOST_BODIES, Construction, construct_centres
 from centrode.locale import _, ngettext
+from centrode.model.labels import body_name
 from centrode.model.mechanism import Mechanism
-from centrode.model.spoken import body_name
 from centrode.present.centres import centres_figure
 from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table, shown
 from centrode.render.document.figures import picture

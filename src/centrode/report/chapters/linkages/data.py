@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from centrode.locale import _
-from centrode.model.cams.plate import PlateCam
+from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import FRAME, Drive, Gear, Guide, Link, Mechanism, Placed, Rolling, Vector
 from centrode.render.document.blocks import Block, Chapter, Section, Table, shown
 from centrode.render.document.numbers import Numbers

@@ -10,12 +10,12 @@ import tomli_w
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cams.description import Cam
-from centrode.model.cams.plate import PlateCam
+from centrode.model.cam import Cam
 from centrode.model.files import in_short_lines
+from centrode.model.follower_cam import PlateCam
+from centrode.model.links import part_tables
 from centrode.model.reading import read_file
-from centrode.model.tabled import part_tables
-from centrode.model.toml_text import described, is_cam, toml_tables
+from centrode.model.toml import described, is_cam, toml_tables
 
 AnyCam: TypeAlias = Cam | PlateCam
 """A cam by the curvature of its roller's path, or by the lift of its follower."""

@@ -10,16 +10,22 @@ from pydantic import PlainValidator, ValidationInfo, field_validator, model_vali
 from centrode.errors import InputError
 from centrode.laws import Law, ShaftLaw, TableLaw, TextLaw, Uniform
 from centrode.locale import _
-from centrode.model.cams.beside import read_plate_cam
-from centrode.model.cams.plate import PlateCam
-from centrode.model.entries import listed
+from centrode.model.cam_of_drive import read_plate_cam
+from centrode.model.follower_cam import PlateCam
 from centrode.model.motion_parameter import SPEED_KINDS, kind_of_value
-from centrode.model.names import FRAME
-from centrode.model.part import Part, one_of
-from centrode.model.problems import Problem
+from centrode.model.reading import FRAME, Part, Problem, listed, one_of
 from centrode.model.segments import Segment, read_repeat, read_segments, segmented
-from centrode.model.tables import Columns, read_rows
-from centrode.model.values import READING, Angle, Name, positive, quantity, read_text, si
+from centrode.model.values import (
+    READING,
+    Angle,
+    Name,
+    TableColumns,
+    positive,
+    quantity,
+    read_rows,
+    read_text,
+    si,
+)
 
 _LAWS = ("speed", "law", "table", "segments", "cam")
 _OF_CAM = ("cam_speed", "cam_angle", "cam_point", "lowers")
@@ -104,7 +110,7 @@ class Drive(Part):
     def _rows(cls, value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...] | None:
         if value is None:
             return None
-        columns = Columns(("time", _kind(info)), "[time, value]", 2)
+        columns = TableColumns(("time", _kind(info)), "[time, value]", 2)
         rows = read_rows(value, columns, READING.get().folder)
         try:
             TableLaw(*zip(*rows, strict=True))

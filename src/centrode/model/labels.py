@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from centrode.locale import _, mark
-from centrode.model.names import FRAME, body_word
+from centrode.model.reading import FRAME, body_word
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism

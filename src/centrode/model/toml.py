@@ -11,18 +11,54 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from centrode.errors import InputError
-from centrode.locale import _
-from centrode.model import limits
-from centrode.model.part import Part
-from centrode.model.problems import input_error
-from centrode.model.toml_words import toml_reason
+from centrode.locale import _, mark
+from centrode.model import reading
+from centrode.model.reading import Part, input_error
 from centrode.model.values import READING, Reading
+
+# What the parser of TOML complains about, in sentences of ours: its own are for programmers, and English
+# only.
+
+_TWICE = mark("a key is given twice")
+_OPEN_TEXT = mark("a text is not closed: its quote is missing")
+_NO_CHARACTER = mark("the code of a character in a text is wrong")
+_CLOSED = mark("this table is complete already, nothing can be added to it")
+
+_SENTENCES = {
+    r"Invalid statement": mark("this is neither a [heading] nor key = value"),
+    r"Expected newline or end of document .*": mark("there is more on the line than one value"),
+    r"Cannot declare .* twice": mark("this table stands in the file already"),
+    r"Cannot overwrite a value": _TWICE,
+    r"Duplicate inline table key .*": _TWICE,
+    r"Cannot (mutate|redefine) .*": _CLOSED,
+    r"Expected '\]+' at the end of .*": mark("a heading is not closed: its bracket is missing"),
+    r"Expected '=' after a key .*": mark("= is missing behind a key"),
+    r"Invalid initial character for a key part": mark("a key is missing, or begins with a wrong character"),
+    r"Unclosed array": mark("a list is not closed: its bracket is missing"),
+    r"Unclosed inline table": mark("a table is not closed: its brace is missing"),
+    r"Unterminated string": _OPEN_TEXT,
+    r"(Illegal|Found invalid) character '\\n'|Expected ['\"]{3,}": _OPEN_TEXT,
+    r"Illegal character .*|Found invalid character .*": mark("this character may not stand here"),
+    r"Unescaped '\\' in a string": mark("a backslash in a text: double it, or use single quotes"),
+    r"Invalid hex value|Escaped character .*": _NO_CHARACTER,
+    r"Invalid date or datetime": mark("this date does not exist"),
+    r"Invalid value": mark("a value is missing, or a text without quotes"),
+}
+
+
+def toml_reason(message: str) -> str:
+    """The sentence for what `tomllib` says; its own words where a later version of it says something new."""
+    for pattern, sentence in _SENTENCES.items():
+        if re.fullmatch(pattern, message, re.DOTALL):
+            return _(sentence)
+    return message
+
 
 Described = TypeVar("Described", bound=Part)
 
 _KEY = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 # Dotted keys nest without a bracket, and cost the parser the square of their number.
-_DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{limits.NESTING * 2},}}")
+_DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{reading.NESTING * 2},}}")
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
@@ -46,10 +82,10 @@ def is_cam(mapping: Mapping[str, Any]) -> bool:
 
 def toml_tables(text: str, where: str) -> dict[str, Any]:
     """Tables of a text of TOML; raises InputError where it is none, is too long, or nests too deeply."""
-    if len(text) > limits.FILE_SIZE:
+    if len(text) > reading.FILE_SIZE:
         what = _("the text has {size} characters, at most {most} are allowed")
-        raise InputError(where, what.format(size=len(text), most=limits.FILE_SIZE))
-    repair = _("tables and lists lie at most {most} inside each other").format(most=limits.NESTING)
+        raise InputError(where, what.format(size=len(text), most=reading.FILE_SIZE))
+    repair = _("tables and lists lie at most {most} inside each other").format(most=reading.NESTING)
     nested = InputError(where, _("the text nests too deeply"), repair)
     if _DOTTED.search(text):
         raise nested
@@ -62,7 +98,7 @@ def toml_tables(text: str, where: str) -> dict[str, Any]:
     except ValueError:  # a date or a number that Python cannot hold
         reason = _("a date is impossible, or a number has too many digits")
         raise InputError(where, _("not TOML: {reason}").format(reason=reason)) from None
-    if _depth(tables) > limits.NESTING:
+    if _depth(tables) > reading.NESTING:
         raise nested
     return tables
 
@@ -89,6 +125,6 @@ def _depth(value: object) -> int:
             elif isinstance(entry, list):
                 inner += entry
         depth, level = depth + 1, inner
-        if depth > limits.NESTING:
+        if depth > reading.NESTING:
             break
     return depth

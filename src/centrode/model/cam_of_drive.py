@@ -7,11 +7,10 @@ from pathlib import PurePosixPath
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cams.plate import PlateCam
 from centrode.model.examples import example_names, example_text
-from centrode.model.problems import Problem, nearest, shown
-from centrode.model.reading import read_file
-from centrode.model.toml_text import described, is_cam, toml_tables
+from centrode.model.follower_cam import PlateCam
+from centrode.model.reading import Problem, nearest, read_file, shown
+from centrode.model.toml import described, is_cam, toml_tables
 from centrode.model.values import READING
 
 

@@ -11,11 +11,9 @@ from pydantic import PlainValidator, ValidationInfo, field_validator
 from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model import limits
-from centrode.model.entries import choice
+from centrode.model import reading
 from centrode.model.motion_parameter import UNDRIVEN, MotionParameter
-from centrode.model.part import Part
-from centrode.model.problems import KEY, Problem, shown
+from centrode.model.reading import KEY, Part, Problem, choice, shown
 from centrode.model.values import READING, PlaceOfMotion, positive, quantity, read_text, si
 
 DRIVING_LAW_VARIABLES = ("t", "q", "v")
@@ -158,7 +156,7 @@ class Simulation(Part):
     scheme: Annotated[Scheme, choice(*SCHEMES)] = "adaptive"
     steps: Annotated[int, PlainValidator(lambda value: _count(value, 1, MOST_STEPS))] = DEFAULT_STEPS
     tolerance: Annotated[float, PlainValidator(_tolerance)] = DEFAULT_TOLERANCE
-    samples: Annotated[int, PlainValidator(lambda value: _count(value, 2, limits.SAMPLES))] = DEFAULT_SAMPLES
+    samples: Annotated[int, PlainValidator(lambda value: _count(value, 2, reading.SAMPLES))] = DEFAULT_SAMPLES
 
     @field_validator("speed", mode="plain")
     @classmethod

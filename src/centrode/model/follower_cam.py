@@ -1,4 +1,4 @@
-"""Segments of a follower's lift over a turn of its cam, as a file gives them."""
+"""The description of a plate cam with a follower whose lift is given over a turn."""
 
 from __future__ import annotations
 
@@ -6,19 +6,206 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, PlainValidator, ValidationInfo, field_validator
+from pydantic import (
+    Field,
+    ModelWrapValidatorHandler,
+    PlainValidator,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from centrode import laws
 from centrode.errors import InputError
+from centrode.laws import SegmentedLaw
 from centrode.locale import _
-from centrode.model import limits
-from centrode.model.entries import choice, entries
-from centrode.model.part import Part, missing_key
-from centrode.model.problems import Problem, shown
+from centrode.model import reading
+from centrode.model.cam import Flag, Material, Size, Steepness, Stress
+from centrode.model.reading import Part, Problem, Problems, choice, entries, listed, missing_key, shown
 from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
-from centrode.model.values import positive, si
+from centrode.model.settings import CamReportWishes, Display, read_samples
+from centrode.model.values import Angle, Text, not_negative, positive, quantity, si
+
+# Parts of a cam with a follower: cam, follower, spring, bounds, tool, study.
+
+KINDS = ("translating", "oscillating")
+CONTACTS = ("knife", "roller", "flat")
+TURNS = ("counter-clockwise", "clockwise")
+
+
+class CamBody(Part):
+    """The cam: table [cam].
+
+    Attributes
+    ----------
+    base_radius : float [m] or None
+        Least distance of the follower's contact place (of a roller: of the cam's profile) from the centre, at lift 0.
+    turn : "counter-clockwise" or "clockwise"
+    speed : float [rad/s] or None
+        Of the camshaft, positive.
+    thickness : float [m] or None
+        Width of the cam across its plane.
+    material : Material or None
+    """
+
+    base_radius: Size | None = None
+    turn: Annotated[Literal["counter-clockwise", "clockwise"], choice(*TURNS)] = "counter-clockwise"
+    speed: Annotated[float, quantity("angular speed", positive)] | None = None
+    thickness: Size | None = None
+    material: Material | None = None
+
+
+class Spring(Part):
+    """A spring that presses the follower on the cam.
+
+    Attributes
+    ----------
+    stiffness : float [N/m], of an oscillating follower [N*m/rad]
+    preload : float [N], of an oscillating follower [N*m]
+        At lift 0.
+    """
+
+    stiffness: float
+    preload: float = 0.0
+
+    @field_validator("stiffness", mode="plain")
+    @classmethod
+    def _stiffness(cls, value: object) -> float:
+        return not_negative(value, "angular stiffness" if DRIVEN.get() == "angle" else "stiffness")
+
+    @field_validator("preload", mode="plain")
+    @classmethod
+    def _preload(cls, value: object) -> float:
+        return not_negative(value, "torque" if DRIVEN.get() == "angle" else "force")
+
+
+class Follower(Part):
+    """What the cam moves.
+
+    Attributes
+    ----------
+    kind : "translating" or "oscillating"
+    contact : "knife", "roller" or "flat"
+    roller_radius : float [m]
+        Of a roller.
+    offset : float [m]
+        Of a translating follower: of its line from the cam's centre.
+    arm, pivot_distance : float [m]
+        Of an oscillating follower: its length to the roller's centre or the edge; of its pivot from the cam's centre.
+    face_offset : float [m]
+        Of an oscillating flat face: by how much its line passes the pivot, on the cam's side.
+    mass : float [kg], inertia : float [kg*m^2]
+        Of a translating, of an oscillating follower, with all that moves with it.
+    spring : Spring or None
+    load : float [N or N*m]
+        A constant force, or moment, that presses the follower on the cam.
+    friction : float
+        Coefficient between cam and follower.
+    material : Material or None
+    """
+
+    kind: Annotated[Literal["translating", "oscillating"], choice(*KINDS)] = "translating"
+    contact: Annotated[Literal["knife", "roller", "flat"], choice(*CONTACTS)] = "roller"
+    roller_radius: Size | None = None
+    offset: Annotated[float, quantity("length")] = 0.0
+    arm: Size | None = None
+    pivot_distance: Size | None = None
+    face_offset: Annotated[float, quantity("length")] = 0.0
+    mass: Annotated[float, quantity("mass", not_negative)] | None = None
+    inertia: Annotated[float, quantity("inertia", not_negative)] | None = None
+    spring: Spring | None = None
+    load: float = 0.0
+    friction: Annotated[float, quantity("ratio", not_negative)] = 0.0
+    material: Material | None = None
+
+    @classmethod
+    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
+        problems = super().key_problems(given)
+        kind, contact = given.get("kind", "translating"), given.get("contact", "roller")
+        if contact in CONTACTS:
+            problems += _belongs(given, "roller_radius", contact == "roller", _("a roller"), needed=True)
+        if kind not in KINDS:
+            return problems
+        swings = kind == "oscillating"
+        straight, turning = _("a translating follower"), _("an oscillating follower")
+        for key in ("offset", "mass"):
+            problems += _belongs(given, key, not swings, straight)
+        problems += _belongs(given, "inertia", swings, turning)
+        problems += _belongs(given, "pivot_distance", swings, turning, needed=True)
+        # A flat face is long enough wherever the cam touches it: it has no arm.
+        flat, arm = swings and contact == "flat", _("an oscillating follower with a roller or a knife edge")
+        problems += _belongs(given, "arm", swings and not flat, arm, needed=True)
+        return problems + _belongs(given, "face_offset", flat, _("an oscillating flat face"))
+
+    @field_validator("load", mode="plain")
+    @classmethod
+    def _load(cls, value: object) -> float:
+        return si(value, "torque" if DRIVEN.get() == "angle" else "force")
+
+
+def _belongs(
+    given: Mapping[str, Any], key: str, right: bool, whose: str, *, needed: bool = False
+) -> list[Problem]:
+    """The problem of a key that is given for another follower, or missing for this one."""
+    has = given.get(key) is not None
+    if right:
+        return [missing_key(key)] if needed and not has else []
+    if not has or given[key] == 0:
+        return []
+    return [Problem(_("{key} belongs to {whose}").format(key=shown(key), whose=whose), _("take it out"))]
+
+
+class FollowerBounds(Part):
+    """What is admissible: table [bounds].
+
+    Attributes
+    ----------
+    pressure_angle : float [rad]
+        Greatest one.
+    return_pressure_angle : float [rad]
+        Greatest one where the follower falls; that of the rise if left out.
+    curvature_radius : float [m]
+        Least radius of curvature of the profile where it is convex.
+    stress : float [Pa]
+        Greatest contact stress.
+    """
+
+    pressure_angle: Steepness | None = None
+    return_pressure_angle: Steepness | None = None
+    curvature_radius: Size | None = None
+    stress: Stress | None = None
+
+
+class Tool(Part):
+    """The milling cutter or grinding wheel that the cam is made with: `radius` [m]."""
+
+    radius: Size
+
+
+class FollowerStudy(Part):
+    """What is to be computed.
+
+    Attributes
+    ----------
+    samples : int
+        Over a turn, both ends included.
+    instants : tuple of float [rad]
+        Angles that are shown.
+    chord_tolerance : float [m]
+        By how much the chords between points for a machine may depart from the profile.
+    show_undercut : bool
+        Whether a profile that the follower cuts away is shown, instead of being refused.
+    """
+
+    samples: Annotated[int, PlainValidator(read_samples)] | None = None
+    instants: Annotated[tuple[Angle, ...], listed(reading.INSTANTS)] = ()
+    chord_tolerance: Size = 1e-6
+    show_undercut: Flag = False
+
+
+# Segments of a follower's lift over a turn of its cam, as a file gives them.
 
 MOST = 200
 """Segments of a turn."""
@@ -128,9 +315,9 @@ def _lift_of(value: object) -> float:
     if lift < 0:
         what = _("the lift is counted from its lowest place and not negative, got {value}")
         raise Problem(what.format(value=shown(value)), _("let the base circle be that of the lowest place"))
-    if 0 < lift < limits.LEAST:
+    if 0 < lift < reading.LEAST:
         what = _("{value} is beyond what can be computed with").format(value=shown(value))
-        raise Problem(what, _("stay above {least:g}").format(least=limits.LEAST))
+        raise Problem(what, _("stay above {least:g}").format(least=reading.LEAST))
     return lift
 
 
@@ -231,3 +418,79 @@ def _check_formulas(segment: LiftSegment, before: float) -> None:
         what = _("the lift runs away: with these conditions it may reach {lift:.3g} {unit}")
         repair = _("give smaller lifts and rates, or points that lie further apart")
         raise Problem(what.format(lift=reached, unit=UNITS[DRIVEN.get()]), repair)
+
+
+class PlateCam(Part):
+    """A turning plate cam and its follower, by the follower's lift.
+
+    The arguments are those of a file (docs: cam followers), as parts or as plain dicts, texts with units included.
+    All numbers it holds are SI.
+
+    Attributes
+    ----------
+    title : str
+    kind : "cam"
+    display : Display
+    body : CamBody
+        "cam" in a file.
+    follower : Follower
+    segments : tuple of LiftSegment
+        They fill a turn and bring the lift back to 0.
+    bounds : FollowerBounds
+    tool : Tool or None
+    study : FollowerStudy
+    report : CamReportWishes
+
+    Raises
+    ------
+    InputError
+        Anything that is not a description, with its place and the repair.
+    """
+
+    title: Text = ""
+    kind: Annotated[Literal["cam"], choice("cam")]
+    display: Display = Display()
+    body: Annotated[CamBody, Field(alias="cam")] = CamBody()
+    follower: Follower
+    segments: Annotated[tuple[LiftSegment, ...], listed(MOST)]
+    bounds: FollowerBounds = FollowerBounds()
+    tool: Tool | None = None
+    study: FollowerStudy = FollowerStudy()
+    report: CamReportWishes = CamReportWishes()
+
+    if TYPE_CHECKING:
+
+        def __init__(self, **parts: Any) -> None: ...
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _of_its_follower(cls, data: Any, handler: ModelWrapValidatorHandler[PlateCam]) -> PlateCam:
+        token = DRIVEN.set("angle" if _swings(data) else "length")
+        try:
+            return handler(data)
+        finally:
+            DRIVEN.reset(token)
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Self:
+        problems = segment_problems(self.segments)
+        if problems:
+            raise Problems(problems)
+        return self
+
+    @property
+    def swings(self) -> bool:
+        """Whether the follower is an oscillating one: its lift is an angle."""
+        return self.follower.kind == "oscillating"
+
+    @property
+    def lift_law(self) -> SegmentedLaw:
+        """Lift [m or rad] over the angle of the cam [rad], turn after turn."""
+        return lift_law(self.segments)
+
+
+def _swings(data: Any) -> bool:
+    """Whether what is read says that its follower oscillates."""
+    follower = data.get("follower") if isinstance(data, Mapping) else getattr(data, "follower", None)
+    kind = follower.get("kind") if isinstance(follower, Mapping) else getattr(follower, "kind", None)
+    return bool(kind == "oscillating")

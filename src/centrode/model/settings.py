@@ -1,0 +1,254 @@
+"""What a description asks for besides the mechanism: display, assembly, study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, Field, PlainValidator
+
+from centrode.algebra.text import compile_formula
+from centrode.errors import InputError
+from centrode.locale import _
+from centrode.model import reading
+from centrode.model.reading import KEY, FrozenMap, Part, Problem, choice, listed, read_name, shown, table
+from centrode.model.values import (
+    Angle,
+    EndOfMotion,
+    Name,
+    PlaceOfMotion,
+    Text,
+    not_negative,
+    positive,
+    quantity,
+    read_text,
+    si,
+)
+from centrode.quantities import ANGLES, LENGTHS
+
+REACHABLE = "reachable"
+"""The range that a drive reaches from its initial position."""
+
+Side = Literal["left", "right", "ahead", "behind"]
+
+
+def read_samples(value: object) -> int:
+    """A number of samples."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=shown(value)))
+    if not 1 <= value <= reading.SAMPLES:
+        what = _("{key} must lie between 1 and {most}, got {value}")
+        repair = _("ask for fewer samples") if value > 0 else _("ask for more samples")
+        raise Problem(what.format(key=KEY, most=reading.SAMPLES, value=shown(value)), repair)
+    return value
+
+
+class Display(Part):
+    """Units in which tables and figures show lengths and angles."""
+
+    length: Annotated[str, choice(*LENGTHS)] = "m"
+    angle: Annotated[str, choice(*ANGLES)] = "rad"
+
+
+class Assembly(Part):
+    """Which way groups are assembled, and what happens at change points.
+
+    Attributes
+    ----------
+    sides : mapping of a group's point, link or guide to "left", "right", "ahead" or "behind"
+        Left or right of the line between the group's two known points, in description order; ahead or
+        behind along a guide. Needed where the initial position does not tell.
+    continuation : "smooth" or "keep"
+        Run through change points smoothly, or keep the sign of the assembly.
+    """
+
+    sides: Annotated[
+        Mapping[str, Annotated[Side, choice("left", "right", "ahead", "behind")]],
+        table(read_name, reading.POINTS),
+        AfterValidator(FrozenMap[str, Side]),
+    ] = FrozenMap({})
+    continuation: Annotated[Literal["smooth", "keep"], choice("smooth", "keep")] = "smooth"
+
+
+class Study(Part):
+    """What is to be computed.
+
+    Attributes
+    ----------
+    samples : int
+        Number of samples.
+    instants : tuple of float [rad or m; s if there are several drives]
+        Values of the drive at which positions are shown.
+    start, stop : float [rad or m; s if the drive is a law of time or there are several]
+        Range of the drive's value; "from" and "to" in a file.
+    range : "reachable"
+        In place of these: between the limits about the initial position, without limits one turn.
+    """
+
+    samples: Annotated[int, PlainValidator(read_samples)] | None = None
+    instants: Annotated[tuple[PlaceOfMotion, ...], listed(reading.INSTANTS)] = ()
+    start: Annotated[EndOfMotion | None, Field(alias="from")] = None
+    stop: Annotated[EndOfMotion | None, Field(alias="to")] = None
+    range: Annotated[Literal["reachable"], choice(REACHABLE)] | None = None
+
+    @classmethod
+    def key_problems(cls, given: Mapping[str, Any]) -> list[Problem]:
+        """What is wrong with the keys that are given, by the rules of this part."""
+        ends = [key for key in ("from", "start", "to", "stop") if given.get(key) is not None]
+        wrong = super().key_problems(given)
+        if given.get("range") is not None and ends:
+            names = ", ".join(("range", *ends))
+            wrong.append(Problem(_("{names} are given together").format(names=names), _("keep one of them")))
+        return wrong
+
+
+# The machine that a mechanism works in: its speed, what turns with the drive, flywheel and driving moment.
+
+DRIVING_VARIABLES = ("q", "v")
+"""The drive's value [rad] and speed [rad/s] in formulas of its moment."""
+
+SHAFTS = 100
+
+LEAST_FLUCTUATION = 1e-6
+"""A smaller one is lost in the rounding of the speeds."""
+
+
+def _ratio(value: object, kind: str) -> float:
+    number = si(value, kind)
+    if not abs(number) > reading.LEAST:
+        raise Problem(_("{key} must not be zero, got {value}").format(key=KEY, value=shown(value)))
+    return number
+
+
+def _fluctuation(value: object, kind: str) -> float:
+    number = positive(value, kind)
+    if number < LEAST_FLUCTUATION:
+        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        raise Problem(what, _("stay above {least:g}").format(least=LEAST_FLUCTUATION))
+    if number >= 2:
+        what = _("{key} must be smaller than 2, got {value}").format(key=KEY, value=shown(value))
+        raise Problem(what, _("it is (greatest less least speed) over the mean one, such as 0.05"))
+    return number
+
+
+def _hollow(value: object, kind: str) -> float:
+    number = not_negative(value, kind)
+    if number >= 1:
+        what = _("{key} must be smaller than 1, got {value}").format(key=KEY, value=shown(value))
+        raise Problem(what, _("it is the inner over the outer diameter, such as 0.8"))
+    return number
+
+
+def _driving(value: object) -> str:
+    text = read_text(value)
+    try:
+        compile_formula(text, DRIVING_VARIABLES, "")
+    except InputError as error:
+        raise Problem(error.what, error.repair) from None
+    return text
+
+
+class Shaft(Part):
+    """What turns with the drive at a constant ratio: `ratio` is its speed over the drive's, `inertia` [kg m^2]."""
+
+    inertia: Annotated[float, quantity("inertia", not_negative)]
+    ratio: Annotated[float, quantity("ratio", _ratio)] = 1.0
+    name: Text = ""
+
+
+class FlywheelShape(Part):
+    """Of what and how a flywheel is made.
+
+    Attributes
+    ----------
+    ratio : float
+        Speed of its shaft over the drive's.
+    density : float [kg/m^3]
+    width, inner : float
+        Width, and inner diameter of a rim, over the outer diameter.
+    rim_speed : float [m/s]
+        Greatest admissible one.
+    """
+
+    ratio: Annotated[float, quantity("ratio", _ratio)] = 1.0
+    density: Annotated[float, quantity("density", positive)] = 7800.0
+    width: Annotated[float, quantity("ratio", positive)] = 0.2
+    inner: Annotated[float, quantity("ratio", _hollow)] = 0.8
+    rim_speed: Annotated[float, quantity("speed", positive)] | None = None
+
+
+class Machine(Part):
+    """The machine the mechanism works in.
+
+    Attributes
+    ----------
+    mean_speed : float [rad/s]
+        Of the drive, positive; the sense is that of the drive.
+    fluctuation : float
+        Coefficient of fluctuation (non-uniformity) that a flywheel has to bring about, below 2.
+    shafts : tuple of Shaft
+        What else turns with the drive.
+    flywheel : FlywheelShape
+    driving : formula of `q` and `v`
+        How the driving moment goes, up to a factor; constant if left out.
+    """
+
+    mean_speed: Annotated[float, quantity("angular speed", positive)]
+    fluctuation: Annotated[float, quantity("ratio", _fluctuation)] | None = None
+    shafts: Annotated[tuple[Shaft, ...], listed(SHAFTS)] = ()
+    flywheel: FlywheelShape = FlywheelShape()
+    driving: Annotated[str, PlainValidator(_driving)] | None = None
+
+
+# What a description wishes of its report: `[report]`.
+
+LEAST_DIGITS, MOST_DIGITS, DIGITS = 2, 12, 5
+"""Significant digits of a report's numbers: at least, at most, and where nothing is said."""
+MOST_CHAPTERS = 100
+
+
+def read_digits(value: object) -> int:
+    """A number of significant digits."""
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=shown(value)))
+    if not LEAST_DIGITS <= value <= MOST_DIGITS:
+        what = _("{key} must lie between {least} and {most}, got {value}")
+        raise Problem(what.format(key=KEY, least=LEAST_DIGITS, most=MOST_DIGITS, value=shown(value)))
+    return value
+
+
+class CamReportWishes(Part):
+    """What the report of a cam is to hold; what is left out is chosen by the report.
+
+    Attributes
+    ----------
+    chapters : names of chapters (`centrode report --help` lists them), in any order
+    instants : tuple of float [rad]
+        Angles of the carrier, or of a cam that turns, that tables show.
+    digits : int
+        Significant digits of numbers.
+    """
+
+    chapters: Annotated[tuple[Name, ...], listed(MOST_CHAPTERS)] = ()
+    instants: Annotated[tuple[Angle, ...], listed(reading.INSTANTS)] = ()
+    digits: Annotated[int, PlainValidator(read_digits)] | None = None
+
+
+class ReportWishes(Part):
+    """What the report of a mechanism is to hold; what is left out is chosen by the report.
+
+    Attributes
+    ----------
+    chapters : names of chapters (`centrode report --help` lists them), in any order
+    instants : tuple of float [rad or m; s if there are several drives]
+        Values of the drive at which tables, diagrams and forces are shown; those of `[study]` if left out.
+    points : names of points
+        Whose velocities and paths are told.
+    digits : int
+        Significant digits of numbers.
+    """
+
+    chapters: Annotated[tuple[Name, ...], listed(MOST_CHAPTERS)] = ()
+    instants: Annotated[tuple[PlaceOfMotion, ...], listed(reading.INSTANTS)] = ()
+    points: Annotated[tuple[Name, ...], listed(reading.POINTS)] = ()
+    digits: Annotated[int, PlainValidator(read_digits)] | None = None
