@@ -1,4 +1,4 @@
-"""A machine in steady motion as one result: its energies, its flywheel, its real motion over a cycle and at instants."""
+"""A machine in steady motion as one result: its energies, its flywheel, its real motion over a cycle and instants."""
 
 from __future__ import annotations
 
