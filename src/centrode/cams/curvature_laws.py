@@ -17,7 +17,7 @@ from centrode.algebra.text import TextFormula, compile_formula
 from centrode.errors import InputError
 from centrode.laws.laws import Cubic, TableLaw, spline
 from centrode.locale import _
-from centrode.numerics.search import bisect
+from centrode.algebra.search import bisect
 
 Array = NDArray[np.float64]
 Number = Any

@@ -44,7 +44,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import MOST_TERMS
 from centrode.model.cam_files import AnyCam, curved
-from centrode.numerics.search import newton_roots
+from centrode.algebra.search import newton_roots
 
 # The path by the paper's power series about phi = 0, cut after a given number of terms.
 

@@ -17,7 +17,7 @@ from centrode.cams.nodes import nodes_of
 from centrode.cams.roller_path import JETS, Array, Frames, PolarCurve, RollerPath, SymmetricPath, frames
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.numerics.search import Extremes, extremes
+from centrode.algebra.search import Extremes, extremes
 
 # Closed paths of a roller's centre: a working arc by the law, and what brings the roller back to its
 # beginning.

@@ -25,8 +25,8 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
-from centrode.numerics.search import Extremes as PathExtremes
-from centrode.numerics.search import Function, extremes
+from centrode.algebra.search import Extremes as PathExtremes
+from centrode.algebra.search import Function, extremes
 
 # Taylor coefficients of a roller path from its differential equations, over any algebra with `+ - * /`.
 #

@@ -20,7 +20,7 @@ from centrode.cams.roller_path import JETS, Array, SymmetricPath, radius_jet
 from centrode.dynamics.steady_motion.cycle import NODES, Panels, PanelSeries
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.numerics.search import Extremes, extremes, maxima_between
+from centrode.algebra.search import Extremes, extremes, maxima_between
 
 # The shoe of a leg: the profile that rolls on flat ground while the hub stays at its height.
 #

@@ -34,7 +34,7 @@ from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, shown
-from centrode.numerics.search import bisect
+from centrode.algebra.search import bisect
 from centrode.structure.dimensions import Dimensions
 
 # Integration of equations in Cauchy form: fixed steps of the classical Runge-Kutta method, or adaptive ones.

@@ -42,7 +42,7 @@ from centrode.kinematics.mesh import CLOSING_IN, cut_cells, first_changes, large
 from centrode.kinematics.path import JETS, Path, nearest_node
 from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, ReachedRadicand, counted
 from centrode.kinematics.quick_turns import QuickTurns
-from centrode.numerics.search import newton_roots, sign_changes
+from centrode.algebra.search import newton_roots, sign_changes
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Meet, Newton, links_of, points_of
 

@@ -17,7 +17,7 @@ from centrode.algebra.arrays import ARRAYS
 from centrode.algebra.jet_functions import JetFunctions
 from centrode.algebra.jets import Jet
 from centrode.laws import Law, TextLaw
-from centrode.numerics.search import bisect, newton_roots
+from centrode.algebra.search import bisect, newton_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Places: TypeAlias = npt.NDArray[np.intp]

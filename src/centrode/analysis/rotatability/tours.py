@@ -25,7 +25,7 @@ from centrode.kinematics.sampling import start_of
 from centrode.kinematics.several_inputs.limits import check_closed, held_path, starting_at
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive, Mechanism
-from centrode.numerics.search import newton_roots, sign_changes
+from centrode.algebra.search import newton_roots, sign_changes
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Meet
 

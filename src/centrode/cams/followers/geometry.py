@@ -24,7 +24,7 @@ from centrode.cams.profiles import Undercut
 from centrode.cams.roller_path import JETS
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.numerics.search import Extremes, Function, extremes, roots
+from centrode.algebra.search import Extremes, Function, extremes, roots
 
 # How a follower is led: along a line or about a pivot, in the axes of the frame.
 #

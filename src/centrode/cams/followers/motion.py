@@ -26,7 +26,7 @@ from centrode.locale import _, mark
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
 from centrode.model.reading import nearest, shown
-from centrode.numerics.search import Extremes, extremes
+from centrode.algebra.search import Extremes, extremes
 from centrode.quantities import QUANTITIES
 from centrode.version import __version__
 

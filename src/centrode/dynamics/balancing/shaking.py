@@ -26,7 +26,7 @@ from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, shown
-from centrode.numerics.search import tops
+from centrode.algebra.search import tops
 
 # Inertial effects of bodies on the frame and on the drive, as sums over bodies in plane motion.
 #

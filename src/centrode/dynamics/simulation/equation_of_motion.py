@@ -34,7 +34,7 @@ from centrode.kinematics.plan_evaluation import AT_THE_START
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulation import DRIVING_LAW_VARIABLES, MOST_TURNS, Simulation
-from centrode.numerics.search import maxima_between
+from centrode.algebra.search import maxima_between
 
 # Loads by what becomes of their work: potential energy, friction, or neither; and which follow formulas.
 

@@ -56,7 +56,7 @@ from centrode.kinematics.compiled.variables import RATE as RATE_VARIABLE
 from centrode.kinematics.path import SampleGrid
 from centrode.locale import _, mark
 from centrode.model.simulation import MOST_TURNS
-from centrode.numerics.search import bisect, root
+from centrode.algebra.search import bisect, root
 
 # The classical Runge-Kutta scheme of fourth order with equal steps, as the source integrates.
 

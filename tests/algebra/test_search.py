@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from centrode.numerics.search import (
+from centrode.algebra.search import (
     PARTS,
     bisect,
     crossing_brackets,
