@@ -9,7 +9,7 @@ SCHEMES := tests/dynamics/test_simulation_schemes.py
 # Tests that leave the choice of the executor to the program, or ask for what is missing. Where a test names the executor
 # "arrays", or nothing of it is compiled or stored, it runs the same with the extras.
 WITHOUT_EXTRAS := tests/sweeps/test_without_extras.py tests/sweeps/test_sweeps.py tests/sweeps/test_refusals.py \
-	tests/sweeps/test_reduced.py tests/sweeps/test_gradients.py tests/algebra/test_scans.py tests/cli/test_sweep.py \
+	tests/sweeps/test_reduced.py tests/sweeps/test_gradients.py tests/numerics/test_scans.py tests/cli/test_sweep.py \
 	$(SCHEMES)::test_a_step_that_is_shown_is_a_step $(SCHEMES)::test_what_cannot_be_compiled_runs_on_arrays \
 	$(SCHEMES)::test_nothing_that_moves_it
 

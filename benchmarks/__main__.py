@@ -14,7 +14,7 @@ warnings.filterwarnings(
 from benchmarks import animations, cold, forces, kernels, machine, motions, peer, simulation, sweeps  # noqa: E402
 from benchmarks.plans import LANES, SAMPLES  # noqa: E402
 from benchmarks.table import Row, print_promises, print_section  # noqa: E402
-from centrode.algebra import machine_code  # noqa: E402
+from centrode.numerics import machine_code  # noqa: E402
 
 Section = tuple[str, Callable[[], Iterator[Row]]]
 SECTIONS: Mapping[str, Section] = {

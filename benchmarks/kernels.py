@@ -20,25 +20,25 @@ from benchmarks.plans import DIMENSIONS, DRIVE, EACH, LANES, SAMPLES, SIX, Plan,
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Shared, Task, best_times, paired_times, ratio, two_threads
 from benchmarks.written import FEW, in_cache, streamed, to_memory
-from centrode.algebra import machine_code
-from centrode.algebra.expressions import Node, operated, variable
-from centrode.algebra.graph_arrays import run_on_arrays
-from centrode.algebra.machine_code import cache
-from centrode.algebra.reductions import (
+from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.numerics import machine_code
+from centrode.numerics.expressions import Node, operated, variable
+from centrode.numerics.machine_code import cache
+from centrode.numerics.scans import (
     Reduction,
+    Scan,
     end_of,
     greatest,
     least,
+    run_on_arrays,
     together,
     total,
     total_with_gradient,
 )
-from centrode.algebra.scans import Scan
-from centrode.kinematics.compiled.variables import PARAMETER
 from centrode.structure.dimensions import SPACES
 
 if machine_code.PRESENT:
-    from centrode.algebra.machine_code.kernels import Kernel, forget, kernel_of
+    from centrode.numerics.machine_code.kernels import Kernel, forget, kernel_of
 
 Array = npt.NDArray[np.float64]
 MISSING = "llvmlite is not installed: pip install 'centrode[fast]'"

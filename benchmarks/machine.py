@@ -13,10 +13,9 @@ import centrode as ct
 from benchmarks.motions import BATCH, BATCHES, SAMPLES
 from benchmarks.table import Row
 from benchmarks.timing import best_times
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.kinematics.plan_evaluation import FixedSigns
 from centrode.kinematics.prepared import Ready, ready
+from centrode.numerics.jets import Jet, JetFunctions
 
 CACHED = 8192
 """Numbers in an array of which several stay in the cache nearest to the processor."""

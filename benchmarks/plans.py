@@ -11,13 +11,12 @@ import numpy as np
 import numpy.typing as npt
 
 import centrode as ct
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, variable
-from centrode.algebra.graphs import Graph
-from centrode.algebra.jets import Jet
 from centrode.kinematics.compiled.variables import NODE_JETS, PARAMETER, varied_of
 from centrode.kinematics.plan_evaluation import FixedSigns, rotor_of_angle
 from centrode.kinematics.prepared import ready
+from centrode.numerics.expressions import EXPRESSIONS, Node, variable
+from centrode.numerics.graphs import Graph
+from centrode.numerics.jets import Jet
 from centrode.structure.dimensions import dimensions_of
 
 Array = npt.NDArray[np.float64]

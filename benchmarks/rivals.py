@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.expressions import Node
-from centrode.algebra.operations import CONSTANT, VARIABLE
-from centrode.algebra.scans import Call, Scan
+from centrode.numerics.expressions import Node
+from centrode.numerics.operations import CONSTANT, VARIABLE
+from centrode.numerics.scans import Call, Scan
 
 Array = npt.NDArray[np.float64]
 Runner = Callable[[Call], None]

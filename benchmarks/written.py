@@ -16,17 +16,15 @@ from benchmarks.motions import peer_of
 from benchmarks.plans import DRIVE, EACH, LANES, SAMPLES, Plan
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Task, Times, paired_times, ratio
-from centrode.algebra import machine_code
-from centrode.algebra.expressions import Node
-from centrode.algebra.graph_arrays import run_on_arrays
-from centrode.algebra.scans import Scan, call_of, room_of
 from centrode.kinematics.compiled.variables import PARAMETER
 from centrode.kinematics.prepared import ready
+from centrode.numerics import machine_code
+from centrode.numerics.expressions import Node
+from centrode.numerics.scans import Scan, call_of, room_of, run_on_arrays
 from centrode.sweeps.designs import KERNEL_BUFFER
 
 if machine_code.PRESENT:
-    from centrode.algebra.machine_code.kernels import kernel_of
-    from centrode.algebra.machine_code.streaming import Stream
+    from centrode.numerics.machine_code.kernels import Stream, kernel_of
 
 FEW = LANES // 20
 """Mechanisms that NumPy computes: its time for a position does not depend on their number."""

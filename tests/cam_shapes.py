@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import centrode as ct
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.cams.curvature_laws import ExponentialCurvature
 from centrode.cams.path_series import expanded_path
 from centrode.cams.roller_path import SymmetricPath
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)

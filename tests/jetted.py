@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose, subtract, turned
 from centrode.kinematics.path import JETS
 from centrode.kinematics.solve import Solved
+from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 
 

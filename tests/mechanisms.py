@@ -18,11 +18,11 @@ from tools.campaigns.columns import point as point
 from tools.campaigns.columns import slide as slide
 
 import centrode as ct
-from centrode.algebra.jets import Jet
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics
 from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.numerics.jets import Jet
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions
 
 BASE = 4000

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 import centrode as ct
-from centrode.algebra.jets import Jet
 from centrode.equations.derivation import Equations
 from centrode.equations.linear import GroupSolution
 from centrode.equations.spelling import SymbolFormula
 from centrode.equations.symbols import Letter
 from centrode.kinematics.path import JETS
+from centrode.numerics.jets import Jet
 
 Values = dict[Letter, Any]
 

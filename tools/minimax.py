@@ -1,6 +1,6 @@
 """Derive the constants of the vector mathematics: minimax polynomials (Remez) and the parts of pi/2.
 
-`python tools/minimax.py` writes src/centrode/algebra/machine_code/polynomials.py. Needs mpmath.
+`python tools/minimax.py` writes src/centrode/numerics/machine_code/polynomials.py. Needs mpmath.
 
 Each polynomial P(z), z = x^2, is what is left of a function beyond its first terms:
     sin x = x + x z P(z)             on |x| <= pi/4

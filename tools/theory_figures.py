@@ -15,9 +15,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 import centrode as ct
-from centrode.algebra.arrays import ARRAYS
 from centrode.geometry import sphere
 from centrode.geometry.on_sphere import SPHERE, Circle
+from centrode.numerics.arrays import ARRAYS
 from centrode.present.style import INK, MUTED, PALETTE, house_style
 
 Array: TypeAlias = NDArray[np.float64]

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from cam_shapes import three_point_curvature
-from centrode.algebra.jets import Jet
 from centrode.cams.followers.geometry import (
     Face,
     FollowerCam,
@@ -21,6 +20,7 @@ from centrode.cams.followers.geometry import (
     translating,
 )
 from centrode.errors import InputError
+from centrode.numerics.jets import Jet
 from follower_motions import JETS, Array, Wave, lift_of, rise_dwell_fall_dwell
 
 EPS = float(np.finfo(float).eps)

@@ -8,9 +8,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.cams.curvature_laws import (
     ConstantCurvature,
     CurvatureLaw,
@@ -23,6 +20,8 @@ from centrode.cams.curvature_laws import (
 from centrode.cams.path_integration import integrated_path
 from centrode.cams.path_series import TOLERANCE, ExpandedPath, expanded_path
 from centrode.cams.roller_path import SymmetricPath
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 from circle_path import CirclePath
 
 from .conftest import exponential_path

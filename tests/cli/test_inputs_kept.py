@@ -215,7 +215,7 @@ def test_a_sweep_into_a_store_with_its_mechanism_in_it(centrode: Centrode, folde
 PACKAGE = Path(ct.__file__).parent
 REPLACING = {"replace", "rename", "renames", "unlink", "remove", "rmtree", "move"}
 """Functions of `os` and `shutil`, and methods of paths, that take a file away."""
-OWN_FILES = {"files/drafts.py", "algebra/machine_code/cache.py"}
+OWN_FILES = {"files/drafts.py", "numerics/machine_code/cache.py"}
 
 
 def test_files_are_replaced_in_one_place() -> None:

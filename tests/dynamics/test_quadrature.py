@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from centrode.dynamics.steady_motion.cycle import MOST_PANELS, NODES, Panels, resolved
-from centrode.algebra.search import extremes
+from centrode.numerics.search import extremes
 
 Array = npt.NDArray[np.float64]
 EPS = float(np.finfo(np.float64).eps)

@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 import centrode as ct
-from centrode.algebra.jets import Jet
 from centrode.dynamics.masses import masses_of
 from centrode.dynamics.reduction import Reducer
 from centrode.kinematics.path import JETS
 from centrode.kinematics.prepared import ready
+from centrode.numerics.jets import Jet
 from mechanisms import EPS, OPERATIONS, conditioning, on_branch, solve_evenly
 
 Array = npt.NDArray[np.float64]

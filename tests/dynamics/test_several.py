@@ -9,9 +9,9 @@ import pytest
 
 import centrode as ct
 from burdened import burdened, kinetic_energy, powers
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
 from centrode.kinematics.path import JETS
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
 from mechanisms import EPS, parts_of
 
 TIMES = np.linspace(0.0, 1.4, 7)

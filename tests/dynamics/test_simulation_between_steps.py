@@ -10,7 +10,7 @@ import pytest
 import scipy.special
 
 import centrode as ct
-from centrode.algebra.machine_code import PRESENT
+from centrode.numerics.machine_code import PRESENT
 from simulated import crank_rocker, pendulum, rotor, sledge, spherical
 
 EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.algebra.machine_code import PRESENT
 from centrode.dynamics.simulation import equation_of_motion
 from centrode.dynamics.simulation.stepping import Stepper
 from centrode.kinematics.solve import BYTES, GREATEST_RESULT
 from centrode.model.simulation import MOST_TURNS
+from centrode.numerics.machine_code import PRESENT
 from simulated import crank_rocker, rotor
 
 EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.algebra.machine_code import PRESENT
+from centrode.numerics.machine_code import PRESENT
 from simulated import rotor, spherical
 
 EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.algebra.machine_code import PRESENT
 from centrode.dynamics.simulation.simulate import setting_of
 from centrode.dynamics.simulation.stepping import compiled
+from centrode.numerics.machine_code import PRESENT
 from simulated import PENDULUM, crank_rocker, pendulum, rotor, sledge, spherical
 
 EXECUTORS = ["arrays", *(["machine code"] if PRESENT else [])]

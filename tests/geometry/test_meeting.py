@@ -9,10 +9,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.geometry.meeting import meet_circle_and_line, meet_circles, meet_circles_on_sphere
 from centrode.geometry.plane import Circle, Line
+from centrode.numerics.jets import Jet, JetFunctions
 
 ORDER = 5
 DIGITS = 40

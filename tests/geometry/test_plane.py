@@ -9,10 +9,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.geometry import plane
 from centrode.geometry.meeting import meet_circle_and_line, meet_circles
 from centrode.geometry.plane import Circle, Line, Pose, Vector
+from centrode.numerics.arrays import ARRAYS
 
 EPS = 2.0**-52
 NUMBER = st.floats(-4, 4)

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.geometry.in_plane import PLANE
 from centrode.geometry.on_sphere import SPHERE
 from centrode.geometry.space import Space
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 
 JETS = JetFunctions(ARRAYS)
 EPS = 2.0**-52

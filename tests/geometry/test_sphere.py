@@ -10,11 +10,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mp
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.geometry import sphere
 from centrode.geometry.meeting import meet_circles_on_sphere
 from centrode.geometry.on_sphere import SPHERE
 from centrode.geometry.sphere import Attitude, Coordinates, HalfArc, Vector
+from centrode.numerics.arrays import ARRAYS
 
 EPS = 2.0**-52
 PLACE = st.tuples(st.floats(-3.1, 3.1), st.floats(-1.5, 1.5))

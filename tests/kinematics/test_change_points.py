@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 from mechanisms import EPS, Parts, events, moved, parts_of, point, statuses
 
 M = JetFunctions(ARRAYS)

@@ -11,10 +11,9 @@ import numpy.typing as npt
 import pytest
 
 import centrode as ct
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.kinematics.path import OFF_GRID, TimeScale, nearest_node
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 from mechanisms import EPS, events, point, statuses
 
 Array = npt.NDArray[np.float64]

@@ -9,9 +9,6 @@ import numpy.typing as npt
 import pytest
 
 import centrode as ct
-from centrode.algebra.expressions import as_node, variable
-from centrode.algebra.graph_arrays import evaluate
-from centrode.algebra.graphs import Graph
 from centrode.geometry.plane import dot
 from centrode.kinematics.compiled.newton import inverse
 from centrode.kinematics.compiled.path_following import NODES, beginnings, way_of
@@ -19,6 +16,9 @@ from centrode.kinematics.compiled.trace import chains_of
 from centrode.kinematics.compiled.variables import FIRST, PARAMETER, SAMPLE, STEP
 from centrode.kinematics.higher_class.system import GroupSystem
 from centrode.kinematics.prepared import ready
+from centrode.numerics.expressions import as_node, variable
+from centrode.numerics.graphs import Graph
+from centrode.numerics.scans import evaluate
 from centrode.structure.dimensions import dimensions_of
 from growing_higher import grown_higher
 from mechanisms import EPS

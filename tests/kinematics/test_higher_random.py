@@ -8,11 +8,11 @@ import numpy as np
 from hypothesis import assume, given, settings
 
 import centrode as ct
-from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.kinematics.path import JETS, span_at
 from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import solve
+from centrode.numerics.jets import Jet
 from growing_higher import higher_descriptions
 from jetted import jet_positions
 from mechanisms import EPS, OPERATIONS

@@ -10,9 +10,8 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 from mechanisms import EPS, four_bar, point, statuses
 
 Array = npt.NDArray[np.float64]

@@ -7,9 +7,9 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.algebra import machine_code
 from centrode.kinematics.compiled import batch
 from centrode.kinematics.prepared import ready
+from centrode.numerics import machine_code
 from centrode.structure.groups import Newton
 
 pytestmark = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")

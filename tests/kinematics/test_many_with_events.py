@@ -10,12 +10,12 @@ import numpy.typing as npt
 import pytest
 
 import centrode as ct
-from centrode.algebra import machine_code
 from centrode.kinematics.compiled import batch
 from centrode.kinematics.compiled.events import Eventful
 from centrode.kinematics.path import SampleGrid, span_at
 from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.numerics import machine_code
 from centrode.structure.dimensions import dimensions_of
 from drives import five_bar
 from growing import DYADS, grown, mechanism_of

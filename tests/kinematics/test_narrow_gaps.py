@@ -10,15 +10,15 @@ import pytest
 
 import centrode as ct
 import growing_sphere
-from centrode.algebra import machine_code
-from centrode.algebra.bends import Bent
-from centrode.algebra.jets import Jet
 from centrode.kinematics.compiled import batch
 from centrode.kinematics.events import BENDS
 from centrode.kinematics.path import JETS, span_at
 from centrode.kinematics.plan_evaluation import FixedSigns
 from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import asked_span, of_batch, solve
+from centrode.numerics import machine_code
+from centrode.numerics.bends import Bent
+from centrode.numerics.jets import Jet
 from centrode.structure.dimensions import dimensions_of
 from growing import DYADS, grown, mechanism_of
 from mechanisms import EPS

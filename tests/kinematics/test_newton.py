@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.kinematics.higher_class.newton import newton
 from centrode.kinematics.higher_class.system import GroupMotion, GroupSystem
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import EvaluationPolicy
 from centrode.kinematics.prepared import Ready, ready
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
+from centrode.numerics.rounding import ROUNDED, Rounded
 from centrode.structure.constraints import Entity, Positions
 from centrode.structure.groups import Newton
 from mechanisms import EPS

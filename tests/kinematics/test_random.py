@@ -8,11 +8,11 @@ import numpy as np
 from hypothesis import assume, given, settings
 
 import centrode as ct
-from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose
 from centrode.kinematics.path import JETS
 from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import Solved
+from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Entity, Positions, is_drive
 from centrode.structure.rank import jacobian
 from growing import descriptions, mechanism_of

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline, make_interp_spline
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.laws import Segment, SegmentedLaw
 from centrode.laws.rises import Piece, Pieces
 from centrode.laws.segments import Condition, b_spline, polynomial
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 
 EPS = sys.float_info.epsilon
 JETS = JetFunctions(ARRAYS)

@@ -7,10 +7,10 @@ import mpmath
 import numpy as np
 import pytest
 
-from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.laws.rises import Piece, Pieces
 from centrode.laws.segments import Condition, polynomial
+from centrode.numerics.jets import Jet
 
 EPS = sys.float_info.epsilon
 

@@ -8,12 +8,11 @@ import mpmath
 import numpy as np
 import pytest
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.laws import CURVES, Curve
 from centrode.laws.rises import Piece
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
 
 EPS = sys.float_info.epsilon
 JETS = JetFunctions(ARRAYS)

@@ -13,9 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import CubicSpline
 
-from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.laws import Law, TableLaw, TextLaw, Uniform
+from centrode.numerics.jets import Jet
 
 ARRAYS = SimpleNamespace(sin=np.sin, cos=np.cos, sqrt=np.sqrt, atan2=np.arctan2)
 EPS = sys.float_info.epsilon

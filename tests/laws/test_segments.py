@@ -7,12 +7,11 @@ import sys
 import numpy as np
 import pytest
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
 from centrode.laws import CURVES, Law, Segment, SegmentedLaw
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
 
 EPS = sys.float_info.epsilon
 JETS = JetFunctions(ARRAYS)

@@ -11,10 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Pose
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 from centrode.structure.constraints import Positions, constraints_of, unknowns_of
 from centrode.structure.dimensions import dimensions_of
 from centrode.structure.plan import structure_of

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.algebra.jets import Jet
 from centrode.geometry.plane import moved_point, moved_pose
 from centrode.kinematics.path import JETS
+from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Entity, Positions, constraints_of, unknowns_of
 from centrode.structure.dimensions import Dimensions, dimensions_of
 from centrode.structure.rank import random_realisation

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.algebra import machine_code
+from centrode.numerics import machine_code
 from centrode.sweeps.machine import Slopes, States
 from drives import five_bar
 from mechanisms import EPS, four_bar

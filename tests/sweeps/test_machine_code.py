@@ -11,9 +11,9 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.algebra import machine_code
 from centrode.kinematics.compiled.event_screening import EventScreening
 from centrode.kinematics.prepared import ready
+from centrode.numerics import machine_code
 from centrode.quantities import QUANTITIES
 from centrode.structure.groups import Newton
 from centrode.sweeps import designs
@@ -294,7 +294,7 @@ def test_bits_do_not_hang_on_chunks_threads_or_the_cache(
     whole = computed()
     xr.testing.assert_identical(whole, computed(threads=2))
     monkeypatch.setenv("CENTRODE_CACHE", "")
-    kernels = pytest.importorskip("centrode.algebra.machine_code.kernels")
+    kernels = pytest.importorskip("centrode.numerics.machine_code.kernels")
     kernels.forget()
     xr.testing.assert_identical(whole, computed())
     for name, value in (("KERNEL_LANES", 5), ("KERNEL_BUFFER", 20_000), ("BLOCK_POSITIONS", 200)):

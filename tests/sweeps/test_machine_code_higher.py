@@ -10,10 +10,10 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.algebra import machine_code
 from centrode.kinematics.compiled import batch
 from centrode.kinematics.compiled.newton import CHANGE, CONDITION
 from centrode.kinematics.prepared import ready
+from centrode.numerics import machine_code
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor
 from growing_higher import HIGHER, grown_higher
@@ -227,7 +227,7 @@ def test_bits_do_not_hang_on_chunks_threads_or_the_cache(
     whole = computed()
     xr.testing.assert_identical(whole, computed(threads=2))
     monkeypatch.setenv("CENTRODE_CACHE", "")
-    pytest.importorskip("centrode.algebra.machine_code.kernels").forget()
+    pytest.importorskip("centrode.numerics.machine_code.kernels").forget()
     for name, value in (("KERNEL_LANES", 11), ("KERNEL_BUFFER", 20_000), ("BLOCK_POSITIONS", 200)):
         monkeypatch.setattr(designs, name, value)
     xr.testing.assert_identical(whole, computed())

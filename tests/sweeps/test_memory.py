@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from centrode.algebra import machine_code
+from centrode.numerics import machine_code
 from centrode.sweeps import designs
 
 COMPILED = pytest.mark.skipif(not machine_code.PRESENT, reason="machine code needs the extra fast")

@@ -9,7 +9,7 @@ import pytest
 
 import centrode as ct
 from burdened import burdened
-from centrode.algebra import machine_code
+from centrode.numerics import machine_code
 from growing import grown, mechanism_of
 from mechanisms import EPS
 

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.algebra import executors, machine_code
-from centrode.algebra.expressions import variable
-from centrode.algebra.scans import Scan
+from centrode.numerics import executors, machine_code
+from centrode.numerics.expressions import variable
+from centrode.numerics.scans import Scan
 
 WITHOUT = os.environ.get("CENTRODE_WITHOUT", "").split()
 pytestmark = pytest.mark.skipif(not WITHOUT, reason="of the leg `make tests-without-extras`")

@@ -14,7 +14,7 @@ from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.algebra.search import interpolated_roots
+from centrode.numerics.search import interpolated_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from centrode.cams.roller_path import RollerPath
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.algebra.search import tops
+from centrode.numerics.search import tops
 
 Array = NDArray[np.float64]
 

@@ -10,14 +10,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
-from centrode.algebra.text import TextFormula, compile_formula
 from centrode.errors import InputError
 from centrode.laws.laws import Cubic, TableLaw, spline
 from centrode.locale import _
-from centrode.algebra.search import bisect
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.search import bisect
+from centrode.numerics.text_formula import TextFormula, compile_formula
 
 Array = NDArray[np.float64]
 Number = Any

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from centrode.algebra.jets import Jet, square_root
 from centrode.cams.curvature_laws import (
     ConstantCurvature,
     CurvatureLaw,
@@ -44,7 +43,8 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import MOST_TERMS
 from centrode.model.cam_files import AnyCam, curved
-from centrode.algebra.search import newton_roots
+from centrode.numerics.jets import Jet, square_root
+from centrode.numerics.search import newton_roots
 
 # The path by the paper's power series about phi = 0, cut after a given number of terms.
 

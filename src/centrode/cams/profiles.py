@@ -31,7 +31,7 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.cam import Cam, Return
 from centrode.model.cam_files import AnyCam, curved
-from centrode.algebra.search import extremes, roots
+from centrode.numerics.search import extremes, roots
 
 # Equidistants of a roller's path: the cam's profile one radius inside, the wall of a groove one radius
 # outside.

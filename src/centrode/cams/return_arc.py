@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog, minimize
 
-from centrode.algebra.jets import Jet
 from centrode.cams.nodes import nodes_of
 from centrode.cams.roller_path import JETS, Array, Frames, PolarCurve, RollerPath, SymmetricPath, frames
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.algebra.search import Extremes, extremes
+from centrode.numerics.jets import Jet
+from centrode.numerics.search import Extremes, extremes
 
 # Closed paths of a roller's centre: a working arc by the law, and what brings the roller back to its
 # beginning.

@@ -16,17 +16,16 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import NDArray
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.cams.curvature_laws import CurvatureLaw, derivatives
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam_files import AnyCam
 from centrode.model.follower_cam import PlateCam
-from centrode.algebra.search import Extremes as PathExtremes
-from centrode.algebra.search import Function, extremes
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.search import Extremes as PathExtremes
+from centrode.numerics.search import Function, extremes
 
 # Taylor coefficients of a roller path from its differential equations, over any algebra with `+ - * /`.
 #

@@ -13,14 +13,14 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 
-from centrode.algebra.jets import Jet, quotient
 from centrode.cams.nodes import nodes_of
 from centrode.cams.return_arc import Arc, ClosedPath
 from centrode.cams.roller_path import JETS, Array, SymmetricPath, radius_jet
 from centrode.dynamics.steady_motion.cycle import NODES, Panels, PanelSeries
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
-from centrode.algebra.search import Extremes, extremes, maxima_between
+from centrode.numerics.jets import Jet, quotient
+from centrode.numerics.search import Extremes, extremes, maxima_between
 
 # The shoe of a leg: the profile that rolls on flat ground while the hub stays at its height.
 #

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, Protocol, TypeAlias
 
-from centrode.algebra.jets import Jet
 from centrode.dynamics.state import Centre, Place, Radial, State
 from centrode.dynamics.wrenches import Vector, Wrench, couple, on_link, on_point
 from centrode.errors import InputError
@@ -16,6 +15,7 @@ from centrode.locale import _
 from centrode.model.loads import Load
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import Placed
+from centrode.numerics.jets import Jet
 
 Number: TypeAlias = Any
 

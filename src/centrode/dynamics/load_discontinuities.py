@@ -12,7 +12,7 @@ import numpy.typing as npt
 from centrode.dynamics.load_coordinates import Coordinate
 from centrode.dynamics.loads import REST, AppliedLoad, LoadTerm
 from centrode.dynamics.state import State
-from centrode.algebra.search import foretold_brackets, newton_roots
+from centrode.numerics.search import foretold_brackets, newton_roots
 
 Array: TypeAlias = npt.NDArray[np.float64]
 StateAt: TypeAlias = Callable[[Array], State]

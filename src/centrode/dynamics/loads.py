@@ -10,8 +10,6 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.text import TextFormula, compile_formula
 from centrode.dynamics.load_coordinates import (
     Component,
     Coordinate,
@@ -29,6 +27,8 @@ from centrode.kinematics.path import JETS
 from centrode.locale import _
 from centrode.model.loads import LOAD_VARIABLES, PLAIN_SUM, Load
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.text_formula import TextFormula, compile_formula
 
 # How great a load is: constant, a formula, a spring, a damper, an indicator diagram.
 

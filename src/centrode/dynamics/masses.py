@@ -11,8 +11,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
 from centrode.dynamics.state import (
     About,
     Centre,
@@ -34,6 +32,8 @@ from centrode.model import values
 from centrode.model.links import RING_AND_POINT
 from centrode.model.mechanism import FRAME, Mechanism, Vector
 from centrode.model.values import principal, tensor_of
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
 
 # Masses of spherical links: centre of mass, and inertia about it as mass spread along three directions.
 #

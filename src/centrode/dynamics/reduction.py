@@ -12,9 +12,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.jet_functions import JetFunctions
 from centrode.dynamics.load_discontinuities import jumps_of
 from centrode.dynamics.loads import AppliedLoad, LoadDiagram, MassesAndLoads
 from centrode.dynamics.masses import coordinates_of as speeds_of
@@ -38,6 +35,9 @@ from centrode.kinematics.several_inputs.coefficients import Partials, partials
 from centrode.kinematics.solve import GREATEST_RESULT, Solved, asked_span, solve
 from centrode.locale import _, mark
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.expressions import EXPRESSIONS
+from centrode.numerics.jets import JetFunctions
 
 # Masses and loads of a mechanism with one drive, reduced to it at any value of the drive.
 

@@ -9,8 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.geometry.sphere import Attitude, carried, cross, dot, unit_vector
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import PlanLayout
@@ -18,6 +16,7 @@ from centrode.kinematics.sampling import Samples
 from centrode.kinematics.solve import Solved
 from centrode.model.links import Link
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.numerics.jets import Jet, JetFunctions
 
 # What a mass is to the computation: centre of mass and inertia about it, in the plane and on the sphere.
 

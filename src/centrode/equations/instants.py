@@ -13,9 +13,6 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.equations.derivation import Equations
 from centrode.equations.linear import GroupSolution, LinearSystem, Unknown
 from centrode.equations.spelling import SymbolFormula
@@ -24,6 +21,8 @@ from centrode.equations.symbols import Letter, Sum
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import FRAME
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -13,9 +13,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.equations.chain_assembly import laid
 from centrode.equations.linear import LinearSystem, Place, Unknown, system_of
 from centrode.equations.symbols import Letter, Sum
@@ -34,7 +31,9 @@ from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, shown
-from centrode.algebra.search import bisect
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.search import bisect
 from centrode.structure.dimensions import Dimensions
 
 # Integration of equations in Cauchy form: fixed steps of the classical Runge-Kutta method, or adaptive ones.

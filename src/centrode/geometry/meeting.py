@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol, TypeAlias
 
-from centrode.algebra.bends import Bent, Cells, least_bound, plus
-from centrode.algebra.jets import Jet
 from centrode.geometry import sphere
 from centrode.geometry.plane import (
     Circle,
@@ -22,6 +20,8 @@ from centrode.geometry.plane import (
     radicand_of_circle_and_line,
     radicand_of_circles,
 )
+from centrode.numerics.bends import Bent, Cells, least_bound, plus
+from centrode.numerics.jets import Jet
 
 # Points that move: what a locus says of a point's next coefficient, the ones before being known.
 #

@@ -9,9 +9,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.jets import Jet
 from centrode.kinematics.plan_evaluation import PlanLayout
 from centrode.kinematics.stretches import TurnedStretch, with_quick_steps, with_quick_turns
+from centrode.numerics.jets import Jet
 
 Array: TypeAlias = npt.NDArray[np.float64]
 

@@ -10,8 +10,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
 from centrode.geometry.space import Space
 from centrode.kinematics.assembly_mode import (
@@ -36,6 +34,8 @@ from centrode.kinematics.higher_class.starting import bound_higher, guesses, sta
 from centrode.kinematics.higher_class.system import GroupSystem
 from centrode.kinematics.plan_evaluation import Kinematics, SideChoices
 from centrode.locale import _
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.rounding import ROUNDED, Rounded
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import (
     Constraint,

@@ -7,8 +7,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.errors import InputError
 from centrode.geometry.space import Space
 from centrode.kinematics.dyads import aim_curve, loci_of
@@ -20,6 +18,8 @@ from centrode.kinematics.plan_evaluation import (
     rotor_of_angle,
 )
 from centrode.locale import _
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Contact, Positions
 from centrode.structure.dimensions import Dimensions

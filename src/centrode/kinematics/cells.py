@@ -1,6 +1,6 @@
 """Cells of the path on which a radicand or divisor is known to keep its sign, or to pass zero once at most.
 
-A cell is known by a bound of the second derivative (`algebra.bends`): it is clear where the number cannot reach zero,
+A cell is known by a bound of the second derivative (`numerics.bends`): it is clear where the number cannot reach zero,
 and straight where its slope cannot. Between the centres of two known cells that abut, there is a zero exactly where
 the signs at the centres differ. Cells that are not known are divided until they are, or until they are so short that
 what happens in them is one place. Towards places where something happens they get shorter in a geometric series,

@@ -15,13 +15,13 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
 from centrode.kinematics.higher_class.evaluation import ConvergedPlaces, close, follow, starts
 from centrode.kinematics.higher_class.system import Surroundings
 from centrode.kinematics.higher_class.tracing import CurveTracks, trace
 from centrode.kinematics.plan_evaluation import Branches, EvaluationPolicy, Kinematics
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
+from centrode.numerics.rounding import ROUNDED, UNIT_ROUNDOFF, Rounded
 from centrode.structure.constraints import Positions, mapped_pose
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import links_of, points_of

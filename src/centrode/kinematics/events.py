@@ -21,10 +21,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.bends import BendFunctions, Bent, Cells
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.cells import (
     FINEST,
     CellPieces,
@@ -42,7 +38,11 @@ from centrode.kinematics.mesh import CLOSING_IN, cut_cells, first_changes, large
 from centrode.kinematics.path import JETS, Path, nearest_node
 from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, ReachedRadicand, counted
 from centrode.kinematics.quick_turns import QuickTurns
-from centrode.algebra.search import newton_roots, sign_changes
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.bends import BendFunctions, Bent, Cells
+from centrode.numerics.jets import Jet
+from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.search import newton_roots, sign_changes
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Meet, Newton, links_of, points_of
 

@@ -13,7 +13,6 @@ import numpy.typing as npt
 import pandas as pd
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.errors import STATUSES_OF_MOTION, InputError
 from centrode.kinematics.path import SampleGrid, span_at
 from centrode.kinematics.prepared import Ready, ready
@@ -21,6 +20,7 @@ from centrode.kinematics.solve import Progress, Solved, asked_span, solve
 from centrode.locale import _, speaking
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.arrays import ARRAYS
 from centrode.quantities import QUANTITIES
 from centrode.structure.assur import name_of
 from centrode.structure.dimensions import Dimensions, dimensions_of

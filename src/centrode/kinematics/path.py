@@ -14,9 +14,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
 from centrode.errors import InputError
 from centrode.kinematics.law_jumps import Jump, first_jump
 from centrode.laws import Law, ShaftLaw
@@ -25,6 +22,8 @@ from centrode.model import reading
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.motion_parameter import MotionParameter
 from centrode.model.placement import chain_of
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
 
 # How fast several drives move together: the unit of time on which events are looked for, stretch by stretch.
 #

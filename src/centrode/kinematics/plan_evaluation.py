@@ -9,13 +9,13 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import Rounded
 from centrode.geometry.space import Space
 from centrode.kinematics.dyads import Continued, solve_group
 from centrode.kinematics.path import Path, nearest_node
 from centrode.kinematics.stretches import TurnedStretch, with_quick_steps, with_quick_turns
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
+from centrode.numerics.rounding import Rounded
 from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.plan import Structure

@@ -8,7 +8,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.assembly import Assembled, assemble
 from centrode.kinematics.assembly_mode import RESIDUAL_TOLERANCE, length_misfits
@@ -20,6 +19,7 @@ from centrode.kinematics.plan_evaluation import Kinematics, branches_at_start
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import MotionParameter
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions, is_drive
 from centrode.structure.groups import Newton
 from centrode.structure.plan import Structure, drives_against_mobility, structure_of

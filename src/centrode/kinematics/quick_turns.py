@@ -16,10 +16,10 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.change_points import BranchedPlan, Smooth
 from centrode.kinematics.plan_evaluation import ReachedRadicand
 from centrode.kinematics.stretches import ParameterStretch, TurnedStretch
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 

@@ -15,9 +15,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import SAFETY
 from centrode.errors import Status
 from centrode.kinematics.angular_velocity import (
     NodeTurns,
@@ -44,6 +41,9 @@ from centrode.kinematics.plan_evaluation import (
 from centrode.kinematics.prepared import Ready
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.locale import _
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
+from centrode.numerics.rounding import SAFETY
 from centrode.structure.constraints import Constraint, Contact, PointInLink, Positions, contact_point
 from centrode.structure.dimensions import Dimensions
 

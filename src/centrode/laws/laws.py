@@ -8,13 +8,12 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
-from centrode.algebra.text import TextFormula, compile_formula
 from centrode.errors import InputError
 from centrode.laws.rises import Number, Row, plain, row_at
 from centrode.laws.segments import SegmentedLaw
 from centrode.locale import _
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.text_formula import TextFormula, compile_formula
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
 
 from pydantic import Field, PlainValidator, ValidationInfo, field_validator, model_validator
 
-from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
@@ -41,6 +40,7 @@ from centrode.model.values import (
     read_text,
     si,
 )
+from centrode.numerics.text_formula import compile_formula
 
 # Values of a cam's description: points and formulas of curvatures, bounds, parameters to be chosen.
 

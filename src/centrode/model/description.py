@@ -9,7 +9,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, ModelWrapValidatorHandler, PlainValidator, model_validator
 
-from centrode.algebra.text import SCALARS
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
@@ -35,6 +34,7 @@ from centrode.model.values import (
     link_table,
     read_axes,
 )
+from centrode.numerics.operations import SCALARS
 
 
 def _read_gravity(value: object) -> tuple[float, ...]:

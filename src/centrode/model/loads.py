@@ -8,7 +8,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import PlainValidator, ValidationInfo, field_validator
 
-from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.reading import FRAME, Part, Problem, choice, listed, missing_key, one_of, read_name, shown
@@ -26,6 +25,7 @@ from centrode.model.values import (
     read_text,
     si,
 )
+from centrode.numerics.text_formula import compile_formula
 
 # Which keys the loads of each kind need, and which they may have.
 

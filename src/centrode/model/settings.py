@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, PlainValidator
 
-from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
@@ -24,6 +23,7 @@ from centrode.model.values import (
     read_text,
     si,
 )
+from centrode.numerics.text_formula import compile_formula
 from centrode.quantities import ANGLES, LENGTHS
 
 REACHABLE = "reachable"

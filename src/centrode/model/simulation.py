@@ -8,13 +8,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import PlainValidator, ValidationInfo, field_validator
 
-from centrode.algebra.text import compile_formula
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.motion_parameter import UNDRIVEN, MotionParameter
 from centrode.model.reading import KEY, Part, Problem, choice, shown
 from centrode.model.values import READING, PlaceOfMotion, positive, quantity, read_text, si
+from centrode.numerics.text_formula import compile_formula
 
 DRIVING_LAW_VARIABLES = ("t", "q", "v")
 """Time [s], the drive's value, and its speed in the sense of the drive, in formulas of what drives it."""

@@ -10,11 +10,12 @@ from typing import Any
 
 import lazy_loader
 
-from centrode.algebra.text import SCALARS, compile_formula
 from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
 from centrode.model.reading import shown
+from centrode.numerics.operations import SCALARS
+from centrode.numerics.text_formula import compile_formula
 
 # Costs three times the import of NumPy: asked for by the first unit that is not in COMMON.
 _pint = functools.partial(lazy_loader.load, "pint")

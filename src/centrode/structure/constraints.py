@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple, Protocol, TypeAlias
 
-from centrode.algebra.plain import PLAIN
 from centrode.geometry.plane import (
     Vector,
     along,
@@ -26,6 +25,7 @@ from centrode.geometry.plane import (
 from centrode.geometry.space import Coordinates, Place, Pose, Rows
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.operations import PLAIN
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
 

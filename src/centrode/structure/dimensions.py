@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeAlias
 
-from centrode.algebra.plain import PLAIN
 from centrode.errors import InputError
 from centrode.geometry.in_plane import PLANE
 from centrode.geometry.on_sphere import SPHERE
@@ -16,6 +15,7 @@ from centrode.geometry.plane import Vector
 from centrode.geometry.space import Curve, Place, Reference, Space
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Guide, Link, Mechanism
+from centrode.numerics.operations import PLAIN
 from centrode.structure.gearing import Gearing, Round, gearing_of, measured_on, shares_of
 
 # Where the angles of spherical links are measured: between the link's own arc and its reference arc.

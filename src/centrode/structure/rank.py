@@ -17,11 +17,11 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.geometry.plane import Pose, Vector, cross, reversed_rotor, subtract, turned
 from centrode.geometry.space import Row
 from centrode.locale import _
 from centrode.model.mechanism import Guide, Mechanism, Rolling
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import FRAME, Constraint, Contact, Entity, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Gearing, Round, Straight, Track

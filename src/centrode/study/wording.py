@@ -6,10 +6,10 @@ from math import tau
 
 import numpy as np
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
 from centrode.model.mechanism import Display, Drive
+from centrode.numerics.arrays import ARRAYS
 from centrode.quantities import display_unit
 from centrode.structure.assur import name_of
 

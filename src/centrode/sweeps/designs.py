@@ -16,13 +16,13 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model.files import value_at
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, shown
 from centrode.model.units import to_si
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 
 # What a sweep may take of memory and ask for at most; named here, told in docs/sweeps.md.

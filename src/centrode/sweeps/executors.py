@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.executors import AUTO, MACHINE_CODE, chosen
 from centrode.errors import InputError
 from centrode.kinematics.compiled.trace import Untraceable
 from centrode.locale import _
 from centrode.model.reading import nearest, shown
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.executors import AUTO, MACHINE_CODE, chosen
 from centrode.structure.dimensions import Dimensions, dimensions_of
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor, Results, SweepTask

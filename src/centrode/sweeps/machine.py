@@ -16,16 +16,6 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra import machine_code
-from centrode.algebra.executors import MACHINE_CODE, streamer
-from centrode.algebra.expression_functions import EXPRESSIONS, Expressions
-from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.gradients import gradient
-from centrode.algebra.graph_arrays import evaluate
-from centrode.algebra.graphs import Graph, rebuilt, split
-from centrode.algebra.operations import CONSTANT, VARIABLE
-from centrode.algebra.reductions import Reduction, together
-from centrode.algebra.scans import Scan, room_of
 from centrode.errors import Status
 from centrode.kinematics.compiled.event_screening import EventScreening
 from centrode.kinematics.compiled.events import Eventful
@@ -48,6 +38,12 @@ from centrode.kinematics.compiled.variables import (
 )
 from centrode.kinematics.sampling import CLOSED
 from centrode.locale import mark
+from centrode.numerics import machine_code
+from centrode.numerics.executors import MACHINE_CODE, streamer
+from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
+from centrode.numerics.graphs import Graph, gradient, rebuilt, split
+from centrode.numerics.operations import CONSTANT, VARIABLE
+from centrode.numerics.scans import Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
 from centrode.sweeps import designs
@@ -297,7 +293,7 @@ class Expressed:
     ----------
     varied : the numbers that vary as variables
     traced : the motion at one sample
-    kernels : what runs scans, see `algebra.executors`
+    kernels : what runs scans, see `numerics.executors`
     threads : that share the mechanisms
     """
 

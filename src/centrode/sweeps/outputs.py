@@ -11,15 +11,15 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS, Arrays
-from centrode.algebra.text import TEXT_LENGTH, TextFormula, compile_formula
-from centrode.algebra.vocabulary import CONSTANTS, FUNCTIONS
 from centrode.dynamics.reduction import REDUCED, Values, reduced_number
 from centrode.errors import InputError
 from centrode.kinematics.motion import by_time, kinds_of
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
 from centrode.model.reading import nearest, shown
+from centrode.numerics.arrays import ARRAYS, Arrays
+from centrode.numerics.operations import CONSTANTS, FUNCTIONS
+from centrode.numerics.text_formula import TEXT_LENGTH, TextFormula, compile_formula
 from centrode.quantities import QUANTITIES
 from centrode.sweeps import designs
 from centrode.sweeps.designs import MECHANISM, Design, Rows

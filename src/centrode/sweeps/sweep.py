@@ -10,7 +10,6 @@ from typing import Any, TypeAlias
 
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.dynamics.reduction import REDUCED, check_reducible, reduction_of
 from centrode.errors import InputError
 from centrode.kinematics.motion import dataset_of
@@ -21,6 +20,7 @@ from centrode.model.examples.loading import load
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, read_file, shown
 from centrode.model.toml import toml_tables
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import SweepTask

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra import machine_code
+from centrode.numerics import machine_code
 from tools.campaigns.campaign import random_of
 from tools.campaigns.change_points.chains import chain
 from tools.campaigns.change_points.linkage import Linkage, bend

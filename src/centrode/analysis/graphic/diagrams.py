@@ -10,8 +10,6 @@ from typing import TypeAlias
 import numpy as np
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
 from centrode.analysis.graphic.construction import construct
 from centrode.analysis.graphic.stage import (
     ConstructionStage,
@@ -31,6 +29,8 @@ from centrode.kinematics.solve import asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
 from centrode.quantities import status_word
 from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.gearing import Round

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.jets import Jet
 from centrode.analysis.instant_centres.bodies import (
     ROUNDED,
     Array,
@@ -31,6 +30,7 @@ from centrode.kinematics.solve import fit_for, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, shown
+from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 
 Local: TypeAlias = Mapping[str, tuple[float, float]]

@@ -10,7 +10,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.geometry.plane import Vector, add, cross, reversed_rotor, rotor_of, subtract, turned
 from centrode.kinematics.assembly_mode import side_names, side_words, stated_side
@@ -24,6 +23,7 @@ from centrode.model.placement import replace_placed
 from centrode.model.reading import FrozenMap
 from centrode.model.units import to_si
 from centrode.model.values import Placed
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import SPACES, Dimensions, dimensions_of
 from centrode.structure.groups import Group, Meet, Rail, Rod, TurnedLink, links_of

@@ -12,7 +12,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.analysis.redesign.candidates import (
     Batch,
     Bounds,
@@ -31,6 +30,7 @@ from centrode.kinematics.prepared import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Aim, Group, Meet, Newton
 

@@ -8,7 +8,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, Pair, Watched
 from centrode.geometry.plane import Vector, place, subtract, turned
 from centrode.geometry.plane import cross as plane_cross
@@ -19,6 +18,7 @@ from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.arrays import ARRAYS
 from centrode.quantities import display_unit
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions

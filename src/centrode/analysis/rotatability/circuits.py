@@ -17,7 +17,6 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.analysis.rotatability.tours import DriveSweep
 from centrode.geometry.plane import cross, subtract
 from centrode.kinematics.assembly_mode import side_names, side_words
@@ -29,6 +28,7 @@ from centrode.kinematics.prepared import Ready
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
 from centrode.model.reading import body_word
+from centrode.numerics.arrays import ARRAYS
 from centrode.quantities import display_unit
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions

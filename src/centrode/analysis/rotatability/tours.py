@@ -13,8 +13,6 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
 from centrode.kinematics.change_points import BranchedPlan, Smooth
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
@@ -25,7 +23,9 @@ from centrode.kinematics.sampling import start_of
 from centrode.kinematics.several_inputs.limits import check_closed, held_path, starting_at
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive, Mechanism
-from centrode.algebra.search import newton_roots, sign_changes
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
+from centrode.numerics.search import newton_roots, sign_changes
 from centrode.structure.constraints import Positions
 from centrode.structure.groups import Meet
 

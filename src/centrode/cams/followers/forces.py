@@ -23,7 +23,7 @@ from centrode.kinematics.motion import Variable, named
 from centrode.model.cam import Material as DescribedMaterial
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
-from centrode.algebra.search import tops
+from centrode.numerics.search import tops
 from centrode.version import __version__
 
 # What a follower asks of its cam: the force along its motion that accelerates it against spring and load.

@@ -18,13 +18,13 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.algebra.jets import Jet
 from centrode.cams.nodes import inside, nodes_of
 from centrode.cams.profiles import Undercut
 from centrode.cams.roller_path import JETS
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.algebra.search import Extremes, Function, extremes, roots
+from centrode.numerics.jets import Jet
+from centrode.numerics.search import Extremes, Function, extremes, roots
 
 # How a follower is led: along a line or about a pivot, in the axes of the frame.
 #

@@ -14,10 +14,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.cams.nodes import mesh
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import Variable, labels_of, named
@@ -26,7 +22,10 @@ from centrode.locale import _, mark
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
 from centrode.model.reading import nearest, shown
-from centrode.algebra.search import Extremes, extremes
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
+from centrode.numerics.search import Extremes, extremes
 from centrode.quantities import QUANTITIES
 from centrode.version import __version__
 

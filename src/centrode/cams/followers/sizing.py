@@ -33,7 +33,7 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.cam_files import AnyCam, with_follower
 from centrode.model.follower_cam import PlateCam
-from centrode.algebra.search import root, roots
+from centrode.numerics.search import root, roots
 
 # What a follower is and how it stands to its cam, before the size of the cam is chosen.
 

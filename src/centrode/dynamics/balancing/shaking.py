@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.jets import Jet
 from centrode.dynamics.masses import masses_of
 from centrode.dynamics.state import Mass, Moving, Place, State
 from centrode.dynamics.steady_motion.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME, Panels
@@ -26,7 +25,8 @@ from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, shown
-from centrode.algebra.search import tops
+from centrode.numerics.jets import Jet
+from centrode.numerics.search import tops
 
 # Inertial effects of bodies on the frame and on the drive, as sums over bodies in plane motion.
 #

@@ -16,7 +16,6 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from centrode.algebra.plain import PLAIN
 from centrode.analysis.graphic.stage import VectorDrawing, cross
 from centrode.analysis.instant_centres.bodies import sliders_of
 from centrode.dynamics.load_coordinates import Component, Distance, HalfSquare, Slide, Turn
@@ -25,6 +24,7 @@ from centrode.dynamics.state import Centre, Mass, Radial, State
 from centrode.errors import MotionError, NotComputedYet
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Guide, Mechanism
+from centrode.numerics.operations import PLAIN
 from centrode.structure.constraints import Contact, GearRatio, NoSlip, contact_point
 from centrode.structure.groups import Group, TurnedLink, Turning, links_of, points_of
 from centrode.structure.plan import Structure

@@ -9,7 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.jets import Jet
 from centrode.dynamics.load_coordinates import place_of
 from centrode.dynamics.loads import AppliedLoad, MassesAndLoads
 from centrode.dynamics.masses import shares
@@ -22,6 +21,7 @@ from centrode.kinematics.path import JETS, SampleGrid
 from centrode.kinematics.prepared import Ready
 from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.jets import Jet
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any

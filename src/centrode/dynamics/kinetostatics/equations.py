@@ -16,7 +16,6 @@ from typing import Any, Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.dynamics.load_coordinates import place_of
 from centrode.dynamics.state import State
 from centrode.dynamics.wrenches import NOWHERE, Vector, Wrench, couple, on_frame, on_link, on_point
@@ -25,6 +24,7 @@ from centrode.geometry.plane import dot as plane_dot
 from centrode.geometry.plane import subtract as plane_subtract
 from centrode.geometry.sphere import Attitude, add, basis, combined, cross, dot, subtract, times, unit
 from centrode.model.mechanism import Gear, Mechanism
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import (
     FRAME,
     Constraint,

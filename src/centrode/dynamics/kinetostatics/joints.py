@@ -9,11 +9,11 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.rounding import SAFETY
 from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics, Unknown
 from centrode.dynamics.wrenches import Vector, Wrench
 from centrode.errors import Status
 from centrode.model.mechanism import FRAME, Mechanism
+from centrode.numerics.rounding import SAFETY
 from centrode.structure.constraints import (
     Constraint,
     Contact,

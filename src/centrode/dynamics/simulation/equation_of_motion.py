@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from centrode.algebra.text import SCALARS, TextFormula, compile_formula
 from centrode.dynamics.load_coordinates import Coordinate
 from centrode.dynamics.loads import (
     AppliedLoad,
@@ -34,7 +33,9 @@ from centrode.kinematics.plan_evaluation import AT_THE_START
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulation import DRIVING_LAW_VARIABLES, MOST_TURNS, Simulation
-from centrode.algebra.search import maxima_between
+from centrode.numerics.operations import SCALARS
+from centrode.numerics.search import maxima_between
+from centrode.numerics.text_formula import TextFormula, compile_formula
 
 # Loads by what becomes of their work: potential energy, friction, or neither; and which follow formulas.
 

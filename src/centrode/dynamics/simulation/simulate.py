@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.executors import ARRAYS, chosen
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer
 from centrode.dynamics.simulation.equation_of_motion import (
@@ -45,6 +44,7 @@ from centrode.locale import _
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulation import MOST_TURNS, Simulation
+from centrode.numerics.executors import ARRAYS, chosen
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 

@@ -19,7 +19,7 @@ from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulation import Simulation
-from centrode.algebra.search import tops
+from centrode.numerics.search import tops
 
 # The return map of a machine: from the speed at one value of the drive to that a period later, and its fixed
 # point.

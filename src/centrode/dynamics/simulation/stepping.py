@@ -18,11 +18,6 @@ import numpy as np
 import numpy.typing as npt
 import scipy.integrate
 
-from centrode.algebra.executors import runner
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.graphs import Graph
-from centrode.algebra.scans import Scan
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.masses import share
 from centrode.dynamics.reduction import state_of_nodes
@@ -56,7 +51,11 @@ from centrode.kinematics.compiled.variables import RATE as RATE_VARIABLE
 from centrode.kinematics.path import SampleGrid
 from centrode.locale import _, mark
 from centrode.model.simulation import MOST_TURNS
-from centrode.algebra.search import bisect, root
+from centrode.numerics.executors import runner
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.graphs import Graph
+from centrode.numerics.scans import Scan
+from centrode.numerics.search import bisect, root
 
 # The classical Runge-Kutta scheme of fourth order with equal steps, as the source integrates.
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from centrode.dynamics.steady_motion.cycle import Array
 from centrode.dynamics.steady_motion.speed import EnergyBalance
-from centrode.algebra.search import Extremes, extremes
+from centrode.numerics.search import Extremes, extremes
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,6 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import legendre
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.text import TextFormula
 from centrode.dynamics.reduction import Reducer
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.path import SampleGrid
@@ -21,6 +19,8 @@ from centrode.kinematics.prepared import Ready
 from centrode.kinematics.solve import solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.text_formula import TextFormula
 
 # Integrals of what is smooth but for jumps: composite Gauss-Legendre quadrature with its error.
 #

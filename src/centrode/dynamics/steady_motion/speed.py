@@ -10,7 +10,7 @@ import numpy as np
 from centrode.dynamics.steady_motion.cycle import Array, Cycle, MomentShape, PanelSeries
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.algebra.search import Extremes, extremes, root
+from centrode.numerics.search import Extremes, extremes, root
 
 MeanSpeed: TypeAlias = Literal["middle", "time"]
 MEANS = get_args(MeanSpeed)

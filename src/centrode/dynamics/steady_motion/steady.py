@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.text import compile_formula
 from centrode.dynamics.steady_motion.coursework_method import SpeedBySource, needed_by_source
 from centrode.dynamics.steady_motion.cycle import (
     Array,
@@ -43,6 +42,7 @@ from centrode.locale import _
 from centrode.model import reading
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import DRIVING_VARIABLES, Machine
+from centrode.numerics.text_formula import compile_formula
 
 # Fixed points of functions of many numbers: iteration that learns from its former steps.
 #

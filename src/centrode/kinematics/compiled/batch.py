@@ -14,10 +14,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra import machine_code
-from centrode.algebra.executors import MACHINE_CODE
-from centrode.algebra.graph_arrays import evaluate
-from centrode.algebra.graphs import Graph
 from centrode.errors import Status
 from centrode.kinematics.compiled.event_screening import EventScreening, ScreenedEvents
 from centrode.kinematics.compiled.events import Eventful
@@ -42,6 +38,10 @@ from centrode.kinematics.plan_evaluation import Branches, branches_at_start
 from centrode.kinematics.prepared import Ready
 from centrode.kinematics.sampling import CLOSED, Kept
 from centrode.kinematics.solve import CHUNK, Progress, Solved, check_size, solve
+from centrode.numerics import machine_code
+from centrode.numerics.executors import MACHINE_CODE
+from centrode.numerics.graphs import Graph
+from centrode.numerics.scans import evaluate
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]

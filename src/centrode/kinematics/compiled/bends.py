@@ -10,16 +10,15 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.bends import BendFunctions, Bent, Cells
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Operand, variable
-from centrode.algebra.jets import Jet
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.compiled.variables import PARAMETER, Varied, traced_path
 from centrode.kinematics.events import bent_drives, half_widths
 from centrode.kinematics.path import Path, SampleGrid
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, ReachedRadicand
 from centrode.kinematics.prepared import Ready
+from centrode.numerics.bends import BendFunctions, Bent, Cells
+from centrode.numerics.expressions import EXPRESSIONS, Operand, variable
+from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 
 Array: TypeAlias = npt.NDArray[np.float64]

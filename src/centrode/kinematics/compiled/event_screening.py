@@ -1,7 +1,7 @@
 """Which mechanisms of a batch have no events: judged on the mesh of events, along the path where that is needed.
 
 A mechanism is clear where every radicand stays above zero all over each cell of the mesh, and every divisor off it,
-by the bounds of `algebra.bends`: the search of `events` would find nothing. Behind a group of higher class nothing is
+by the bounds of `numerics.bends`: the search of `events` would find nothing. Behind a group of higher class nothing is
 bounded; there no sign change and no low minimum is enough. Then no sign flips, nothing is cut off, and the formulas of
 `traced` are the whole motion. What is not clear is left to the arrays; to call a clear mechanism unclear costs time and
 nothing else.
@@ -17,10 +17,6 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.jets import Jet
-from centrode.algebra.reductions import Reduction, together
 from centrode.kinematics.change_points import WINDOW
 from centrode.kinematics.compiled.bends import DIVISOR, RADICAND, bends_of
 from centrode.kinematics.compiled.path_following import SURE, Walk, Walking, way_of
@@ -44,6 +40,9 @@ from centrode.kinematics.compiled.variables import (
 from centrode.kinematics.mesh import LOW, mesh_of
 from centrode.kinematics.path import Path
 from centrode.kinematics.sampling import ORDERS, SUSPECT
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.jets import Jet
+from centrode.numerics.scans import Reduction, together
 
 # Where the angles of links stand: each stays within half a turn of a centre, which may run on with a drive.
 

@@ -15,11 +15,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.bends import Bent, Cells
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.angular_velocity import NodeTurns, angle_and_rates, node_turns
 from centrode.kinematics.change_points import BranchedPlan, inside
@@ -48,6 +43,10 @@ from centrode.kinematics.sampling import (
     start_of,
 )
 from centrode.kinematics.solve import Solved, fit_for, lanes_at_once, of_batch, of_lanes, solve
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.bends import Bent, Cells
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 
@@ -334,7 +333,7 @@ class Eventful:
     ----------
     varied : the numbers of the batch as variables
     plan : the same with constant signs
-    kernels : what runs scans, see `algebra.executors`
+    kernels : what runs scans, see `numerics.executors`
     unclosed : filled with mechanisms that have a sample which does not close
     """
 

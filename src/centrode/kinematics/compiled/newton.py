@@ -12,12 +12,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.jets import Jet
 from centrode.geometry.plane import Vector, dot, is_literal_zero, turned
 from centrode.kinematics.compiled.variables import FIRST, NODE_JETS, SHARE, STEP, TURN, whole_turns
 from centrode.kinematics.higher_class.system import LinkChain, Posture, cut, needed, plain
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 
 # Free coordinates of groups of higher class as expressions: their names, and how they move.

@@ -12,12 +12,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.executors import runner
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.graphs import Graph
-from centrode.algebra.reductions import Reduction
-from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.newton import Names, numbers_of
 from centrode.kinematics.compiled.trace import Traced, chains_of
 from centrode.kinematics.compiled.variables import (
@@ -39,6 +33,10 @@ from centrode.kinematics.path import Path
 from centrode.kinematics.plan_evaluation import EvaluationPolicy
 from centrode.kinematics.prepared import Ready
 from centrode.kinematics.solve import of_batch
+from centrode.numerics.executors import runner
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.graphs import Graph
+from centrode.numerics.scans import Reduction, Scan
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 

@@ -16,10 +16,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.bends import Bent
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.jets import Jet
 from centrode.errors import Status
 from centrode.kinematics.angular_velocity import attitudes_of, spins_of
 from centrode.kinematics.assembly import with_phases
@@ -53,6 +49,9 @@ from centrode.kinematics.prepared import Ready
 from centrode.kinematics.sampling import ORDERS, UnitLength, each_residual
 from centrode.kinematics.solve import Solved
 from centrode.locale import mark
+from centrode.numerics.bends import Bent
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Contact, Positions, contact_point
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton

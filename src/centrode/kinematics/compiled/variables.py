@@ -11,16 +11,13 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.executors import runner
-from centrode.algebra.expression_functions import EXPRESSIONS
-from centrode.algebra.expressions import Node, Operand, as_node, variable
-from centrode.algebra.graphs import Graph
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
-from centrode.algebra.reductions import Reduction
-from centrode.algebra.scans import Scan
 from centrode.kinematics.path import JETS, Path, SampleGrid
 from centrode.kinematics.sampling import ORDERS
+from centrode.numerics.executors import runner
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.graphs import Graph
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.scans import Reduction, Scan
 from centrode.structure.dimensions import Dimensions
 
 Array: TypeAlias = npt.NDArray[np.float64]

@@ -11,15 +11,15 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.executors import runner
-from centrode.algebra.expressions import Node, as_node
-from centrode.algebra.graphs import Graph, ordered
-from centrode.algebra.machine_code.tables import FUNCTIONS
-from centrode.algebra.operations import VARIABLE
-from centrode.algebra.scans import Scan
 from centrode.kinematics.compiled.trace import Traced
 from centrode.kinematics.compiled.variables import PARAMETER, boxed
 from centrode.kinematics.solve import Solved
+from centrode.numerics.executors import runner
+from centrode.numerics.expressions import Node, as_node
+from centrode.numerics.graphs import Graph, ordered
+from centrode.numerics.machine_code.loops import FUNCTIONS
+from centrode.numerics.operations import VARIABLE
+from centrode.numerics.scans import Scan
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Nodes: TypeAlias = npt.NDArray[Any]
@@ -57,7 +57,7 @@ class Writer:
     ----------
     outputs : name -> nodes
     places : what the variables of a place on the path stand for: name -> (n,)
-    kernels : what runs scans, see `algebra.executors`
+    kernels : what runs scans, see `numerics.executors`
     memory : what `same_room` hands out, in its first place; writers that do not write at once may share it
     """
 

@@ -13,11 +13,11 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, SAFETY, Rounded
 from centrode.kinematics.higher_class.newton import Shifts, bordered, motion_along, settled, size_of
 from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, solved, total
 from centrode.kinematics.path import JETS
+from centrode.numerics.jets import Jet
+from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Lanes: TypeAlias = npt.NDArray[np.intp]

@@ -9,10 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jet_functions import JetFunctions
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import RoundedFunctions
 from centrode.kinematics.higher_class.newton import newton, step_at
 from centrode.kinematics.higher_class.system import (
     GroupSystem,
@@ -24,6 +20,9 @@ from centrode.kinematics.higher_class.system import (
     shaped,
 )
 from centrode.kinematics.higher_class.tracing import CurveTracks
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet, JetFunctions
+from centrode.numerics.rounding import RoundedFunctions
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 

@@ -9,9 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import UNIT_ROUNDOFF
 from centrode.kinematics.higher_class.system import (
     GroupMotion,
     GroupSystem,
@@ -21,6 +18,9 @@ from centrode.kinematics.higher_class.system import (
     solved,
 )
 from centrode.kinematics.path import JETS
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
+from centrode.numerics.rounding import UNIT_ROUNDOFF
 from centrode.structure.constraints import Entity
 
 Array: TypeAlias = npt.NDArray[np.float64]

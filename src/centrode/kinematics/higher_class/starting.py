@@ -9,8 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.errors import InputError
 from centrode.kinematics.assembly_mode import is_measured
 from centrode.kinematics.higher_class.newton import newton
@@ -18,6 +16,8 @@ from centrode.kinematics.higher_class.system import GroupSystem, within
 from centrode.kinematics.plan_evaluation import rotor_of_angle
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.rounding import ROUNDED, Rounded
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions

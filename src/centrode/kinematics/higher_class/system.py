@@ -16,9 +16,6 @@ from typing import Any, NamedTuple, TypeAlias, cast
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
-from centrode.algebra.rounding import ROUNDED, Rounded
 from centrode.geometry.plane import (
     Pose,
     Vector,
@@ -33,6 +30,9 @@ from centrode.geometry.plane import (
 )
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
+from centrode.numerics.rounding import ROUNDED, Rounded
 from centrode.structure.constraints import Constraint, Entity, PointInLink, Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton

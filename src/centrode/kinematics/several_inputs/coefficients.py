@@ -12,8 +12,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.arrays import ARRAYS
-from centrode.algebra.jets import Jet
 from centrode.errors import InputError, Status
 from centrode.kinematics.angular_velocity import attitudes_of, spins_of
 from centrode.kinematics.change_points import BranchedPlan
@@ -34,6 +32,8 @@ from centrode.kinematics.sampling import ORDERS, SampleJudging, fill_columns, fi
 from centrode.kinematics.solve import GREATEST_RESULT, Solved, asked_span, fit_for, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
+from centrode.numerics.arrays import ARRAYS
+from centrode.numerics.jets import Jet
 from centrode.quantities import QUANTITIES
 from centrode.structure.constraints import Positions
 

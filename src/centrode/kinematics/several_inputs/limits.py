@@ -10,7 +10,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.errors import InputError
 from centrode.kinematics.assembly import Assembled
 from centrode.kinematics.change_points import BranchedPlan, Smooth
@@ -25,6 +24,7 @@ from centrode.laws import Uniform
 from centrode.locale import _
 from centrode.model.mechanism import Drive, Mechanism
 from centrode.model.reading import nearest
+from centrode.numerics.arrays import ARRAYS
 from centrode.structure.assur import name_of
 from centrode.structure.groups import Newton
 

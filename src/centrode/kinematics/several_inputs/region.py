@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.algebra.jets import Jet
 from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet, Status
 from centrode.kinematics.change_points import BranchedPlan
 from centrode.kinematics.events import EventScan
@@ -34,6 +33,7 @@ from centrode.kinematics.several_inputs.limits import (
 from centrode.locale import _, speaking
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Drive, Mechanism
+from centrode.numerics.jets import Jet
 from centrode.structure.assur import name_of
 from centrode.structure.groups import Newton
 from centrode.version import __version__

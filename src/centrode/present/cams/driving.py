@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.algebra.arrays import ARRAYS
 from centrode.cams.followers.geometry import FollowerCam, Oscillating
 from centrode.cams.followers.sizing import bounded, follower_cam
 from centrode.errors import CentrodeError
 from centrode.model.checks import pivot_of
+from centrode.numerics.arrays import ARRAYS
 from centrode.present.cams.driving_cam import Array, DrivingCam
 
 if TYPE_CHECKING:

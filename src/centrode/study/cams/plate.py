@@ -19,7 +19,7 @@ from centrode.cams.roller_path import angles_of
 from centrode.errors import MotionError
 from centrode.locale import _
 from centrode.model.follower_cam import PlateCam
-from centrode.algebra.search import roots
+from centrode.numerics.search import roots
 from centrode.sheets.sheet import Scalar
 from centrode.study.cams.plate_bounds import bounds_told
 from centrode.study.cams.said import Asked, CamPart, Rows, Units

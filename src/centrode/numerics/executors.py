@@ -1,0 +1,75 @@
+"""The executors of scans under one name: NumPy, which is always there, and machine code."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.numerics.machine_code import PRESENT
+from centrode.numerics.scans import Array, Scan, Scanned, run_on_arrays
+
+Run: TypeAlias = Callable[..., Scanned]
+Take: TypeAlias = Callable[[npt.ArrayLike | None, Array], Array]
+AUTO, ARRAYS, MACHINE_CODE = "auto", "arrays", "machine code"
+
+# llvmlite is heavy and may be missing: it is imported when the first kernel is asked for
+_kernels = functools.partial(importlib.import_module, "centrode.numerics.machine_code.kernels")
+_streaming = functools.partial(importlib.import_module, "centrode.numerics.machine_code.kernels")
+
+
+def chosen(executor: str) -> str:
+    """The executor that is used where `executor` is asked for: "auto" takes machine code if it can."""
+    if executor not in (AUTO, ARRAYS, MACHINE_CODE):
+        raise ValueError(f"no such executor: {executor}")
+    if executor == AUTO:
+        return MACHINE_CODE if PRESENT else ARRAYS
+    return executor
+
+
+def runner(
+    scan: Scan,
+    executor: str = AUTO,
+    number: npt.DTypeLike = np.float64,
+    lanes_inside: bool = False,
+    relaxed: bool = False,
+    threads: int = 1,
+) -> Run:
+    """A function (parameters, inputs, state=None, out=None, steps=None) that runs a scan.
+
+    Shapes are those of `scans.call_of`; `lanes_inside` and `relaxed` those of `kernel_of`, and nothing to NumPy.
+
+    Raises
+    ------
+    ImportError
+        Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
+    """
+    if chosen(executor) == ARRAYS:
+        return functools.partial(run_on_arrays, scan, number=number)
+    kernel = _kernels().kernel_of(scan, number, lanes_inside=lanes_inside, relaxed=relaxed)
+    return functools.partial(kernel.run, threads=threads)
+
+
+def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, threads: int = 1) -> Take:
+    """A function (inputs, out) that takes a scan's steps part by part, its lanes the same; `out` has the steps' room.
+
+    `parameters` are (parameters, lanes); inputs (inputs, steps) or none; out (outputs, steps, lanes), returned again.
+
+    Raises
+    ------
+    ImportError
+        Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
+    """
+    lanes = np.array(parameters, np.float64)  # of its own: what is handed over once may change afterwards
+    if chosen(executor) == ARRAYS:
+
+        def take(inputs: npt.ArrayLike | None, out: Array) -> Array:
+            return run_on_arrays(scan, lanes, inputs, out=out, steps=out.shape[1]).outputs
+
+        return take
+    stream: Take = _streaming().Stream(_kernels().kernel_of(scan, lanes_inside=True), lanes, threads)
+    return stream

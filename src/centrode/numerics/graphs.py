@@ -1,0 +1,308 @@
+"""Graphs of expressions: named outputs, what they depend on, in which order they are computed."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections import Counter
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, operated, variable
+from centrode.numerics.operations import CONSTANT, OPERATIONS, VARIABLE
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Named expressions that are computed together.
+
+    Attributes
+    ----------
+    outputs : name -> node
+    """
+
+    outputs: Mapping[str, Node]
+
+    @classmethod
+    def of(cls, outputs: Mapping[str, Operand]) -> Graph:
+        """The graph of outputs that may be plain numbers."""
+        return cls({name: as_node(x) for name, x in outputs.items()})
+
+    @cached_property
+    def order(self) -> tuple[Node, ...]:
+        """All nodes once, arguments before what is computed from them."""
+        return tuple(ordered(self.outputs.values()))
+
+    @cached_property
+    def variables(self) -> tuple[str, ...]:
+        """Names of the variables, in the order in which they are met."""
+        return tuple(str(node.detail) for node in self.order if node.operation == VARIABLE)
+
+    @cached_property
+    def counts(self) -> Counter[str]:
+        """How often each operation is carried out."""
+        return Counter(node.operation for node in self.order if node.arguments)
+
+    @cached_property
+    def key(self) -> bytes:
+        """Digest of the outputs, names included: the same in every process."""
+        parts = [name.encode() + b"\0" + node.key for name, node in self.outputs.items()]
+        return hashlib.blake2b(b"".join(parts), digest_size=16).digest()
+
+    def substituted(self, values: Mapping[str, Operand]) -> Graph:
+        """The graph with expressions or numbers in the place of some variables."""
+
+        def replaced(node: Node, _arguments: tuple[Node, ...]) -> Operand | None:
+            return values.get(str(node.detail)) if node.operation == VARIABLE else None
+
+        return Graph(rebuilt(self.outputs, replaced))
+
+
+def ordered(roots: Iterable[Node]) -> list[Node]:
+    """The nodes that roots consist of, arguments first; without recursion, so that depth does not matter."""
+    found: dict[Node, None] = {}
+    stack = [(node, False) for node in reversed(list(roots))]
+    while stack:
+        node, arguments_done = stack.pop()
+        if node in found:
+            continue
+        if arguments_done or not node.arguments:
+            found[node] = None
+            continue
+        stack.append((node, True))
+        stack.extend((x, False) for x in reversed(node.arguments))
+    return list(found)
+
+
+def rebuilt(
+    outputs: Mapping[str, Node], replaced: Callable[[Node, tuple[Node, ...]], Operand | None]
+) -> dict[str, Node]:
+    """Outputs with some nodes replaced, and everything above these built anew.
+
+    `replaced(node, arguments)` gives what stands for a node, its arguments being rebuilt already, or None.
+    """
+    new: dict[Node, Node] = {}
+    for node in ordered(outputs.values()):
+        arguments = tuple(new[x] for x in node.arguments)
+        other = replaced(node, arguments)
+        if other is not None:
+            new[node] = as_node(other)
+        elif arguments != node.arguments:
+            new[node] = operated(node.operation, *arguments)
+        else:
+            new[node] = node
+    return {name: new[node] for name, node in outputs.items()}
+
+
+def split(
+    graph: Graph, names: Iterable[str], prefix: str, only: Container[str] | None = None
+) -> tuple[Graph, Graph]:
+    """What depends on some variables alone, and the rest with that as variables.
+
+    The first graph computes the greatest parts that depend on nothing but `names`; they are variables
+    `prefix 0`, `prefix 1` ... of the second. With `only`, parts are results of the operations it names.
+    """
+    wanted = frozenset(names)
+    alone: set[Node] = set()
+    for node in graph.order:
+        if node.operation == VARIABLE:
+            if node.detail in wanted:
+                alone.add(node)
+        elif node.arguments and all(x in alone or x.operation == CONSTANT for x in node.arguments):
+            alone.add(node)
+    if only is None:
+        tops = {x: None for node in graph.order if node not in alone for x in node.arguments if x in alone}
+        tops |= {node: None for node in graph.outputs.values() if node in alone}
+    else:
+        tops = {node: None for node in graph.order if node in alone and node.operation in only}
+    parts = {f"{prefix} {i}": x for i, x in enumerate(x for x in tops if x.arguments and not x.is_condition)}
+    places = {node: variable(name) for name, node in parts.items()}
+    rest = Graph(rebuilt(graph.outputs, lambda node, _arguments: places.get(node)))
+    return Graph({name: node for name, node in parts.items() if name in rest.variables}), rest
+
+
+# Gradients, from graph to graph: the derivatives of one output by many variables for a few times its cost.
+#
+# Reverse mode: Griewank and Walther, Evaluating Derivatives (2nd ed., 2008), section 3.2.
+
+m = EXPRESSIONS
+Rule = Callable[..., tuple[Operand | None, ...]]
+
+
+def gradient(output: Node, variables: Sequence[Node]) -> list[Operand]:
+    """Partial derivatives of a node by variables, as nodes; plain 0.0 where it does not depend on one.
+
+    At a selection the derivative is that of what is selected; what is not selected may be NaN or infinite
+    without harm. `abs`, `minimum` and `maximum` take the derivative of the side the value is on.
+    """
+    order = ordered([output])
+    needed = _depending(order, variables)
+    guarded = _selected(order)
+    by: dict[Node, Operand] = {output: 1.0}
+    for node in reversed(order):
+        if node not in by or node not in needed or not node.arguments or node.is_condition:
+            continue
+        for argument, factor in zip(
+            node.arguments, _RULES[node.operation](node, *node.arguments), strict=True
+        ):
+            if factor is not None and argument in needed:
+                _collect(by, argument, _chained(node, by[node], factor, node in guarded))
+    return [by.get(x, 0.0) for x in variables]
+
+
+def _depending(order: Sequence[Node], variables: Sequence[Node]) -> set[Node]:
+    """Nodes that depend on one of the variables."""
+    needed = set(variables)
+    for node in order:
+        if any(x in needed for x in node.arguments):
+            needed.add(node)
+    return needed
+
+
+def _selected(order: Sequence[Node]) -> set[Node]:
+    """Nodes below a selection: their derivative may have to vanish although a factor of it is NaN."""
+    found: set[Node] = set()
+    for node in reversed(order):
+        if node in found or node.operation in _SELECTIONS:
+            found.update(node.arguments)
+    return found
+
+
+def _collect(by: dict[Node, Operand], node: Node, part: Operand) -> None:
+    by[node] = by[node] + part if node in by else part
+
+
+def _chained(node: Node, outer: Operand, factor: Operand, guarded: bool) -> Operand:
+    """Product by the chain rule; a condition as the factor selects instead."""
+    if isinstance(factor, Node) and factor.is_condition:
+        return m.where(factor, outer, 0.0)
+    if isinstance(outer, float) and outer == 1.0:
+        return factor
+    product = outer * factor
+    if not guarded or not isinstance(factor, Node) or not isinstance(outer, Node):
+        return product
+    return m.where(m.equal(outer, 0.0), 0.0, product)
+
+
+def _root(node: Node, x: Node) -> tuple[Operand, ...]:
+    return (0.5 / node,)
+
+
+def _quotient(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    reciprocal = 1.0 / b
+    return reciprocal, -(node * reciprocal)
+
+
+def _angle(node: Node, y: Node, x: Node) -> tuple[Operand, ...]:
+    squared = x * x + y * y
+    return x / squared, -(y / squared)
+
+
+def _power(node: Node, x: Node, exponent: Node) -> tuple[Operand, ...]:
+    return exponent * operated("power", x, exponent - 1.0), node * m.log(x)
+
+
+def _least(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    first = m.either(m.less(a, b), m.not_equal(b, b))
+    return first, m.opposite(first)
+
+
+def _greatest(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    first = m.either(m.less(b, a), m.not_equal(b, b))
+    return first, m.opposite(first)
+
+
+def _lesser(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    first = m.either(m.less(a, b), m.not_equal(a, a))
+    return first, m.opposite(first)
+
+
+def _greater(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
+    first = m.either(m.less(b, a), m.not_equal(a, a))
+    return first, m.opposite(first)
+
+
+_SELECTIONS = frozenset({"where", "minimum", "maximum", "least", "greatest"})
+_RULES: Mapping[str, Rule] = {
+    "add": lambda node, a, b: (1.0, 1.0),
+    "subtract": lambda node, a, b: (1.0, -1.0),
+    "multiply": lambda node, a, b: (b, a),
+    "divide": _quotient,
+    "negate": lambda node, x: (-1.0,),
+    "sqrt": _root,
+    "abs": lambda node, x: (m.sign(x),),
+    "sin": lambda node, x: (m.cos(x),),
+    "cos": lambda node, x: (-m.sin(x),),
+    "atan2": _angle,
+    "exp": lambda node, x: (node,),
+    "log": lambda node, x: (1.0 / x,),
+    "power": _power,
+    "minimum": _lesser,
+    "maximum": _greater,
+    "least": _least,
+    "greatest": _greatest,
+    "where": lambda node, condition, a, b: (None, condition, m.opposite(condition)),
+}
+"""For each operation its partial derivative by each argument; a condition stands for 1 where it holds, else 0."""
+
+
+# Graphs as text that a person reads: one line for every intermediate result that is used more than once.
+
+LONGEST = 70
+"""Characters above which an expression gets a line of its own even if it is used once."""
+
+Text = tuple[str, int]
+"""An expression as text and how strongly its outermost sign binds."""
+
+
+def listing(graph: Graph) -> str:
+    """The graph as lines `name = expression`, in the order in which they are computed.
+
+    What is used once stands where it is used; intermediate results are named t1, t2 ...
+    """
+    uses = Counter(x for node in graph.order for x in node.arguments)
+    outputs = set(graph.outputs.values())
+    texts: dict[Node, Text] = {}
+    lines: list[str] = []
+    for node in graph.order:
+        text = _text(node, texts)
+        long = len(text[0]) > LONGEST and uses[node]
+        if node.arguments and (uses[node] > 1 or long or (node in outputs and uses[node])):
+            name = f"t{len(lines) + 1}"
+            lines.append(f"{name} = {text[0]}")
+            text = name, 9
+        texts[node] = text
+    lines += [f"{name} = {texts[node][0]}" for name, node in graph.outputs.items()]
+    return "\n".join(lines)
+
+
+def counted(graph: Graph) -> str:
+    """How many operations of each kind the graph has, the most frequent first."""
+    return ", ".join(f"{number} {operation}" for operation, number in graph.counts.most_common())
+
+
+def _text(node: Node, texts: dict[Node, Text]) -> Text:
+    if node.operation == VARIABLE:
+        return str(node.detail), 9
+    if node.operation == CONSTANT:
+        return _number(float(node.detail))
+    operation = OPERATIONS[node.operation]
+    inside = [texts[x] for x in node.arguments]
+    strength = operation.strength
+    if not operation.sign:
+        return f"{node.operation}({', '.join(text for text, _strength in inside)})", 9
+    if operation.arguments == 1:
+        return operation.sign + _in_brackets(inside[0], strength), strength
+    # of equal strength only the left argument goes without brackets; + and * too, as they are not reassociated
+    left, right = _in_brackets(inside[0], strength), _in_brackets(inside[1], strength + 1)
+    return f"{left} {operation.sign} {right}", strength
+
+
+def _in_brackets(text: Text, strength: int) -> str:
+    return text[0] if text[1] >= strength else f"({text[0]})"
+
+
+def _number(x: float) -> Text:
+    text = repr(int(x)) if x.is_integer() and abs(x) < 1e6 and (x or math.copysign(1, x) > 0) else repr(x)
+    return text, 9 if text[0].isdigit() else 7

@@ -1,0 +1,264 @@
+"""Kernels: scans as machine code, called with arrays."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from collections import OrderedDict
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.numerics.machine_code import cache
+from centrode.numerics.machine_code.compile import VERSIONS, Loaded, Target, host, loaded, object_code
+from centrode.numerics.machine_code.language import Vector
+from centrode.numerics.machine_code.loops import LoopShape, Tables, function_text, with_reciprocals
+from centrode.numerics.scans import Array, Call, Scan, Scanned, call_of
+
+NUMBERS = {np.dtype(np.float64): "double", np.dtype(np.float32): "float"}
+REMEMBERED = 256
+"""Kernels kept in memory; the one that was longest not asked for goes first."""
+PARTS = 4
+"""Parts of the work for each thread, so that none waits long for another."""
+
+_remembered: OrderedDict[tuple[Any, ...], Kernel] = OrderedDict()
+_one_at_a_time = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """A scan as machine code.
+
+    Attributes
+    ----------
+    scan : what it computes
+    tables : what is computed before it runs
+    rest : what it computes in machine code
+    shape : how the scan is carried out
+    """
+
+    scan: Scan
+    tables: Tables
+    rest: Scan
+    shape: LoopShape
+    number: np.dtype[Any]
+    function: Loaded
+
+    def run(
+        self,
+        parameters: npt.ArrayLike | None,
+        inputs: npt.ArrayLike | None,
+        state: npt.ArrayLike | None = None,
+        out: Array | None = None,
+        steps: int | None = None,
+        threads: int = 1,
+    ) -> Scanned:
+        """Run the scan; shapes as in `call_of`. Threads share lanes, or steps if lanes are inside."""
+        call = call_of(self.scan, parameters, inputs, state, out, steps, self.number)
+        if not call.lanes or not call.steps:
+            return Scanned(call.outputs, call.state)
+        width = self.shape.vector.width
+        if call.lanes < width:
+            return _without_padding(self._run(_padded(call, width), 1), call)
+        return self._run(call, threads)
+
+    def _run(self, call: Call, threads: int) -> Scanned:
+        prepared = self.tables.added(call)
+        state = np.empty_like(call.state)
+        if threads == 1:
+            self._call(prepared, state)
+        else:
+            pool = _pool_of(threads, os.getpid())
+            running = [pool.submit(self._call, *part) for part in self._parts(prepared, state, threads)]
+            for done in as_completed(running):
+                done.result()
+        return Scanned(call.outputs, state)
+
+    def _parts(self, call: Call, state: Array, threads: int) -> Iterator[tuple[Call, Array]]:
+        """The call in parts that do not touch one another."""
+        inside, width = self.shape.lanes_inside, self.shape.vector.width
+        length = call.steps if inside else call.lanes // width
+        count = min(threads * PARTS, length)
+        bounds = [i * length // count for i in range(count + 1)]
+        if not inside:
+            bounds = [bound * width for bound in bounds[:-1]] + [call.lanes]
+        for first, last in pairwise(bounds):
+            some = slice(first, last)
+            if inside:
+                yield replace(call, inputs=call.inputs[:, some], outputs=call.outputs[:, some]), state
+            else:
+                yield _of_lanes(call, some), state[:, some]
+
+    def _call(self, call: Call, state: Array) -> None:
+        size, outputs = self.number.itemsize, call.outputs
+        arguments: list[int] = [call.lanes, call.steps]
+        for array in (call.parameters, call.inputs, call.state, state):
+            arguments += [address(array), array.strides[0] // size]
+        output, row, _one = outputs.strides
+        self.function.call(*arguments, address(outputs), output // size, row // size)
+
+
+def kernel_of(
+    scan: Scan,
+    number: npt.DTypeLike = np.float64,
+    width: int | None = None,
+    lanes_inside: bool = False,
+    relaxed: bool = False,
+    target: Target | None = None,
+) -> Kernel:
+    """The kernel of a scan, from memory or disk if it has been compiled before.
+
+    Parameters
+    ----------
+    number : float64 or float32
+    width : numbers in a vector; what the machine's registers hold if left out
+    lanes_inside : take every step along all lanes; only for scans without a state
+    relaxed : what no status depends on may be rounded otherwise than on NumPy (see `relaxing`); faster
+    target : the machine to compile for; this one if left out
+    """
+    if np.dtype(number) not in NUMBERS:
+        raise ValueError(f"numbers of a kernel are float64 or float32, not {np.dtype(number)}")
+    machine = target or host()
+    vector = Vector(NUMBERS[np.dtype(number)], 1)
+    vector = replace(vector, width=width or machine.width(vector.bits))
+    if lanes_inside and scan.state:
+        raise ValueError("a scan with a state takes its steps inside")
+    shape = LoopShape(vector, machine.has_fma, lanes_inside, relaxed)
+    key = (scan.key, shape, machine)
+    with _one_at_a_time:
+        if key in _remembered:
+            _remembered.move_to_end(key)
+            return _remembered[key]
+    kernel = _compiled(scan, shape, np.dtype(number), machine)
+    with _one_at_a_time:
+        _remembered[key] = kernel
+        while len(_remembered) > REMEMBERED:
+            _remembered.popitem(last=False)
+    return kernel
+
+
+def forget() -> None:
+    """Forget the kernels in memory; those on disk stay."""
+    with _one_at_a_time:
+        _remembered.clear()
+
+
+def _compiled(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine: Target) -> Kernel:
+    tables = Tables.of(scan, shape.lanes_inside)
+    rest = tables.rest
+    if shape.relaxed:
+        rest = with_reciprocals(rest, rest.parameters if shape.lanes_inside else rest.inputs)
+    text = function_text(rest, shape)
+    return Kernel(scan, tables, rest, shape, number, _function(text, machine))
+
+
+def _function(text: str, machine: Target) -> Loaded:
+    """The function of a text, from disk if its object code is there."""
+    name = cache.name_of(text, VERSIONS, repr(machine))
+    code = cache.read(name)
+    if code is not None:
+        return loaded(code, machine)
+    code = object_code(text, machine)
+    cache.write(name, code)
+    return loaded(code, machine)
+
+
+def address(array: Array) -> int:
+    """Where an array with a contiguous last axis begins; 0 of an empty one."""
+    if not array.size:
+        return 0
+    # short kernels are called often: this takes half the time of what arrays tell of themselves
+    row = array[(0,) * (array.ndim - 1)]
+    if row.flags.writeable:
+        return ctypes.addressof(ctypes.c_char.from_buffer(row))
+    return int(array.__array_interface__["data"][0])
+
+
+@lru_cache(maxsize=4)
+def _pool_of(threads: int, process: int) -> ThreadPoolExecutor:
+    """Threads that wait for the next call: to begin them takes as long as a short kernel. A fork has none of them."""
+    return ThreadPoolExecutor(threads, "kernel")
+
+
+def _padded(call: Call, width: int) -> Call:
+    """Fewer lanes than a vector has: the last one is repeated."""
+
+    def pad(rows: Array) -> Array:
+        return np.ascontiguousarray(np.pad(rows, ((0, 0), (0, width - call.lanes)), mode="edge"))
+
+    outputs = np.empty((*call.outputs.shape[:2], width), call.outputs.dtype)
+    return Call(pad(call.parameters), call.inputs, pad(call.state), outputs)
+
+
+def _without_padding(scanned: Scanned, call: Call) -> Scanned:
+    call.outputs[...] = scanned.outputs[:, :, : call.lanes]
+    return Scanned(call.outputs, np.ascontiguousarray(scanned.state[:, : call.lanes]))
+
+
+def _of_lanes(call: Call, some: slice) -> Call:
+    return Call(call.parameters[:, some], call.inputs, call.state[:, some], call.outputs[:, :, some])
+
+
+# A kernel whose lanes stay while steps pass by in parts: a call costs little besides its work.
+
+
+class Stream:
+    """A kernel with the lanes inside and their numbers, called with one part of the steps after the other.
+
+    Parameters
+    ----------
+    kernel : one without a state
+    parameters : (parameters, lanes), which stay as they are
+    threads : share the steps of a part
+    """
+
+    def __init__(self, kernel: Kernel, parameters: npt.ArrayLike, threads: int = 1) -> None:
+        self.kernel, self.threads = kernel, threads
+        self.parameters = np.ascontiguousarray(parameters, kernel.number)
+        if self.parameters.ndim != 2 or len(self.parameters) != len(kernel.scan.parameters):
+            raise ValueError(
+                f"expected ({len(kernel.scan.parameters)}, lanes) values, got {self.parameters.shape}"
+            )
+        self.lanes = self.parameters.shape[1]
+        self._alone = threads == 1 and self.lanes >= kernel.shape.vector.width
+        self._below = kernel.tables.of_lanes.below(self.parameters)
+        self._of_lanes = (address(self._below), self._below.strides[0] // kernel.number.itemsize)
+
+    def __call__(self, inputs: npt.ArrayLike | None, out: Array) -> Array:
+        """Take some steps.
+
+        Parameters
+        ----------
+        inputs : (inputs, steps), numbers of a row side by side; none if the scan has none
+        out : (outputs, steps, lanes), is written to; its last axis has to be contiguous
+        """
+        kernel = self.kernel
+        if not self._alone or inputs is None:
+            return kernel.run(
+                self.parameters, inputs, out=out, steps=out.shape[1], threads=self.threads
+            ).outputs
+        rows, size = np.asarray(inputs, kernel.number), kernel.number.itemsize
+        self._check(rows, out)
+        rows = kernel.tables.of_steps.below(rows)
+        if rows.shape[1]:
+            kernel.function.call(
+                self.lanes, rows.shape[1], *self._of_lanes, address(rows), rows.strides[0] // size, 0, 0, 0, 0,
+                address(out), out.strides[0] // size, out.strides[1] // size,
+            )  # fmt: skip
+        return out
+
+    def _check(self, rows: npt.NDArray[Any], out: Array) -> None:
+        """Machine code writes where it is told to: nothing else looks at sizes."""
+        scan, number = self.kernel.scan, self.kernel.number
+        if rows.ndim != 2 or len(rows) != len(scan.inputs) or rows.strides[1] != number.itemsize:
+            raise ValueError(f"expected ({len(scan.inputs)}, n) values, row by row, got {rows.shape}")
+        shape = (len(scan.outputs), rows.shape[1], self.lanes)
+        if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != number.itemsize):
+            raise ValueError(f"out has to be {shape} of {number} with a contiguous last axis")

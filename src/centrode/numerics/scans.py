@@ -1,0 +1,373 @@
+"""One construct for all that repeats: (state', outputs) = F(parameters, inputs of step k, state).
+
+A sweep of positions has no state; a reduction carries its greatest value so far; a fixed-step scheme and a
+Newton iteration carry their unknowns. Lanes are independent of one another: mechanisms of a batch, or
+samples of one mechanism.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
+from centrode.numerics.graphs import Graph, gradient, split
+from centrode.numerics.operations import CONSTANT, VARIABLE
+
+Array: TypeAlias = npt.NDArray[Any]
+LINE = 64
+"""Bytes of a line of the cache, and of the widest vector: one that begins elsewhere is written twice."""
+NEXT = "next "
+"""Before the name of a state: its value after the step, in the scan's graph."""
+
+
+@dataclass(frozen=True)
+class Scan:
+    """What is computed at every step for every lane.
+
+    Attributes
+    ----------
+    parameters : names of numbers of which every lane has its own, the same at all steps
+    inputs : names of numbers of which every step has its own, the same in all lanes
+    outputs : name -> node; written at every step for every lane
+    state : name -> node; what is handed to the next step under this name
+    """
+
+    parameters: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: Mapping[str, Node] = field(default_factory=dict)
+    state: Mapping[str, Node] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        names = [*self.parameters, *self.inputs, *self.state]
+        if len(set(names)) < len(names):
+            raise ValueError("a scan's parameters, inputs and states need different names")
+        unknown = [name for name in self.graph.variables if name not in names]
+        if unknown:
+            raise ValueError(f"neither parameter, input nor state: {', '.join(unknown)}")
+
+    @cached_property
+    def graph(self) -> Graph:
+        """Outputs and next states together."""
+        return Graph({**self.outputs, **{NEXT + name: node for name, node in self.state.items()}})
+
+    @cached_property
+    def key(self) -> tuple[object, ...]:
+        """What tells the scan from all others, the same in every process."""
+        return self.parameters, self.inputs, tuple(self.state), self.graph.key
+
+    def with_graph(self, graph: Graph, parameters: tuple[str, ...], inputs: tuple[str, ...]) -> Scan:
+        """The scan with other expressions under the same names."""
+        outputs = {name: graph.outputs[name] for name in self.outputs}
+        return Scan(parameters, inputs, outputs, {name: graph.outputs[NEXT + name] for name in self.state})
+
+
+class Scanned(NamedTuple):
+    """What a scan gives.
+
+    Attributes
+    ----------
+    outputs : (outputs, steps, lanes)
+    state : (states, lanes), after the last step
+    """
+
+    outputs: Array
+    state: Array
+
+
+@dataclass(frozen=True)
+class Call:
+    """The arrays of one call of a scan, checked and of one type."""
+
+    parameters: Array
+    inputs: Array
+    state: Array
+    outputs: Array
+
+    @property
+    def lanes(self) -> int:
+        """How many lanes there are."""
+        return int(self.outputs.shape[2])
+
+    @property
+    def steps(self) -> int:
+        """How many steps there are."""
+        return int(self.outputs.shape[1])
+
+
+def call_of(
+    scan: Scan,
+    parameters: npt.ArrayLike | None,
+    inputs: npt.ArrayLike | None,
+    state: npt.ArrayLike | None = None,
+    out: Array | None = None,
+    steps: int | None = None,
+    number: npt.DTypeLike = np.float64,
+) -> Call:
+    """The arrays of a call.
+
+    Parameters
+    ----------
+    parameters : (parameters, lanes), or (parameters, 1) for all lanes; may be left out if there are none
+    inputs : (inputs, steps); may be left out if there are none
+    state : (states, lanes) or (states, 1), before the first step; is left as it is
+    out : (outputs, steps, lanes), written to if given; its last axis has to be contiguous
+    steps : how many, if there are no inputs to tell
+    """
+    of_lanes, of_steps = _rows(scan.parameters, parameters, number), _rows(scan.inputs, inputs, number)
+    states = _rows(tuple(scan.state), state, number)
+    lanes = _length("lanes", [of_lanes, states], 1)
+    count = _length("steps", [of_steps], 1 if steps is None else steps)
+    if steps is not None and count != steps:
+        raise ValueError(f"inputs have {count} steps, asked are {steps}")
+    shape = (len(scan.outputs), count, lanes)
+    if out is None:
+        out = np.empty(shape, number)
+    if out.shape != shape or out.dtype != number or (out.size and out.strides[2] != out.itemsize):
+        raise ValueError(f"out has to be {shape} of {np.dtype(number)} with a contiguous last axis")
+    return Call(_spread(of_lanes, lanes), _spread(of_steps, count), _spread(states, lanes).copy(), out)
+
+
+def room_of(outputs: int, steps: int, lanes: int, number: npt.DTypeLike = np.float64) -> Array:
+    """A buffer for outputs that is used again, (outputs, steps, lanes): rows begin where lines of the cache do."""
+    size = np.dtype(number).itemsize
+    row = -(-lanes * size // LINE) * LINE
+    whole = np.empty(outputs * steps * row + LINE, np.uint8)
+    first = -whole.ctypes.data % LINE
+    rows = whole[first : first + outputs * steps * row].view(number)
+    return rows.reshape(outputs, steps, row // size)[:, :, :lanes]
+
+
+def _rows(names: tuple[str, ...], values: npt.ArrayLike | None, number: npt.DTypeLike) -> Array:
+    """Values as (names, n)."""
+    if values is None:
+        if names:
+            raise ValueError(f"values are missing: {', '.join(names)}")
+        return np.empty((0, 1), number)
+    rows = np.asarray(values, number)
+    if rows.ndim != 2 or len(rows) != len(names):
+        raise ValueError(f"expected ({len(names)}, n) values, got {rows.shape}")
+    return rows
+
+
+def _spread(rows: Array, length: int) -> Array:
+    """Rows of that length; one number stands for all. Short kernels are called often, so nothing is done twice."""
+    if not len(rows):
+        return np.empty((0, length), rows.dtype)
+    if rows.shape[1] != length:
+        rows = np.broadcast_to(rows, (len(rows), length))
+    return np.ascontiguousarray(rows)
+
+
+def _length(what: str, arrays: Sequence[Array], otherwise: int) -> int:
+    lengths = {rows.shape[1] for rows in arrays if len(rows)} or {otherwise}
+    if len(lengths) > 1:
+        lengths -= {1}  # one for all
+    if len(lengths) > 1:
+        raise ValueError(f"numbers of {what} differ: {sorted(lengths)}")
+    (length,) = lengths
+    return int(length)
+
+
+# Reductions as states of a scan: what is left of all steps is one number a lane. NaN is left out.
+#
+# Each gives the next values of states and what they start with, for `Scan(state=...)` and its first state.
+
+m = EXPRESSIONS
+
+
+class Reduction(NamedTuple):
+    """States of a scan.
+
+    Attributes
+    ----------
+    state : name -> its next value
+    start : name -> its value before the first step
+    at_end : name -> what the last states and the lane's parameters make, once a lane
+    """
+
+    state: Mapping[str, Node]
+    start: Mapping[str, float]
+    at_end: Mapping[str, Node] = MappingProxyType({})
+
+
+def greatest(name: str, value: Node) -> Reduction:
+    """The greatest value of all steps; NaN if there is none."""
+    return Reduction({name: as_node(m.greatest(value, variable(name)))}, {name: math.nan})
+
+
+def least(name: str, value: Node) -> Reduction:
+    """The least value of all steps; NaN if there is none."""
+    return Reduction({name: as_node(m.least(value, variable(name)))}, {name: math.nan})
+
+
+def total(name: str, value: Node) -> Reduction:
+    """The sum of all values."""
+    return Reduction({name: _more(name, value, value)}, {name: 0.0})
+
+
+def number_of(name: str, value: Node) -> Reduction:
+    """How many values there are."""
+    return Reduction({name: _more(name, value, 1.0)}, {name: 0.0})
+
+
+def total_with_gradient(name: str, value: Node, by: Sequence[Node], moving: Collection[str]) -> Reduction:
+    """The sum and its derivatives: `at_end` has `name` and `name by variable`.
+
+    `moving` are the variables that differ from step to step. A sum is linear in its derivatives by the parts of the
+    formula that stand meanwhile: these are what the states carry, and the chain from there to the variables `by` is
+    gone through once a lane.
+    """
+    variables = [x for x in Graph({"": value}).variables if x not in moving]
+    parts, rest = split(Graph({"": value}), variables, f"{name} part")
+    own = {x: variable(x) for x in rest.variables if x in variables}
+    standing = {**parts.outputs, **own}
+    slopes = Graph.of(
+        dict(zip(standing, gradient(rest.outputs[""], [variable(x) for x in standing]), strict=True))
+    )
+    carried = slopes.substituted(parts.outputs).outputs
+    labels = {x: f"{name} through {x}" for x in standing}
+    state = {name: _more(name, value, value)}
+    state |= {labels[x]: _more(labels[x], value, carried[x]) for x in standing}
+    ends: dict[str, Operand] = {name: variable(name)}
+    for x in by:
+        ends[f"{name} by {x.detail}"] = 0.0
+    for part, node in standing.items():
+        for x, factor in zip(by, gradient(node, by), strict=True):
+            ends[f"{name} by {x.detail}"] = ends[f"{name} by {x.detail}"] + variable(labels[part]) * factor
+    return Reduction(state, dict.fromkeys(state, 0.0), Graph.of(ends).outputs)
+
+
+def greatest_with_gradient(name: str, value: Node, by: Sequence[Node]) -> Reduction:
+    """The greatest value and its derivatives there; of equals the first one counts."""
+    so_far = variable(name)
+    better = m.either(m.less(so_far, value), m.opposite(m.is_number(so_far)))
+    state = {name: m.where(better, value, so_far)}
+    for x, part in zip(by, gradient(value, by), strict=True):
+        label = f"{name} by {x.detail}"
+        state[label] = m.where(better, part, variable(label))
+    return Reduction(state, dict.fromkeys(state, math.nan))
+
+
+def together(*reductions: Reduction) -> Reduction:
+    """Several reductions in one pass."""
+    state = {name: node for one in reductions for name, node in one.state.items()}
+    start = {name: value for one in reductions for name, value in one.start.items()}
+    return Reduction(state, start, {name: node for one in reductions for name, node in one.at_end.items()})
+
+
+def end_of(reduction: Reduction, parameters: Sequence[str]) -> Scan:
+    """The scan of one step that computes `at_end`: parameters and then the last states are its parameters."""
+    return Scan((*parameters, *reduction.state), (), reduction.at_end)
+
+
+def _more(name: str, value: Node, part: Operand) -> Node:
+    so_far = variable(name)
+    return m.where(m.is_number(value), so_far + part, so_far)
+
+
+# Graphs and scans on NumPy: the executor that is always there, and what machine code is compared with.
+
+Number: TypeAlias = Any
+CHUNK = 1 << 15
+"""Numbers in an intermediate result: several of these stay in the cache."""
+
+FUNCTIONS: Mapping[str, Callable[..., Number]] = {
+    "add": np.add,
+    "subtract": np.subtract,
+    "multiply": np.multiply,
+    "divide": np.divide,
+    "negate": np.negative,
+    "sqrt": np.sqrt,
+    "abs": np.abs,
+    "sin": np.sin,
+    "cos": np.cos,
+    "atan2": np.arctan2,
+    "exp": np.exp,
+    "log": np.log,
+    "power": np.power,
+    "minimum": np.minimum,
+    "maximum": np.maximum,
+    "least": np.fmin,
+    "greatest": np.fmax,
+    "less": np.less,
+    "less_equal": np.less_equal,
+    "equal": np.equal,
+    "not_equal": np.not_equal,
+    "both": np.logical_and,
+    "either": np.logical_or,
+    "opposite": np.logical_not,
+    "where": np.where,
+}
+
+
+def evaluate(
+    graph: Graph, values: Mapping[str, Number], number: npt.DTypeLike = np.float64
+) -> dict[str, Number]:
+    """Outputs of a graph at values of its variables; arrays broadcast, NaN and infinity pass without a warning."""
+    left = Counter(x for node in graph.order for x in node.arguments)
+    left.update(graph.outputs.values())
+    found: dict[Any, Number] = {}
+    with np.errstate(all="ignore"):
+        for node in graph.order:
+            if node.operation == VARIABLE:
+                found[node] = np.asarray(values[str(node.detail)], number)
+            elif node.operation == CONSTANT:
+                found[node] = np.asarray(node.detail, number)[()]
+            else:
+                found[node] = FUNCTIONS[node.operation](*(found[x] for x in node.arguments))
+            for x in node.arguments:
+                left[x] -= 1
+                if not left[x]:
+                    del found[x]  # memory stays that of the widest place of the graph
+    return {name: found[node] for name, node in graph.outputs.items()}
+
+
+def run_on_arrays(
+    scan: Scan,
+    parameters: npt.ArrayLike | None,
+    inputs: npt.ArrayLike | None,
+    state: npt.ArrayLike | None = None,
+    out: Array | None = None,
+    steps: int | None = None,
+    number: npt.DTypeLike = np.float64,
+) -> Scanned:
+    """Run a scan on NumPy arrays; shapes as in `call_of`."""
+    call = call_of(scan, parameters, inputs, state, out, steps, number)
+    if not scan.state:
+        _all_steps(scan, call, number)
+        return Scanned(call.outputs, call.state)
+    rows = call.state
+    for k in range(call.steps):
+        found = evaluate(scan.graph, _values(scan, call, slice(k, k + 1), rows), number)
+        for i, name in enumerate(scan.outputs):
+            call.outputs[i, k] = found[name]
+        rows = np.array(
+            [np.broadcast_to(found[NEXT + name], (1, call.lanes))[0] for name in scan.state], number
+        )
+    return Scanned(call.outputs, rows)
+
+
+def _all_steps(scan: Scan, call: Call, number: npt.DTypeLike) -> None:
+    """Steps that do not hang on each other, as many at a time as the cache holds."""
+    size = max(1, CHUNK // max(1, call.lanes))
+    for first in range(0, call.steps, size):
+        some = slice(first, first + size)
+        found = evaluate(scan.graph, _values(scan, call, some, call.state), number)
+        for i, name in enumerate(scan.outputs):
+            call.outputs[i, some] = found[name]
+
+
+def _values(scan: Scan, call: Call, steps: slice, state: Array) -> dict[str, Array]:
+    """Values of all variables: parameters and states along the last axis, inputs along the one before."""
+    values = {name: call.parameters[i] for i, name in enumerate(scan.parameters)}
+    values |= {name: call.inputs[i, steps, None] for i, name in enumerate(scan.inputs)}
+    return values | {name: state[i] for i, name in enumerate(scan.state)}
