@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import mpmath as mp
 
 Number = Any
-TARGET = Path(__file__).parents[1] / "src" / "centrode" / "algebra" / "machine_code" / "polynomials.py"
+TARGET = Path(__file__).parents[1] / "src" / "centrode" / "numerics" / "machine_code" / "polynomials.py"
 DIGITS = 60
 GRID = 40
 """Places looked at between two neighbouring extrema."""

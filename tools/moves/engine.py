@@ -257,9 +257,9 @@ class Moves:
             if not others or not all(same) or wanted in plan.source.definitions:
                 return False
         for occurrence in names.occurrences:
-            if occurrence.name == imported.local and occurrence.scope.resolve(occurrence.name) is scope:
-                if occurrence.scope.resolve(wanted) not in (None, scope):
-                    return False
+            is_used = occurrence.name == imported.local and occurrence.scope.resolve(occurrence.name) is scope
+            if is_used and occurrence.scope.resolve(wanted) not in (None, scope):
+                return False
             if occurrence.name == wanted and occurrence.scope.resolve(wanted) is None:
                 return False  # a builtin
         return True
@@ -385,7 +385,7 @@ class Moves:
         """Modules that would import each other as they are loaded."""
         needs: dict[str, set[str]] = {}
         for source in self.modules.values():
-            plan = self.by_module.get(source.module)
+            plan = self.by_module.get(source.module or "")
             here = self.new_module(source.module or "")
             found = needs.setdefault(here, set())
             if plan:
@@ -536,7 +536,8 @@ class Moves:
             new = self.dotted_names(old, not is_prose)
             if is_prose:
                 new = _words(new, {**self._classes, **words} if source.is_python else self._classes)
-            elif source.text[max(0, start - 9) : start].rstrip().endswith(("cast(", "Alias =")):  # a type in quotes
+            elif source.text[max(0, start - 9) : start].rstrip().endswith(("cast(", "Alias =")):
+                # a type in quotes
                 new = re.sub(r"\w+", lambda m: words.get(m[0], m[0]), new)
             if new != old:
                 yield Edit(start, end, new)
@@ -751,7 +752,7 @@ def _is_typing_block(statement: ast.stmt) -> bool:
 
 
 def _first_line(statement: ast.stmt) -> int:
-    decorators = getattr(statement, "decorator_list", [])
+    decorators: list[ast.expr] = getattr(statement, "decorator_list", [])
     return min([statement.lineno, *(decorator.lineno for decorator in decorators)])
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOMS = (
-    "algebra", "geometry", "laws", "model", "structure", "kinematics", "equations", "dynamics", "analysis", "cams",
+    "numerics", "geometry", "laws", "model", "structure", "kinematics", "equations", "dynamics", "analysis", "cams",
     "sweeps", "study", "present", "report",
 )  # fmt: skip
 """Folders of the package that mutants are drawn from."""

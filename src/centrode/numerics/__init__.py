@@ -1,1 +1,1 @@
-"""Numerical methods that know nothing of mechanisms."""
+"""Numerical methods that know nothing of mechanisms: jets, rounding, expressions, searches, machine code."""

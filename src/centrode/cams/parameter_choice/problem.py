@@ -210,8 +210,8 @@ class Measure:
     whole : bool
         It belongs to the path as a whole.
     of : callable
-        Of paths (`BatchPaths`) and contact: (angles, designs), or (1, designs) of the whole, or as many times the angles;
-        multiplied by -1 if `least`.
+        Of paths (`BatchPaths`) and contact: (angles, designs), or (1, designs) of the whole, or as many times the
+        angles; multiplied by -1 if `least`.
     """
 
     name: str
