@@ -326,11 +326,11 @@ def frames(curve: PolarCurve, phi: Array) -> Frames:
     phi = np.asarray(phi, dtype=np.float64)
     with np.errstate(invalid="ignore", divide="ignore"):
         rho = radius_jet(curve, phi, 3)
-        slope, value = rho.slope(), rho.lowered()
+        slope, value = rho.slope(), rho.lower_order()
         gamma = JETS.atan2(slope, value)
         speed = JETS.sqrt(slope * slope + value * value)
         turning = -gamma.slope() + 1.0
-        curvature = turning / speed.lowered()
+        curvature = turning / speed.lower_order()
     psi = phi - gamma.value
     sine, cosine = np.sin(psi), np.cos(psi)
     return Frames(

@@ -147,7 +147,7 @@ class Component:
 
     def slope(self, state: State) -> Jet:
         pairs = zip(self._direction(state), self._place(state), strict=True)
-        parts = [u.lowered() * x.slope() for u, x in pairs]
+        parts = [u.lower_order() * x.slope() for u, x in pairs]
         return sum(parts[1:], parts[0])
 
     def pulls(self, state: State) -> tuple[Wrench, ...]:
@@ -208,7 +208,7 @@ class Spin:
         return self.sense * state.angle(self.joint).value
 
     def slope(self, state: State) -> Jet:
-        along = [x.lowered() for x in self._axis(state)]
+        along = [x.lower_order() for x in self._axis(state)]
         pairs = zip(state.spin(self.link), state.spin(self.base), along, strict=True)
         parts = [(own - other) * axis for own, other, axis in pairs]
         return sum(parts[1:], parts[0])

@@ -238,7 +238,7 @@ class State:
         if found is None:
             # half the sum of a x a' over the axes
             turns = [
-                cross(tuple(x.lowered() for x in axis), tuple(x.slope() for x in axis))
+                cross(tuple(x.lower_order() for x in axis), tuple(x.slope() for x in axis))
                 for axis in self.attitude(link)
             ]
             found = tuple((a + b + c) * 0.5 for a, b, c in zip(*turns, strict=True))
@@ -248,7 +248,7 @@ class State:
 
     def turned_about(self, link: str, direction: Vector3) -> Jet:
         """On the sphere: the turning of a link about one of its own directions; it has derivatives, but no value."""
-        axis = tuple(x.lowered() for x in self.heading(link, direction))
+        axis = tuple(x.lower_order() for x in self.heading(link, direction))
         along = dot(self.spin(link), axis)  # type: ignore[arg-type]
         return Jet((0.0, along.coefficients[0], along.coefficients[1] * 0.5))
 

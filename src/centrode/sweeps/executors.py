@@ -13,7 +13,7 @@ from centrode.kinematics.compiled.trace import Untraceable
 from centrode.locale import _
 from centrode.model.reading import nearest, shown
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.executors import AUTO, MACHINE_CODE, chosen
+from centrode.numerics.executors import AUTO, MACHINE_CODE, choose_executor
 from centrode.structure.dimensions import Dimensions, dimensions_of
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor, Results, SweepTask
@@ -92,7 +92,7 @@ def _traced(task: SweepTask, design: Design, threads: int, kernels: str) -> Mach
 
 def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tuple[Executor, str]:
     """Derivatives are those of expressions: on arrays these are computed by NumPy."""
-    kernels = chosen(name) if name == AUTO else name
+    kernels = choose_executor(name) if name == AUTO else name
     try:
         found = _traced(task, design, threads, kernels)
     except Untraceable as why:

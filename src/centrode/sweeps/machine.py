@@ -41,7 +41,7 @@ from centrode.locale import mark
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE, streamer
 from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
-from centrode.numerics.graphs import Graph, gradient, rebuilt, split
+from centrode.numerics.graphs import Graph, gradient, rebuilt, split_graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
 from centrode.numerics.scans import Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
@@ -178,7 +178,7 @@ class Slopes:
             for name, part in of_folds.items():
                 total = total + part * self.states_of(name).at_end[path]
             found[path] = total
-        return dict(Graph.of(found).substituted(self.standing).outputs)
+        return dict(Graph.of(found).substitute(self.standing).outputs)
 
     def of_fold(self, fold: Fold) -> Reduction:
         """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""
@@ -218,7 +218,7 @@ class Slopes:
         still = self._without_standing(fold.value)
         jumping = self.moving | self.standing.keys()
         variables = [x for x in Graph({"": still}).variables if x not in jumping]
-        parts, rest = split(Graph({"": still}), variables, f"{fold.name} part")
+        parts, rest = split_graph(Graph({"": still}), variables, f"{fold.name} part")
         standing = {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
         factors = {x: self.of_node(node) for x, node in standing.items()}
         moved = [x for x, factor in factors.items() if any(map(_is_something, factor.values()))]
@@ -231,7 +231,7 @@ class Slopes:
                 ends[path] = (
                     ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
                 )
-        outputs = found.substituted({**self.standing, **parts.outputs}).outputs
+        outputs = found.substitute({**self.standing, **parts.outputs}).outputs
         return States(outputs, {path: as_node(end) for path, end in ends.items()})
 
     def _without_standing(self, node: Node) -> Node:

@@ -147,7 +147,7 @@ def _seen(
     back = reversed_rotor(base.rotor)
     origin, rotor = turned(subtract(pose.origin, base.origin), back), turned(pose.rotor, back)
     x, y, cosine, sine = (_jet(number) for number in (*origin, *rotor))
-    spin = cosine.lowered() * sine.slope() - sine.lowered() * cosine.slope()
+    spin = cosine.lower_order() * sine.slope() - sine.lower_order() * cosine.slope()
 
     def along(number: object) -> Array:
         values = np.broadcast_to(np.asarray(number, dtype=np.float64), (1, len(present)))[0]

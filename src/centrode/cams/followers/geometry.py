@@ -264,12 +264,12 @@ class Point:
     def contact(self, guide: Guidance, phi: Array, lift: Array, sense: float) -> FollowerContact:
         rise, angle = jet_of(lift), Jet.variable(phi, ORDER)
         x, y = turned(guide.centre(JETS, rise), angle, sense)
-        across, up = (one.lowered() for one in turned(guide.direction(JETS, rise), angle, sense))
+        across, up = (one.lower_order() for one in turned(guide.direction(JETS, rise), angle, sense))
         u, v = x.slope(), y.slope()
         pressure = JETS.atan2(u * across + v * up, (u * up - v * across) * sense)
         length = JETS.sqrt(u * u + v * v)
         omega = JETS.atan2(-v * sense, u * sense)
-        curvature = omega.slope() * sense / length.lowered()
+        curvature = omega.slope() * sense / length.lower_order()
         stretch = -curvature * self.roller + 1.0
         centre, normal = _stacked(x.value, y.value), _direction(omega.value)
         bend = 1.0 / curvature.value - self.roller
@@ -306,10 +306,10 @@ class Face:
         omega = normal_in_frame + Jet.variable(phi, ORDER) * sense
         turning = omega.slope()
         foot = distance.slope() / turning
-        bend = distance.lowered().lowered() + foot.slope() / turning.lowered()
+        bend = distance.lower_order().lower_order() + foot.slope() / turning.lower_order()
         normal, ahead = _direction(omega.value), _ahead(omega.value)
         place = distance.value[:, None] * normal + foot.value[:, None] * ahead
-        along, pressure = _on_face(guide, normal_in_frame.lowered(), foot, sense)
+        along, pressure = _on_face(guide, normal_in_frame.lower_order(), foot, sense)
         return FollowerContact(
             phi,
             lift[0],

@@ -131,7 +131,7 @@ class _Inertial:
 
     def _of_ring(self, link: str, part: About) -> Vector3:
         """A ring has the moment of momentum (omega . e) e."""
-        x, y, z = (axis.lowered() for axis in self.state.heading(link, part.direction))
+        x, y, z = (axis.lower_order() for axis in self.state.heading(link, part.direction))
         u, v, w = self.state.spin(link)
         along = dot((u, v, w), (x, y, z))
         return self._first(along * x), self._first(along * y), self._first(along * z)

@@ -44,7 +44,7 @@ from centrode.locale import _
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulation import MOST_TURNS, Simulation
-from centrode.numerics.executors import ARRAYS, chosen
+from centrode.numerics.executors import ARRAYS, choose_executor
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 
@@ -396,9 +396,9 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
             _('give duration, or scheme = "adaptive"'),
         )
     field = setting.field
-    if chosen(executor) != ARRAYS:
+    if choose_executor(executor) != ARRAYS:
         try:
-            scan = compiled(setting.rows, setting.driving, chosen(executor))
+            scan = compiled(setting.rows, setting.driving, choose_executor(executor))
         except Untraceable as reason:
             if executor != "auto":
                 raise InputError("executor", _(reason.reason), _('use executor = "auto"')) from None

@@ -220,7 +220,7 @@ def compiled(rows: ReducedFunctions, driving: Driving, executor: str) -> Compile
         moved = begun if before is None else {k: begun[k] + share * step * before[k] for k in NAMES}
         time = variable(BEGINNING) + share * step
         places: dict[str, Operand] = {PARAMETER: moved["value"], RATE_VARIABLE: moved["speed"], TIME: time}
-        return dict(rates.substituted(places).outputs)
+        return dict(rates.substitute(places).outputs)
 
     k1 = at_stage(None, 0.0)
     k2 = at_stage(k1, 0.5)
@@ -263,7 +263,7 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
         **{name: moment * rate for name, moment in powers.items()},
     }
     graph = Graph.of(outputs)
-    return graph.substituted(_turns(rows, graph))
+    return graph.substitute(_turns(rows, graph))
 
 
 def _refuse_events(rows: ReducedFunctions) -> None:

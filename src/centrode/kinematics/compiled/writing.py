@@ -16,7 +16,7 @@ from centrode.kinematics.compiled.variables import PARAMETER, boxed
 from centrode.kinematics.solve import Solved
 from centrode.numerics.executors import runner
 from centrode.numerics.expressions import Node, as_node
-from centrode.numerics.graphs import Graph, ordered
+from centrode.numerics.graphs import Graph, topological_order
 from centrode.numerics.machine_code.loops import FUNCTIONS
 from centrode.numerics.operations import VARIABLE
 from centrode.numerics.scans import Scan
@@ -94,7 +94,7 @@ class Writer:
             as_node(x) for name, nodes in self.outputs.items() if name not in LAST_BITS for x in nodes.ravel()
         ]
         kinds: dict[Node, frozenset[bool]] = {}
-        for node in ordered(asked):
+        for node in topological_order(asked):
             own = {str(node.detail) in self.places} if node.operation == VARIABLE else set()
             kinds[node] = frozenset(own).union(*(kinds[x] for x in node.arguments))
             # what depends on places alone, or on mechanisms alone, is computed on NumPy
