@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeAlias
 from centrode.dynamics.state import Centre, Place, Radial, State
 from centrode.dynamics.wrenches import Vector, Wrench, couple, on_link, on_point
 from centrode.errors import InputError
-from centrode.geometry.plane import turned
+from centrode.geometry.plane import rotate_vector
 from centrode.geometry.sphere import cross, unit, unit_vector
 from centrode.locale import _
 from centrode.model.loads import Load
@@ -74,7 +74,7 @@ class Slide:
         guide = state.mechanism.guide(self.guide)
         if not state.on_sphere:
             (x, y), (cosine, sine) = guide.unit, place_of(state.rotor(guide.on))
-            return turned((x, y), (cosine, sine))
+            return rotate_vector((x, y), (cosine, sine))
         spot = guide.pole.at if isinstance(guide.pole, Placed) else guide.pole
         assert spot is not None
         pole = (

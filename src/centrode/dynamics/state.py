@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.geometry.sphere import Attitude, carried, cross, dot, unit_vector
+from centrode.geometry.sphere import Attitude, cross, dot, unit_vector, vector_in_frame
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import PlanLayout
 from centrode.kinematics.sampling import Samples
@@ -227,7 +227,7 @@ class State:
         """On the sphere: a direction of a link's own axes, or of the frame's, as it stands in the frame."""
         if link == FRAME:
             return tuple(_constant(float(x)) for x in direction)
-        x, y, z = carried(self.attitude(link), direction)
+        x, y, z = vector_in_frame(self.attitude(link), direction)
         return x, y, z
 
     def spin(self, link: str) -> Place:

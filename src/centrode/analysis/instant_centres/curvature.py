@@ -19,7 +19,7 @@ from centrode.analysis.instant_centres.bodies import (
     vectors,
 )
 from centrode.errors import InputError, NotComputedYet, Status
-from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
+from centrode.geometry.plane import PlanePose, Vector, reversed_rotor, rotate_vector, subtract
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.motion import coordinates_of, judgements_of, labels_of, named
@@ -145,7 +145,7 @@ def _seen(
     """Three derivatives of the pose of a link in the axes of another."""
     pose, base = _pose(mechanism, at, link), _pose(mechanism, at, against)
     back = reversed_rotor(base.rotor)
-    origin, rotor = turned(subtract(pose.origin, base.origin), back), turned(pose.rotor, back)
+    origin, rotor = rotate_vector(subtract(pose.origin, base.origin), back), rotate_vector(pose.rotor, back)
     x, y, cosine, sine = (_jet(number) for number in (*origin, *rotor))
     spin = cosine.lower_order() * sine.slope() - sine.lower_order() * cosine.slope()
 
@@ -161,12 +161,12 @@ def _seen(
     )
 
 
-def _pose(mechanism: Mechanism, at: Positions, name: str) -> Pose:
+def _pose(mechanism: Mechanism, at: Positions, name: str) -> PlanePose:
     guide = sliders_of(mechanism).get(name)
     if guide is None:
-        return Pose(*at.poses[name])
+        return PlanePose(*at.poses[name])
     x, y = at.points[guide.point]
-    return Pose((x, y), Pose(*at.poses[guide.on]).rotor)
+    return PlanePose((x, y), PlanePose(*at.poses[guide.on]).rotor)
 
 
 def _jet(number: object) -> Jet:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
-from centrode.geometry.plane import Vector, add, cross, reversed_rotor, rotor_of, subtract, turned
+from centrode.geometry.plane import Vector, add, cross, reversed_rotor, rotate_vector, rotor_of, subtract
 from centrode.kinematics.assembly_mode import side_names, side_words, stated_side
 from centrode.kinematics.dyads import solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
@@ -271,7 +271,7 @@ def placed_numbers(
     for guide in mechanism.guides:
         if isinstance(guide.through, Placed):
             origin, rotor = poses[guide.on]
-            inside = turned(subtract(points[guide.point], origin), reversed_rotor(rotor))
+            inside = rotate_vector(subtract(points[guide.point], origin), reversed_rotor(rotor))
             found |= {f"guides.{guide.id}.through.{axis}": x for axis, x in zip("xy", inside, strict=True)}
     return found
 
@@ -291,10 +291,10 @@ def _pose(
     if angle is None or known is None:
         return False
     rotor = rotor_of(ARRAYS, angle)
-    origin = subtract(points[known], turned(local[known], rotor))
+    origin = subtract(points[known], rotate_vector(local[known], rotor))
     poses[name] = origin, rotor
     for point, coordinates in local.items():
-        points.setdefault(point, add(origin, turned(coordinates, rotor)))
+        points.setdefault(point, add(origin, rotate_vector(coordinates, rotor)))
     return True
 
 

@@ -23,7 +23,7 @@ from centrode.analysis.redesign.candidates import (
 )
 from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
 from centrode.errors import CentrodeError, InputError, NotComputedYet
-from centrode.geometry.plane import Circle, dot, subtract
+from centrode.geometry.plane import PlaneCircle, dot, subtract
 from centrode.kinematics.dyads import loci_of, solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
 from centrode.kinematics.prepared import Ready, ready
@@ -94,9 +94,9 @@ def _greatest(kinematics: Kinematics, group: Group, at: Positions, choices: Side
     one, other = loci_of(group, ARRAYS, numbers, at, choices)
     if hasattr(one, "half"):
         return _sine(one) ** 2 * _sine(other) ** 2
-    if not isinstance(one, Circle):
+    if not isinstance(one, PlaneCircle):
         return 1.0
-    if not isinstance(other, Circle):
+    if not isinstance(other, PlaneCircle):
         return one.radius**2
     return (2.0 * one.radius * other.radius) ** 2
 

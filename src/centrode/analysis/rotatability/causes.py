@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, Pair, Watched
-from centrode.geometry.plane import Vector, place, subtract, turned
+from centrode.geometry.plane import Vector, place, rotate_vector, subtract
 from centrode.geometry.plane import cross as plane_cross
 from centrode.geometry.plane import dot as plane_dot
 from centrode.geometry.sphere import cross, dot, tangent
@@ -362,7 +362,7 @@ def _between_guides(
 ) -> Pair:
     bodies = [line.on if isinstance(line, Rail) else carriage for line in lines]
     one, other = (
-        turned(kinematics.numbers.direction[line.guide], at.poses[body or "frame"].rotor)
+        rotate_vector(kinematics.numbers.direction[line.guide], at.poses[body or "frame"].rotor)
         for line, body in zip(lines, bodies, strict=True)
     )
     return plane_dot(one, other), plane_cross(one, other)
@@ -409,7 +409,7 @@ def _to_normal(kinematics: Kinematics, rod: Any, line: Locus, carriage: str | No
     assert isinstance(line, (Rail, Slot))
     body = line.on if isinstance(line, Rail) else carriage
     rotor = at.poses[body or "frame"].rotor
-    direction = turned(kinematics.numbers.direction[line.guide], rotor)
+    direction = rotate_vector(kinematics.numbers.direction[line.guide], rotor)
     arm = subtract(at.points[rod.point], at.points[rod.centre])
     return plane_cross(direction, arm), plane_dot(direction, arm)
 
@@ -419,7 +419,7 @@ def _of_aim(kinematics: Kinematics, group: Aim, at: Positions) -> Pair:
     _through, direction = aim_curve(group, kinematics.numbers)
     pose = at.poses[group.link]
     pivot = place(pose, kinematics.numbers.local[group.link][group.pivot])
-    along = turned(direction, pose.rotor)
+    along = rotate_vector(direction, pose.rotor)
     arm = subtract(at.points[group.target], pivot)
     return plane_cross(along, arm), plane_dot(along, arm)
 

@@ -22,7 +22,17 @@ from centrode.dynamics.wrenches import NOWHERE, Vector, Wrench, couple, on_frame
 from centrode.geometry import sphere as space
 from centrode.geometry.plane import dot as plane_dot
 from centrode.geometry.plane import subtract as plane_subtract
-from centrode.geometry.sphere import Attitude, add, basis, combined, cross, dot, subtract, times, unit
+from centrode.geometry.sphere import (
+    Attitude,
+    add,
+    basis,
+    cross,
+    dot,
+    linear_combination,
+    subtract,
+    times,
+    unit,
+)
 from centrode.model.mechanism import Gear, Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import (
@@ -264,7 +274,7 @@ class OnSphere:
         place = at.points[point.name]
         unit = 1.0 / self.radius if self.by_moment(constraint) else 1.0
         first, second = basis(ARRAYS, place)
-        force = times(unit, combined((row[point][0], first), (row[point][1], second)))
+        force = times(unit, linear_combination((row[point][0], first), (row[point][1], second)))
         there = times(self.radius, place)
         others = [on_link(entity.name, times(-1.0, force), there) for entity in row if entity is not point]
         return on_point(point.name, force, there), *others

@@ -19,7 +19,7 @@ from centrode.dynamics.reduction import Reducer
 from centrode.dynamics.state import State
 from centrode.dynamics.wrenches import Wrench, couple
 from centrode.errors import InputError, NotComputedYet
-from centrode.geometry.plane import turned
+from centrode.geometry.plane import rotate_vector
 from centrode.kinematics.prepared import Ready
 from centrode.locale import _
 from centrode.model.loads import Load
@@ -694,7 +694,7 @@ def with_friction(parts: dict[str, Array], rubbed: Rubbed, state: State) -> None
     """Add friction to the force and the moment of each guide, whose lines exert it."""
     for k, which in _guided(rubbed, state.mechanism):
         guide = state.mechanism.guides[which]
-        unit = turned(guide.unit, place_of(state.rotor(guide.on)))
+        unit = rotate_vector(guide.unit, place_of(state.rotor(guide.on)))
         for axis in range(2):
             along = column(unit[axis], len(rubbed.amounts))
             parts["guide_force"][:, which, axis] += rubbed.amounts[:, k] * along

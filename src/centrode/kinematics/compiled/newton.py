@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from centrode.geometry.plane import Vector, dot, is_literal_zero, turned
+from centrode.geometry.plane import Vector, dot, is_literal_zero, rotate_vector
 from centrode.kinematics.compiled.variables import FIRST, NODE_JETS, SHARE, STEP, TURN, whole_turns
 from centrode.kinematics.higher_class.system import LinkChain, Posture, cut, needed, plain
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
@@ -74,7 +74,7 @@ def moved(chain: LinkChain, posture: Posture, by: Sequence[Operand], far: bool =
         name = follow.entity.name
         if follow.entity.kind == "link":
             turn = by[follow.turn]
-            rotors[name] = _righted(turned(rotors[name], _rotor(turn, far)))
+            rotors[name] = _righted(rotate_vector(rotors[name], _rotor(turn, far)))
             angles[name] = angles[name] + turn
         if follow.by is None:
             x, y = places[name]

@@ -241,7 +241,7 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
         powers = share[:, None] ** np.arange(6)
         value = total(whole * powers[:, :, None])
         parameter = here.parameter + value[:, -1]
-        state = around.blank(lanes).righted(value[:, :-1])
+        state = around.blank(lanes).normalise(value[:, :-1])
         limit = reach(around, lanes, here, here.along, parameter, state)
         with np.errstate(all="ignore"):
             change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / there.arc
@@ -363,7 +363,7 @@ def crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: Reache
     share = float(np.clip(base.size[0] / (base.size[0] - there.places.size[0]), 0.0, 1.0))
     middle = total(quintic(base, there) * share ** np.arange(6)[:, None])
     system = around.blank(lane)
-    state = system.righted(middle[:, :-1])
+    state = system.normalise(middle[:, :-1])
     saddle = _Saddle(around, lane, base.parameter + middle[:, -1], state)
     try:
         with np.errstate(all="ignore"):

@@ -68,7 +68,7 @@ def close(
     known = flattened(needed(group, at), shape)
     system = GroupSystem(group, numbers, known.mapped(plain), len(flat))
     foretold = tracks.foretell(flat, which)
-    start = system.righted(foretold.state)
+    start = system.normalise(foretold.state)
     with np.errstate(all="ignore"):
         if rough:
             right, state, linear = ~(foretold.beyond | foretold.limit), start, None
@@ -98,7 +98,7 @@ def follow(
     system = GroupSystem(group, around.kinematics.taken(lanes).numbers, known, len(parameter))
     first = np.arange(0, len(parameter), steps)
     state: Any = tracks.foretell(parameter[first].real, lanes[first]).state + 0j
-    state = system.taken(first).righted(state)
+    state = system.taken(first).normalise(state)
     states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
     for k in range(steps):
         found = newton(system.taken(first + k), state)

@@ -216,7 +216,7 @@ def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions)
     elif angle is None and len(known) > 1:
         first, second = known[:2]
         ends = local[first], local[second], guess.points[first], guess.points[second]
-        pose = space.righted(ARRAYS, space.pose_by_two_points(ARRAYS, *ends))
+        pose = space.normalise(ARRAYS, space.pose_by_two_points(ARRAYS, *ends))
     if pose is None:
         return False
     guess.poses[link] = pose

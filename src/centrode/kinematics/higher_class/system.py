@@ -17,16 +17,16 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.geometry.plane import (
-    Pose,
+    PlanePose,
     Vector,
     cross,
     dot,
     is_literal_zero,
     place,
     pose_with_point,
+    rotate_vector,
     rotor_of,
     subtract,
-    turned,
 )
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics
@@ -370,15 +370,15 @@ class GroupSystem:
 
     def moved(self, state: Array, motion: GroupMotion) -> Array:
         """A state moved a little."""
-        return self.righted(self.state_of(self.at(ARRAYS, self.known, state, motion)))
+        return self.normalise(self.state_of(self.at(ARRAYS, self.known, state, motion)))
 
-    def righted(self, state: Array) -> Array:
+    def normalise(self, state: Array) -> Array:
         """A state whose links keep their own distances, and whose angles are those of its links."""
         at, space = self.at(ARRAYS, self.known, state), self.numbers.space
         for name in self.group.points:
             at.points[name] = space.moved_point(ARRAYS, at.points[name], (0.0, 0.0))
         for name in self.group.links:
-            at.poses[name] = space.righted(ARRAYS, at.poses[name])
+            at.poses[name] = space.normalise(ARRAYS, at.poses[name])
         for name in self._turns:
             near = at.angles[name]
             at.angles[name] = near + space.turn(
@@ -579,10 +579,10 @@ class LinkChain:
                 at.points[name] = place(at.poses[follow.by.link], self.numbers.local[follow.by.link][name])
         return at
 
-    def _pose(self, follow: Follow, posture: Posture, motion: Sequence[Number], at: Positions) -> Pose:
+    def _pose(self, follow: Follow, posture: Posture, motion: Sequence[Number], at: Positions) -> PlanePose:
         turn, rotor = motion[follow.turn], posture.rotors[follow.entity.name]
         if _moves(turn):
-            rotor = turned(rotor, _rotor_of_zero(turn))
+            rotor = rotate_vector(rotor, _rotor_of_zero(turn))
         there = self._shifted(follow, posture, motion) if follow.by is None else at.points[follow.by.point]
         return pose_with_point(self._pivot(follow), there, rotor)
 
@@ -611,7 +611,7 @@ class LinkChain:
         over = 1.0 / self.unit
         found = []
         for leaf in self.leaves:
-            x, y = turned(self.arm(leaf), posture.rotors[leaf.constraint.link])
+            x, y = rotate_vector(self.arm(leaf), posture.rotors[leaf.constraint.link])
             found.append((x * over, y * over))
         return found
 

@@ -301,7 +301,7 @@ class Rounds:
         self.passed[who] += 1
         before = self.around.before(places, lane)
         system = self.around.system(needed(self.around.equations, before), lane)
-        found = newton(system, system.righted(foretold))
+        found = newton(system, system.normalise(foretold))
         state = np.where(found.found[:, None], found.state, np.nan)
         first = turns == 0
         self.begun[who[first]] = state[first]
@@ -490,7 +490,7 @@ def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: CurvePla
         end = total(walkers.last[who])
     ahead = np.where(np.isfinite(value), value - end, taylor)
     parameter = here.parameter + ahead[:, -1]
-    return parameter, around.blank(walkers.lane[who]).righted(here.state + ahead[:, :-1])
+    return parameter, around.blank(walkers.lane[who]).normalise(here.state + ahead[:, :-1])
 
 
 def _shorten(walkers: Walkers, who: Lanes) -> None:
