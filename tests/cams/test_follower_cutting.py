@@ -21,7 +21,7 @@ from centrode.cams.followers.geometry import (
 )
 from centrode.cams.followers.manufacture import follower_outlines, joined
 from centrode.errors import InputError
-from centrode.laws.segments import Segment, SegmentedLaw
+from centrode.laws.segments import LawSegment, SegmentedLaw
 from follower_motions import Array, Lift, lift_of, rise_dwell_fall_dwell
 
 EPS = float(np.finfo(float).eps)
@@ -156,8 +156,8 @@ def test_a_knife_edge_leaves_corners() -> None:
         follower_outlines(cam, 1e-6, 0.01)
     fall = SegmentedLaw(
         (
-            Segment(math.pi / 2, 0.01, "uniform"),
-            Segment(3 * math.pi / 2, 0.0, "polynomial", (-0.01,), (0.02 / math.pi,)),
+            LawSegment(math.pi / 2, 0.01, "uniform"),
+            LawSegment(3 * math.pi / 2, 0.0, "polynomial", (-0.01,), (0.02 / math.pi,)),
         )
     )
     cam = FollowerCam(Lift(fall), translating(0.04), Point(0.0), 0.04)

@@ -304,10 +304,12 @@ class LiftSegment(Part):
         return read_through(value, info, "angle", "[angle, lift]")
 
     @property
-    def law(self) -> laws.Segment:
+    def law(self) -> laws.LawSegment:
         """The segment of the law, over angles instead of times; raises InputError where it makes none."""
         degree = laws.DEGREE if self.degree is None else self.degree
-        return laws.Segment(self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, degree)
+        return laws.LawSegment(
+            self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, degree
+        )
 
 
 def _lift_of(value: object) -> float:

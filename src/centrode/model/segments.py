@@ -127,9 +127,9 @@ class Segment(Part):
         return self
 
     @property
-    def law(self) -> laws.Segment:
+    def law(self) -> laws.LawSegment:
         """The segment of the law; raises InputError where its times do not increase."""
-        return laws.Segment(
+        return laws.LawSegment(
             self.time,
             self.to,
             self.curve,
