@@ -27,10 +27,10 @@ from .model.cam_files import cam_text as cam_text
 from .model.schema import cam_schema as cam_schema
 
 # Built-in mechanisms and classics
-from .model.examples.loading import load as load
-from .model.examples.loading import load_cam as load_cam
-from .model.examples.loading import example as example
-from .model.examples.loading import load_either as load_either
+from .model.examples.catalogue import load as load
+from .model.examples.catalogue import load_cam as load_cam
+from .model.examples.catalogue import example as example
+from .model.examples.catalogue import load_either as load_either
 from .model.examples import example_names as example_names
 from .model.examples import example_text as example_text
 from .model.classics import four_bar as four_bar

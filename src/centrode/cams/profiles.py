@@ -30,7 +30,7 @@ from centrode.cams.walking_wheel import Shoe
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.cam import Cam, Return
-from centrode.model.cam_files import AnyCam, curved
+from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.numerics.search import extremes, roots
 
 # Equidistants of a roller's path: the cam's profile one radius inside, the wall of a groove one radius
@@ -281,7 +281,7 @@ def cam_body(cam: AnyCam) -> ProfileBody:
     MotionError
         The follower stalls on the working arc; no return arc within the bounds was found.
     """
-    return _body(curved(cam))
+    return _body(require_curvature_cam(cam))
 
 
 @functools.lru_cache(maxsize=16)

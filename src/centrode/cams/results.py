@@ -24,7 +24,7 @@ from centrode.kinematics.motion import named
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Cam
-from centrode.model.cam_files import AnyCam, curved
+from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.follower_cam import PlateCam
 
 DEFAULT_SAMPLES = 361
@@ -152,7 +152,7 @@ def walking_wheel(cam: AnyCam) -> WheelMover:
     MotionError
         A shoe with a cusp; no return arc within the bounds.
     """
-    return wheel_of(curved(cam), cam_body(cam))
+    return wheel_of(require_curvature_cam(cam), cam_body(cam))
 
 
 def wheel_of(cam: Cam, body: ProfileBody) -> WheelMover:
@@ -201,7 +201,7 @@ def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
     InputError
         No contact, a curvature that no cam has; a strip wider than the roller, for which the formulas do not hold.
     """
-    cam = curved(cam)
+    cam = require_curvature_cam(cam)
     contact = contact_of(cam)
     if contact is None:
         what = _("the contact stress needs the force, the width and the materials")

@@ -30,7 +30,7 @@ from centrode.kinematics.prepared import Ready, ready
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.search import bisect
@@ -619,14 +619,14 @@ def integrate(
 
 def _check(method: object, steps: object, tolerance: object) -> None:
     if method not in METHODS:
-        what = _("there is no method {name}").format(name=shown(method))
+        what = _("there is no method {name}").format(name=value_text(method))
         raise InputError("method", what, nearest(str(method), METHODS))
     if isinstance(steps, bool) or not isinstance(steps, int) or not 1 <= steps <= MOST_STEPS:
-        what = _("{steps} steps were asked for").format(steps=shown(steps))
+        what = _("{steps} steps were asked for").format(steps=value_text(steps))
         raise InputError("steps", what, _("ask for 1 to {most}").format(most=MOST_STEPS))
     low, high = TOLERANCES
     if isinstance(tolerance, bool) or not isinstance(tolerance, int | float) or not low <= tolerance <= high:
-        what = _("{value} is no tolerance").format(value=shown(tolerance))
+        what = _("{value} is no tolerance").format(value=value_text(tolerance))
         raise InputError("tolerance", what, _("ask for {low:g} to {high:g}").format(low=low, high=high))
 
 

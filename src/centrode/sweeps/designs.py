@@ -20,7 +20,7 @@ from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model.files import value_at
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.units import to_si
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
@@ -145,7 +145,7 @@ def ends(mechanism: Mechanism, path: str, first: Any, last: Any) -> tuple[float,
     low, high = (_number(kind, path, end) for end in (first, last))
     if not low < high:
         what = _("the range from {first} to {last} does not rise").format(
-            first=shown(first), last=shown(last)
+            first=value_text(first), last=value_text(last)
         )
         raise InputError(path, what, _("give the lesser end first, and a greater one after it"))
     _refuse_negative(kind, path, low)
@@ -170,7 +170,7 @@ def count_of(path: str, given: Any, most: int) -> int:
     if isinstance(given, np.integer):
         given = int(given)
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= most:
-        what = _("{count} is no number of values").format(count=shown(given))
+        what = _("{count} is no number of values").format(count=value_text(given))
         raise InputError(path, what, _("give a whole number from 1 to {most}").format(most=most))
     return given
 
@@ -215,7 +215,7 @@ def drawn(mechanism: Mechanism, asked: Sample) -> dict[str, Array]:
     """Values [SI] of every path, one for each mechanism; InputError for a range, count, method or seed that is none."""
     count = count_of("sample", asked.count, DRAWN // len(asked.ranges))
     if asked.method not in METHODS:
-        what = _("unknown method {method}").format(method=shown(asked.method))
+        what = _("unknown method {method}").format(method=value_text(asked.method))
         raise InputError("sample", what, nearest(str(asked.method), METHODS))
     seed: object = asked.seed
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:

@@ -11,7 +11,7 @@ from typing import Protocol
 from centrode.errors import InputError
 from centrode.kinematics.compiled.trace import Untraceable
 from centrode.locale import _
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.executors import AUTO, MACHINE_CODE, choose_executor
 from centrode.structure.dimensions import Dimensions, dimensions_of
@@ -45,7 +45,7 @@ def check_executor(name: object) -> str:
     """The name of an executor, or "auto"; InputError for any other."""
     if not isinstance(name, str) or name not in KNOWN:
         raise InputError(
-            "executor", _("unknown executor {name}").format(name=shown(name)), nearest(str(name), KNOWN)
+            "executor", _("unknown executor {name}").format(name=value_text(name)), nearest(str(name), KNOWN)
         )
     return name
 
@@ -53,7 +53,7 @@ def check_executor(name: object) -> str:
 def check_threads(given: object) -> int:
     """A number of threads; InputError for any other than 1 to `designs.THREADS`."""
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= designs.THREADS:
-        what = _("{count} is no number of threads").format(count=shown(given))
+        what = _("{count} is no number of threads").format(count=value_text(given))
         raise InputError(
             "threads", what, _("give a whole number from 1 to {most}").format(most=designs.THREADS)
         )

@@ -16,9 +16,9 @@ from centrode.kinematics.motion import dataset_of
 from centrode.kinematics.prepared import ready
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _
-from centrode.model.examples.loading import load
+from centrode.model.examples.catalogue import load
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import nearest, read_file, shown
+from centrode.model.reading import nearest, read_file, value_text
 from centrode.model.toml import toml_tables
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
@@ -219,7 +219,9 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
     near = folder / name
     samples = tables.get("samples")
     if samples is not None and (isinstance(samples, bool) or not isinstance(samples, int)):
-        raise InputError("samples", _("expected a whole number, got {value}").format(value=shown(samples)))
+        raise InputError(
+            "samples", _("expected a whole number, got {value}").format(value=value_text(samples))
+        )
     return SweepStudy(
         name,
         load(near if near.is_file() else name),
@@ -236,14 +238,14 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
 
 def _switch(key: str, value: Any) -> bool:
     if not isinstance(value, bool):
-        raise InputError(key, _("expected true or false, got {value}").format(value=shown(value)))
+        raise InputError(key, _("expected true or false, got {value}").format(value=value_text(value)))
     return value
 
 
 def _refuse_unknown(where: str, table: Mapping[str, Any], known: tuple[str, ...]) -> None:
     for key in table:
         if key not in known:
-            raise InputError(where, _("unknown key {key}").format(key=shown(key)), nearest(key, known))
+            raise InputError(where, _("unknown key {key}").format(key=value_text(key)), nearest(key, known))
 
 
 def _vary(tables: Mapping[str, Any]) -> Mapping[str, Any] | Grid | Sample:
@@ -254,7 +256,7 @@ def _vary(tables: Mapping[str, Any]) -> Mapping[str, Any] | Grid | Sample:
     way = given[0]
     table = tables[way]
     if not isinstance(table, dict):
-        raise InputError(way, _("expected a table, got {value}").format(value=shown(table)))
+        raise InputError(way, _("expected a table, got {value}").format(value=value_text(table)))
     if way == "vary":
         return dict(_paths(table, ()))
     if way == "grid":
@@ -328,7 +330,7 @@ def _end(key: str, given: object) -> float | str | None:
         return given
     if isinstance(given, bool) or not isinstance(given, int | float):
         raise InputError(
-            key, _("expected a number or a text with a unit, got {value}").format(value=shown(given))
+            key, _("expected a number or a text with a unit, got {value}").format(value=value_text(given))
         )
     return float(given)
 
@@ -343,5 +345,5 @@ def _reduce(given: object) -> Reduce:
 
 def _text(key: str, given: object) -> str:
     if not isinstance(given, str):
-        raise InputError(key, _("expected a text, got {value}").format(value=shown(given)))
+        raise InputError(key, _("expected a text, got {value}").format(value=value_text(given)))
     return given

@@ -23,7 +23,7 @@ from centrode.kinematics.motion import BATCH
 from centrode.locale import _
 from centrode.model.files import parse_mechanism, with_value
 from centrode.model.mechanism import FRAME, Guide, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.values import unit_vector
 from centrode.structure.dimensions import dimensions_of
 
@@ -60,7 +60,7 @@ class Named:
         """Number of a body; raises InputError for a name that is none."""
         if name in self.names:
             return self.names.index(name)
-        what = _("there is no link {name}").format(name=shown(name))
+        what = _("there is no link {name}").format(name=value_text(name))
         raise InputError("pair", what, nearest(name, self.names))
 
 

@@ -29,7 +29,7 @@ from centrode.kinematics.sampling import start_of
 from centrode.kinematics.solve import fit_for, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 
@@ -123,7 +123,7 @@ def _asked(
 def _check_body(mechanism: Mechanism, name: str) -> None:
     names = (FRAME, *mechanism.link_names, *sliders_of(mechanism))
     if name not in names:
-        what = _("there is no link {name}").format(name=shown(name))
+        what = _("there is no link {name}").format(name=value_text(name))
         raise InputError("link", what, nearest(name, names))
 
 

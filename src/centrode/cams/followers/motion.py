@@ -21,7 +21,7 @@ from centrode.laws import CURVES, Segment, SegmentedLaw
 from centrode.locale import _, mark
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
@@ -351,7 +351,7 @@ def compare_laws(
     for name in names:
         if name not in CURVES:
             raise InputError(
-                "curves", _("there is no curve {name}").format(name=shown(name)), nearest(name, CURVES)
+                "curves", _("there is no curve {name}").format(name=value_text(name)), nearest(name, CURVES)
             )
     if not (math.isfinite(rise) and rise and math.isfinite(angle) and angle > 0):
         raise InputError("", _("a rise needs a height that is not 0 and a positive angle"), _("correct them"))

@@ -27,7 +27,7 @@ from centrode.cams.path_series import law_of, path_of
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import CONSTANT, POINT, Cam, varied
-from centrode.model.cam_files import AnyCam, curved
+from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.reading import FrozenMap
 
 # The search for the best design: sequential quadratic programming from several starts, then more angles.
@@ -731,7 +731,7 @@ def choose_cam(
     InputError
         Nothing to choose, or ranges that hold no design.
     """
-    cam = curved(cam)
+    cam = require_curvature_cam(cam)
     family = family_of(cam)
     assert cam.choose is not None
     start, best, bounds = start_of(cam, family), cam.choose.minimise, bounds_of(cam)

@@ -15,7 +15,7 @@ from centrode.dynamics.state import Mass, State
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Link, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.units import to_si
 
 # How counterweights are made: mass, radius and inertia that go with a product of mass and radius.
@@ -351,7 +351,7 @@ def positive(value: object, where: str, kind: str) -> float:
     """The same, greater than zero."""
     found = number(value, where, kind)
     if not found > 0.0:
-        raise InputError(where, _("it must be positive, got {value}").format(value=shown(value)))
+        raise InputError(where, _("it must be positive, got {value}").format(value=value_text(value)))
     return found
 
 
@@ -376,18 +376,20 @@ def _places(mechanism: Mechanism, on: Sequence[str] | None, to: str) -> list[tup
     links = [link for link, _base in places]
     twice = next((link for link in links if links.count(link) > 1), None)
     if twice is not None:
-        raise InputError("on", _("{name} is given twice").format(name=shown(twice)), _("keep one of them"))
+        raise InputError(
+            "on", _("{name} is given twice").format(name=value_text(twice)), _("keep one of them")
+        )
     return places
 
 
 def _place(mechanism: Mechanism, name: str) -> tuple[str, str]:
     link, sign, base = (part.strip() for part in str(name).partition("@"))
     if link not in mechanism.links:
-        what = _("there is no link {name}").format(name=shown(link))
+        what = _("there is no link {name}").format(name=value_text(link))
         raise InputError("on", what, nearest(link, list(mechanism.links)))
     points = list(mechanism.links[link].coordinates)
     if sign and base not in points:
-        what = _("link {link} has no point {name}").format(link=shown(link), name=shown(base))
+        what = _("link {link} has no point {name}").format(link=value_text(link), name=value_text(base))
         raise InputError("on", what, nearest(base, points))
     return link, base or base_of(mechanism, link)
 
@@ -401,7 +403,7 @@ def _by_link(given: Lengths | Masses, links: Sequence[str], where: str, kind: st
         return dict.fromkeys(links, one)
     for link in given:
         if link not in links:
-            what = _("there is no counterweight on {name}").format(name=shown(link))
+            what = _("there is no counterweight on {name}").format(name=value_text(link))
             raise InputError(where, what, nearest(str(link), list(links)))
     return {link: positive(value, f"{where} {link}", kind) for link, value in given.items()}
 
@@ -411,6 +413,6 @@ def _half_way(mechanism: Mechanism, link: str, base: str) -> float:
     places = mechanism.links[link].coordinates
     out = 0.5 * max(dist(places[base], place) for place in places.values())
     if not out > 0.0:
-        what = _("link {name} has one point, which tells no radius").format(name=shown(link))
+        what = _("link {name} has one point, which tells no radius").format(name=value_text(link))
         raise InputError("radius", what, _("give the radius of its counterweight"))
     return out

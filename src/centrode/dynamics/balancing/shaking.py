@@ -24,7 +24,7 @@ from centrode.kinematics.sampling import MotionOnPath
 from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.locale import _, speaking
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import tops
 
@@ -568,7 +568,7 @@ def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
     """Coordinates of a place of the frame, given by name or by themselves; InputError for any other."""
     if isinstance(about, str):
         if about not in mechanism.frame.points:
-            what = _("{name} is no point of the frame").format(name=shown(about))
+            what = _("{name} is no point of the frame").format(name=value_text(about))
             raise InputError("about", what, nearest(about, list(mechanism.frame.points)))
         x, y = mechanism.frame.coordinates[about]
         return x, y
