@@ -131,7 +131,7 @@ def _batch(name: str, paths: tuple[str, ...]) -> Batch:
 
 
 def _lane(numbers: Dimensions, lane: int) -> Dimensions:
-    return numbers.mapped(lambda x: x if isinstance(x, float) else float(x[lane]))
+    return numbers.map_numbers(lambda x: x if isinstance(x, float) else float(x[lane]))
 
 
 def peer_of(prepared: Ready, numbers: Dimensions, motion: xr.Dataset) -> peer.Peer:

@@ -203,7 +203,7 @@ def on_branch(solved: Solved, parameter: Array) -> FixedSigns:
 
 def nudged(numbers: Dimensions, random: np.random.Generator) -> Dimensions:
     """The same dimensions, each number changed by up to `STEP` of the greatest length; directions by that angle."""
-    length = numbers.mapped(lambda x: x + STEP * numbers.scale * random.uniform(-1.0, 1.0))
+    length = numbers.map_numbers(lambda x: x + STEP * numbers.scale * random.uniform(-1.0, 1.0))
 
     def turned(rotors: Mapping[str, Any]) -> dict[str, Any]:
         found = {}
@@ -220,7 +220,7 @@ def nudged(numbers: Dimensions, random: np.random.Generator) -> Dimensions:
 
     own = numbers.gearing
     gearing = replace(
-        own.resized(lambda x: x + small() * numbers.scale),
+        own.scale_lengths(lambda x: x + small() * numbers.scale),
         ratio={name: x * (1.0 + small()) for name, x in own.ratio.items()},
         phase={name: x + small() for name, x in own.phase.items()},
     )

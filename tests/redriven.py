@@ -162,10 +162,10 @@ def _together(some: list[Dimensions]) -> Dimensions:
     rows: list[list[float]] = []
     for one in some:
         row: list[float] = []
-        one.mapped(row.append)
+        one.map_numbers(row.append)
         rows.append(row)
     columns = iter(np.array(rows).T)
-    return some[0].mapped(lambda _number: next(columns))
+    return some[0].map_numbers(lambda _number: next(columns))
 
 
 def _columns(solved: Solved, lane: int) -> Array:

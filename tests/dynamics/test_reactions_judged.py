@@ -211,7 +211,7 @@ def test_what_is_not_determined_by_singular_values(seed: int) -> None:
         structure.constraints,
         structure.unknowns,
         structure.dimensions,
-        at.mapped(lambda x: float(np.ravel(x)[0])),
+        at.map_numbers(lambda x: float(np.ravel(x)[0])),
     )
     _left, values, right = np.linalg.svd(matrix.T)
     free = right[int(np.sum(values > 1e-9 * values[0])) :]

@@ -174,7 +174,7 @@ def chains(kinds: tuple[str, ...], count: int) -> list[tuple[list[str], int]]:
 def test_random_chains_against_the_scan(made: Callable[..., ct.Mechanism], kinds: tuple[str, ...]) -> None:
     for chain in chains(kinds, 8):
         prepared = ready(made(*chain))
-        numbers = prepared.kinematics.numbers.mapped(lambda x: np.array([x]) if x != 0.0 else x)
+        numbers = prepared.kinematics.numbers.map_numbers(lambda x: np.array([x]) if x != 0.0 else x)
         slow = reaches(of_batch(prepared.kinematics, numbers), prepared.assembled.signs, 1, np.pi)[0]
         start = prepared.kinematics.path.initial
         found = solve(prepared, asked_span(prepared, 3, start - np.pi, start + np.pi)).branches.reach(0)

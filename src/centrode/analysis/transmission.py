@@ -31,7 +31,18 @@ from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import unit_vector
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Meet, Rail, Rod, Slot, Stop, Stroke, links_of, points_of
+from centrode.structure.groups import (
+    Aim,
+    CylinderCircle,
+    Group,
+    Meet,
+    Rail,
+    Rod,
+    Slot,
+    Stop,
+    links_of,
+    points_of,
+)
 
 # Transmission angles on the sphere: between the arcs from a dyad's inner joint to the centres of its two
 # circles.
@@ -240,7 +251,7 @@ def _directions(data: xr.Dataset, numbers: Dimensions, group: Meet) -> Iterator[
     """Directions in which the loci let the group's vector move; of circles the arms towards their centres."""
     circles = group.circles == 2
     for locus in group.loci:
-        if isinstance(locus, (Rod, Stroke)):
+        if isinstance(locus, (Rod, CylinderCircle)):
             arm = place(data, locus.centre) - place(data, locus.point)
             yield arm if circles else 1j * arm
         elif isinstance(locus, Rail):

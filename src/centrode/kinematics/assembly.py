@@ -100,7 +100,7 @@ def phases_before(
     link = group.link if isinstance(group, TurnedLink) else group.carriage
     if link is not None and group.turning is not None and not isinstance(group.turning, Turning):
         meshing = group.turning.gear if isinstance(group.turning, Meshed) else group.turning.rolling
-        trial = at.copied()
+        trial = at.copy()
         trial.angles[link] = stated_angle(kinematics, link)
         found[identity_of(meshing)] = float(phase_of(meshing, ARRAYS, kinematics.numbers, trial))
     if isinstance(group, Meet):
@@ -175,7 +175,7 @@ def _turn_at_start(
     kinematics: Kinematics, group: Meet, rolling: NoSlip, at: Positions, choices: SideChoices
 ) -> float:
     """Angle of a wheel against its track in the initial position, where its centre is at the line's own point."""
-    trial = at.copied()
+    trial = at.copy()
     link = group.carriage
     if link is not None and group.turning is not None:
         rotor = turn_link(group.turning, link, ARRAYS, kinematics.numbers, trial, choices.continued)
@@ -312,7 +312,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
 
 def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded: Positions) -> Kinematics:
     """Solve a group of higher class; its wheels mesh as they stand then."""
-    known = at.copied()
+    known = at.copy()
     standing = standing_links(kinematics, group, at)
     start_higher(kinematics.structure.mechanism, kinematics.numbers, standing, at)
     kinematics = with_phases(kinematics, phases_in(kinematics, group, at))
@@ -323,7 +323,7 @@ def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded:
 def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
     """Rounding error of a group's radicand, from positions with bounds known before it."""
     bounding = Bounding(kinematics, group, 1.0)
-    solve_group(group, ROUNDED, kinematics.numbers, bounded.copied(), SideChoices(bounding, 0))
+    solve_group(group, ROUNDED, kinematics.numbers, bounded.copy(), SideChoices(bounding, 0))
     return bounding.bound
 
 
@@ -350,7 +350,7 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
 
 
 def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bound: float) -> Positions:
-    trial = at.copied()
+    trial = at.copy()
     solve_group(
         group, ARRAYS, kinematics.numbers, trial, SideChoices(OneSide(kinematics, group, at, sign, bound), 0)
     )

@@ -26,13 +26,13 @@ from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
 from centrode.structure.groups import (
     Aim,
+    CylinderCircle,
     Group,
     Locus,
     Meet,
     Newton,
     Rail,
     Rod,
-    Stroke,
     Touch,
     TwoPointLink,
     links_of,
@@ -229,7 +229,7 @@ def circle_name(locus: Locus) -> str:
     """What draws the circle of a locus; nothing for a line."""
     if isinstance(locus, Rod):
         return _("link {link}").format(link=locus.link)
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return _("cylinder {drive}").format(drive=locus.drive)
     if isinstance(locus, Touch) and locus.letter == "R":
         return _("wheel {wheel}").format(wheel=locus.contact.rolling)

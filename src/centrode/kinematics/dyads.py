@@ -33,6 +33,7 @@ from centrode.structure.groups import (
     AngleEquation,
     AngleGiven,
     Arm,
+    CylinderCircle,
     Following,
     Group,
     Locus,
@@ -46,7 +47,6 @@ from centrode.structure.groups import (
     Rolloff,
     Slot,
     Stop,
-    Stroke,
     Touch,
     Train,
     TurnedLink,
@@ -428,7 +428,7 @@ def _locus(
     rotor: Vector | None,
 ) -> Any:
     """Locus of the group's unknown vector: that of the point, moved back by the point's arm on the carriage."""
-    if isinstance(locus, Stroke | Touch | Rolloff):
+    if isinstance(locus, CylinderCircle | Touch | Rolloff):
         found = _driven_or_rolled(locus, numbers, at, rotor)
     else:
         found = _of_point(locus, m, numbers, at, rotor)
@@ -460,10 +460,10 @@ def _of_point(
 
 
 def _driven_or_rolled(
-    locus: Stroke | Touch | Rolloff, numbers: Dimensions, at: Positions, rotor: Vector | None
+    locus: CylinderCircle | Touch | Rolloff, numbers: Dimensions, at: Positions, rotor: Vector | None
 ) -> PlaneCircle | Line:
     """Locus of a point at a cylinder or a track; of the unknown vector itself, if the carriage holds the track."""
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return PlaneCircle(at.points[locus.centre], at.drives[locus.drive])
     if isinstance(locus, Rolloff):
         turn = at.angles[locus.rolling.link] - at.angles[locus.rolling.on]

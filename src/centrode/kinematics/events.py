@@ -107,7 +107,7 @@ class Bending(Rough):
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         """What a group of higher class gives are jets: nothing is known of their second derivatives."""
-        known = at.mapped(lambda x: Jet(x.coefficients) if isinstance(x, Bent) else x)
+        known = at.map_numbers(lambda x: Jet(x.coefficients) if isinstance(x, Bent) else x)
         super().higher(group, JETS, known)
         which = self.continuation.kinematics.structure.groups[group]
         assert isinstance(which, Newton)
@@ -475,7 +475,7 @@ class EventScan:
             at = bent_frame(self.kinematics, along, self.zeros.half)
             with suppress(ReachedRadicand):  # slopes are needed up to the last radicand, and not beyond
                 self.kinematics.advance(at, range(last + 1), BENDS, _Searching(self, last))
-            plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
+            plain = at.map_numbers(lambda x: x.value if isinstance(x, Jet) else x)
             self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, _Counting(self, ARRAYS))
         return plain
 

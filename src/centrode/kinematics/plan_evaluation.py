@@ -145,7 +145,7 @@ class Kinematics:
         def take(x: Number) -> Number:
             return x if isinstance(x, float) else x.reshape(-1)[lanes]
 
-        return Kinematics(self.structure, self.numbers.mapped(take), self.path.taken(take))
+        return Kinematics(self.structure, self.numbers.map_numbers(take), self.path.taken(take))
 
 
 def own_angle(m: Namespace, numbers: Dimensions, at: Positions, link: str) -> Number:

@@ -182,7 +182,9 @@ def of_batch(kinematics: Kinematics, numbers: Dimensions) -> Kinematics:
 
 def _upright(numbers: Dimensions) -> Dimensions:
     """Arrays of a batch as columns, so that they meet samples in the last axis."""
-    return numbers.mapped(lambda x: x if isinstance(x, float) else np.asarray(x, dtype=np.float64)[:, None])
+    return numbers.map_numbers(
+        lambda x: x if isinstance(x, float) else np.asarray(x, dtype=np.float64)[:, None]
+    )
 
 
 def of_lanes(kinematics: Kinematics, rows: slice | npt.NDArray[np.intp]) -> Kinematics:
@@ -191,7 +193,7 @@ def of_lanes(kinematics: Kinematics, rows: slice | npt.NDArray[np.intp]) -> Kine
     def cut(x: Number) -> Number:
         return x if isinstance(x, float) else x[rows]
 
-    return replace(kinematics, numbers=kinematics.numbers.mapped(cut))
+    return replace(kinematics, numbers=kinematics.numbers.map_numbers(cut))
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ class Positions:
         fixed = {name: space.place(m, space.at_rest, at) for name, at in dimensions.frame.items()}
         return cls(fixed, {FRAME: space.at_rest}, drives)
 
-    def mapped(self, function: Callable[[Number], Number]) -> Positions:
+    def map_numbers(self, function: Callable[[Number], Number]) -> Positions:
         """The same positions with every number replaced by function(number)."""
         return Positions(
             {name: tuple(map(function, at)) for name, at in self.points.items()},
@@ -81,7 +81,7 @@ class Positions:
             {name: function(value) for name, value in self.angles.items()},
         )
 
-    def copied(self) -> Positions:
+    def copy(self) -> Positions:
         """The same positions, to which others may be added apart."""
         return Positions(dict(self.points), dict(self.poses), self.drives, dict(self.angles))
 

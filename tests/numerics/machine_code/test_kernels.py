@@ -38,7 +38,7 @@ def traced(name: str) -> tuple[Scan, np.ndarray]:
         return variable(f"dimension {len(values) - 1}")
 
     kinematics = prepared.kinematics
-    numbers = kinematics.numbers.mapped(vary)
+    numbers = kinematics.numbers.map_numbers(vary)
     jets = JetFunctions(EXPRESSIONS)
     parameter = Jet.variable(variable("drive"), 2)
     at = replace(kinematics, numbers=numbers).positions(

@@ -43,6 +43,7 @@ from centrode.structure.groups import (
     AngleEquation,
     AngleGiven,
     Arm,
+    CylinderCircle,
     Group,
     Locus,
     Meshed,
@@ -53,7 +54,6 @@ from centrode.structure.groups import (
     Rolloff,
     Slot,
     Stop,
-    Stroke,
     Touch,
     Train,
 )
@@ -211,7 +211,7 @@ def ray_of(stage: ConstructionStage, locus: Locus, carriage: str | None) -> Ray:
     numbers = drawing.numbers
     if isinstance(locus, Rod):
         return around(stage, locus.point, locus.centre, locus.link)
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return cylinder(stage, locus)
     if isinstance(locus, Rail):
         direction = drawing.heading(locus.on, numbers.direction[locus.guide])
@@ -233,7 +233,7 @@ def _driven(ray: Ray, rate: float) -> Ray:
     return replace(ray, legs=(*ray.legs, driven), direction=1j * ray.direction, text=free)
 
 
-def cylinder(stage: ConstructionStage, locus: Stroke) -> Ray:
+def cylinder(stage: ConstructionStage, locus: CylinderCircle) -> Ray:
     """A point at the end of a cylinder: the stroke's rate along it, Coriolis, and unknown turning about its foot."""
     drawing, name = stage.drawing, f"{locus.point}{locus.centre}"
     arm = drawing.arm(drawing.point(locus.centre), drawing.point(locus.point), known=True)
@@ -471,7 +471,7 @@ def _corrected(values: Array, misfits: Array) -> Array:
 def _tried(
     stage: ConstructionStage, opened: Opened, trial: Sequence[float], construct: Construct
 ) -> ConstructionStage:
-    tried = stage.copied()
+    tried = stage.copy()
     tried.driven.update(zip(map(_drive, opened.turned), trial, strict=True))
     construct(opened.groups, tried)
     return tried

@@ -262,7 +262,7 @@ class ConstructionStage:
         """The length of an edge as it is read off the diagram."""
         return self.grain * round(length / self.grain) if self.grain else length
 
-    def copied(self) -> ConstructionStage:
+    def copy(self) -> ConstructionStage:
         """The same, to be gone on with apart."""
         return ConstructionStage(
             self.drawing,

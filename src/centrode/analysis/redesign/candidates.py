@@ -233,7 +233,7 @@ class Candidates:
             placed = placed_numbers(mechanism, numbers, angles)
             whole = {path: np.broadcast_to(x, size).astype(np.float64) for path, x in placed.items()}
             numbers = dimensions_of(mechanism, {**varied, **whole}, ARRAYS)
-        upright = numbers.mapped(lambda x: x if isinstance(x, float) else np.asarray(x)[:, None])
+        upright = numbers.map_numbers(lambda x: x if isinstance(x, float) else np.asarray(x)[:, None])
         kinematics = replace(self.prepared.kinematics, numbers=upright)
         signs = signs_at_start(self.prepared, kinematics, angles, len(changes))
         return Batch(kinematics, signs, len(changes))
@@ -335,7 +335,7 @@ def _nearer(
     """The sign whose angles are nearer to the hints."""
     off = []
     for sign in (1.0, -1.0):
-        trial = at.copied()
+        trial = at.copy()
         solve_group(
             group, ARRAYS, kinematics.numbers, trial, SideChoices(_Clamped(ARRAYS, {index: sign}), index)
         )

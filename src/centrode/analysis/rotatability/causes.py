@@ -23,7 +23,7 @@ from centrode.quantities import display_unit
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Slot, Stop, Stroke
+from centrode.structure.groups import Aim, CylinderCircle, Group, Locus, Meet, Rail, Rod, Slot, Stop
 
 # Conditions in symbols: the angle phi of each link by its number in the description, and what vanishes of
 # them.
@@ -156,7 +156,7 @@ def body_of(locus: Locus) -> str:
     """A locus by what draws it: a link, a cylinder or a guide."""
     if isinstance(locus, Rod):
         return locus.link
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return _("cylinder {name}").format(name=locus.drive)
     if isinstance(locus, (Rail, Slot, Stop)):
         return _("guide {name}").format(name=locus.guide)
@@ -169,7 +169,7 @@ def bearing_of_locus(
     """Bearing of a rod, or of a line on which a point moves; None where a wheel draws it."""
     if isinstance(locus, Rod):
         return bearing_between(mechanism, numbers, locus.link, locus.centre, locus.point)
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return PivotSymbol(("psi_" + locus.drive.replace("-", ""),))
     if isinstance(locus, Rail):
         return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
@@ -330,7 +330,7 @@ def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
         return Watched(name, "rad", lambda at: of_aim(kinematics, group, at))
     if not isinstance(group, Meet):
         return None
-    centres = [locus for locus in group.loci if isinstance(locus, (Rod, Stroke))]
+    centres = [locus for locus in group.loci if isinstance(locus, (Rod, CylinderCircle))]
     if len(centres) == 2:
         return Watched(name, "rad", lambda at: _between_rods(sphere, centres, at))
     line = next((locus for locus in group.loci if isinstance(locus, (Rail, Slot))), None)

@@ -401,7 +401,7 @@ class _Stepping:
     def __init__(self, group: int, chain: LinkChain, known: Positions, differentiable: bool) -> None:
         self.chain, self.known, self.differentiable = chain, known, differentiable
         self.names = Names(group, chain)
-        self.values = known.mapped(plain)
+        self.values = known.map_numbers(plain)
         self.free = chain.pattern.free
         self.rests: list[Operand] = [0.0] * self.free
 
@@ -461,7 +461,7 @@ class _Stepping:
     ) -> list[Operand]:
         """The last coefficients, made such that the equations hold to their order."""
         order = len(coefficients[0]) - 1
-        known = self.known.mapped(lambda x: cut(x, order))
+        known = self.known.map_numbers(lambda x: cut(x, order))
         motion = [0.0 if all(map(is_literal_zero, c)) else Jet(c) for c in coefficients]
         at = self.chain.positions(known, with_turns(posture), motion)
         equations = self.chain.equations(NODE_JETS, at, matrix.arms)

@@ -59,7 +59,7 @@ def beginnings(ready: Ready, numbers: Dimensions, lanes: int) -> dict[str, Array
     parts = []
     for first in range(0, lanes, AT_ONCE):
         rows = slice(first, min(first + AT_ONCE, lanes))
-        some = numbers.mapped(lambda x, rows=rows: x if isinstance(x, float) else x[rows])  # type: ignore[misc]
+        some = numbers.map_numbers(lambda x, rows=rows: x if isinstance(x, float) else x[rows])  # type: ignore[misc]
         parts.append(_of_some(ready, some, rows.stop - first))
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]} if parts else {}
 

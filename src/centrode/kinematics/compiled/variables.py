@@ -75,18 +75,18 @@ def varied_of(numbers: Dimensions, values: Mapping[str, Array]) -> Varied:
         names.append(known.setdefault(id(x), f"number {len(names)}"))
         return variable(names[-1])
 
-    nodes = numbers.mapped(lifted)
+    nodes = numbers.map_numbers(lifted)
     scale = numbers.scale
     return Varied(nodes, tuple(names), scale if isinstance(scale, float) else variable(SCALE))
 
 
 def taken(numbers: Dimensions, lanes: npt.NDArray[np.intp]) -> Dimensions:
     """The numbers of some mechanisms of a batch."""
-    return numbers.mapped(lambda x: x if isinstance(x, float) else x[lanes])
+    return numbers.map_numbers(lambda x: x if isinstance(x, float) else x[lanes])
 
 
 def arrays_of(numbers: Dimensions) -> list[Array]:
-    """The arrays of a batch's numbers, in the order in which `mapped` meets them."""
+    """The arrays of a batch's numbers, in the order in which `map_numbers` meets them."""
     found: list[Array] = []
 
     def seen(x: Number) -> Number:
@@ -94,7 +94,7 @@ def arrays_of(numbers: Dimensions) -> list[Array]:
             found.append(x)
         return x
 
-    numbers.mapped(seen)
+    numbers.map_numbers(seen)
     return found
 
 

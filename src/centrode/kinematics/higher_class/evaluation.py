@@ -66,7 +66,7 @@ def close(
     numbers = around.kinematics.taken(which).numbers
     group = around.equations
     known = flattened(needed(group, at), shape)
-    system = GroupSystem(group, numbers, known.mapped(plain), len(flat))
+    system = GroupSystem(group, numbers, known.map_numbers(plain), len(flat))
     foretold = tracks.foretell(flat, which)
     start = system.normalise(foretold.state)
     with np.errstate(all="ignore"):
@@ -171,7 +171,7 @@ def numbers_of(numbers: Dimensions) -> list[Number]:
         found.append(x)
         return x
 
-    numbers.mapped(note)
+    numbers.map_numbers(note)
     return found
 
 
@@ -183,4 +183,4 @@ def blended(first: Dimensions, second: Dimensions, part: Array) -> Dimensions:
         y = next(from_first)
         return x if isinstance(x, float) else np.where(part == 1.0, x, y + part * (x - y))
 
-    return second.mapped(between)
+    return second.map_numbers(between)

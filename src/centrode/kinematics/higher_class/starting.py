@@ -101,7 +101,7 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
     Raises InputError where an initial angle is missing, where nothing closes near the angles given, and where
     the group is singular.
     """
-    system = GroupSystem(group, numbers, at.copied(), 1)
+    system = GroupSystem(group, numbers, at.copy(), 1)
     start = _start(mechanism, system, at)
     with np.errstate(all="ignore"):
         found = newton(system, start, STEPS)
@@ -115,7 +115,7 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
             _("it stands at a limit or a change point in the initial position"),
             _("start the drive elsewhere"),
         )
-    closed = closed.mapped(_floating)
+    closed = closed.map_numbers(_floating)
     for name in group.points:
         at.points[name] = closed.points[name]
     for name in group.links:
@@ -129,10 +129,10 @@ def bound_higher(system: GroupSystem, at: Positions, bounded: Positions) -> None
     """Add a group's initial position to what is known before it with bounds of rounding errors."""
     state = system.state_of(at)
     linear = system.linear(system.at(ARRAYS, system.known, state))
-    known = bounded.mapped(
+    known = bounded.map_numbers(
         lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x
     )
-    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).mapped(within(_single))
+    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).map_numbers(within(_single))
     bounded.points.update(found.points)
     bounded.poses.update(found.poses)
     bounded.angles.update(found.angles)
@@ -164,7 +164,7 @@ def _start(mechanism: Mechanism, system: GroupSystem, at: Positions) -> Array:
 
 def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> list[Positions]:
     """Where the initial angles put the group's links: in one way, or in many where they know angles and no place."""
-    guess, left = _chained(mechanism, numbers, group.links, at.copied())
+    guess, left = _chained(mechanism, numbers, group.links, at.copy())
     if not left and all(point in guess.points for point in group.points):
         return [guess]
     if _adrift(mechanism, left) is None:
@@ -172,7 +172,7 @@ def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
     found = []
     origin = (0.0, 0.0) if mechanism.space == "plane" else (1.0, 0.0, 0.0)
     for place in scattered(numbers, at, origin):
-        trial, rest = guess.copied(), left
+        trial, rest = guess.copy(), left
         while (link := _adrift(mechanism, rest)) is not None:  # several, where guides alone join them
             trial.points[next(iter(numbers.local[link]))] = place
             trial, after = _chained(mechanism, numbers, rest, trial)

@@ -300,7 +300,9 @@ class GroupSystem:
         def take(x: Number) -> Number:
             return x if np.ndim(x) == 0 else x[which]
 
-        return GroupSystem(self.group, self.numbers.mapped(take), self.known.mapped(take), len(which))
+        return GroupSystem(
+            self.group, self.numbers.map_numbers(take), self.known.map_numbers(take), len(which)
+        )
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -328,7 +330,7 @@ class GroupSystem:
         self, m: Namespace, known: Positions, state: Array, motion: GroupMotion | None = None
     ) -> Positions:
         """Known positions with those of a state, moved a little, over any algebra."""
-        at, space, column = known.copied(), self.numbers.space, 0
+        at, space, column = known.copy(), self.numbers.space, 0
         for name in self.group.points:
             size = len(space.axes)
             place = tuple(state[:, column + k] for k in range(size))
@@ -424,7 +426,9 @@ class GroupSystem:
         inverse = solved(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         for k in range(1, order + 1):
             motion = _as_jets(shifts, free, k)
-            values = self.residual(JETS, self.at(JETS, known.mapped(lambda x, k=k: cut(x, k)), state, motion))  # type: ignore[misc]
+            values = self.residual(
+                JETS, self.at(JETS, known.map_numbers(lambda x, k=k: cut(x, k)), state, motion)
+            )  # type: ignore[misc]
             moved, rest = linear.reduced([_minus_coefficient(x, k) for x in values])
             freely = list(times(inverse, self.stacked(rest)).T)
             for entity, shift in linear.whole(moved, freely).items():
@@ -566,7 +570,7 @@ class LinkChain:
 
     def positions(self, known: Positions, posture: Posture, motion: Sequence[Number]) -> Positions:
         """Known positions with those of the group: in a posture, moved by jets that are zero there, or by 0.0."""
-        at = known.copied()
+        at = known.copy()
         for follow in self.pattern.follows:
             name = follow.entity.name
             if follow.entity.kind == "link":
@@ -711,7 +715,7 @@ class Surroundings:
     def system(self, known: Positions, lanes: Lanes) -> GroupSystem:
         """The group's equations beside known positions, one lane for each place."""
         return GroupSystem(
-            self.equations, self.kinematics.taken(lanes).numbers, known.mapped(plain), len(lanes)
+            self.equations, self.kinematics.taken(lanes).numbers, known.map_numbers(plain), len(lanes)
         )
 
 
@@ -750,7 +754,7 @@ def flattened(at: Positions, shape: tuple[int, ...]) -> Positions:
     def flat(x: Number) -> Number:
         return x if np.ndim(x) == 0 else np.broadcast_to(x, shape).reshape(-1)
 
-    return at.mapped(within(flat))
+    return at.map_numbers(within(flat))
 
 
 def shaped(at: Positions, names: Newton, shape: tuple[int, ...], into: Positions) -> None:
@@ -759,7 +763,7 @@ def shaped(at: Positions, names: Newton, shape: tuple[int, ...], into: Positions
     def fold(x: Number) -> Number:
         return np.reshape(x, shape) if np.ndim(x) else x
 
-    folded = at.mapped(within(fold))
+    folded = at.map_numbers(within(fold))
     for name in names.points:
         into.points[name] = folded.points[name]
     for name in names.links:

@@ -152,7 +152,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
             _("hold values nearer to the initial ones, or let the description begin elsewhere"),
         )
     arriving = _Arriving(continuation, np.ones((1, 1)))
-    positions = kinematics.positions(ARRAYS, np.ones((1, 1)), arriving).mapped(_one)
+    positions = kinematics.positions(ARRAYS, np.ones((1, 1)), arriving).map_numbers(_one)
     signs = {group: float(branches.sign(group, np.ones(1))[0, 0]) for group in branches.signs}
     angles = {**first.angles, **positions.angles, **arriving.angles}
     return replace(first, signs=signs, positions=positions, angles=angles)
