@@ -17,8 +17,8 @@ from centrode.dynamics.kinetostatics.applied_forces import pace_of
 from centrode.dynamics.kinetostatics.reactions import find
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer, reduction_of
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import requested_grid, solve
 
 SAMPLES = 361
 NAME = "six-bar-press"
@@ -33,7 +33,7 @@ def reductions() -> Iterator[Row]:
     """The six-bar press: from the description, and where the motion is there already."""
     mechanism = ct.example(NAME)
     prepared = ready(mechanism)
-    span = asked_span(prepared, SAMPLES, None, None)
+    span = requested_grid(prepared, SAMPLES, None, None)
     solved = solve(prepared, span)
     reducer = Reducer.of(mechanism)
     times = paired_times(
@@ -63,7 +63,7 @@ def reactions() -> Iterator[Row]:
     for name in (NAME, FOUR_BAR):
         mechanism = ct.example(name)
         prepared = ready(mechanism)
-        solved = solve(prepared, asked_span(prepared, SAMPLES, None, None))
+        solved = solve(prepared, requested_grid(prepared, SAMPLES, None, None))
         burden = MassesAndLoads.in_plane(mechanism)
         pace = pace_of(solved, burden)
         whole: Task = functools.partial(ct.reactions, mechanism, SAMPLES)
@@ -110,7 +110,7 @@ def _against(
 ) -> Row:
     """One peer at so many samples; `inner`: it has no derivatives at the first and the last."""
     prepared = ready(mechanism)
-    span = asked_span(prepared, samples, None, None)
+    span = requested_grid(prepared, samples, None, None)
     burden = MassesAndLoads.in_plane(mechanism)
     ours = ct.reactions(mechanism, samples)
     peer = build(mechanism, ct.motion(mechanism, samples), float(ours["drive_rate"][0]))

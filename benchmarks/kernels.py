@@ -20,7 +20,7 @@ from benchmarks.plans import DIMENSIONS, DRIVE, EACH, LANES, SAMPLES, SIX, Plan,
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Shared, Task, best_times, paired_times, ratio, two_threads
 from benchmarks.written import FEW, in_cache, streamed, to_memory
-from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.kinematics.machine_code.variables import PARAMETER
 from centrode.numerics import machine_code
 from centrode.numerics.expressions import Node, apply_operation, variable
 from centrode.numerics.machine_code import cache

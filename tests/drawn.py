@@ -15,8 +15,8 @@ from centrode.analysis.graphic.diagrams import Driven, drawing_of, driven_rates,
 from centrode.analysis.graphic.stage import ConstructionStage, DrawingBoard, VectorDrawing
 from centrode.geometry.plane import PlanePose
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.structure.constraints import Positions
 
@@ -40,7 +40,7 @@ def errors(mechanism: ct.Mechanism, at: float, tries: int = 4) -> tuple[Array, A
 
 
 def errors_of(prepared: Ready, at: float, tries: int = 4) -> tuple[Array, Array] | None:
-    span = span_at(prepared.kinematics.path, np.array([at]))
+    span = grid_at(prepared.kinematics.path, np.array([at]))
     exact = dataset_of(solve(prepared, span))
     if int(exact["status"][0]) not in (ct.Status.OK, ct.Status.CUT_OFF):
         return None

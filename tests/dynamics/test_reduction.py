@@ -14,7 +14,7 @@ import centrode as ct
 from centrode.dynamics.masses import masses_of
 from centrode.dynamics.reduction import Reducer
 from centrode.kinematics.path import JETS
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.numerics.jets import Jet
 from mechanisms import EPS, OPERATIONS, conditioning, on_branch, solve_evenly
 

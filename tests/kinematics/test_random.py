@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 import centrode as ct
 from centrode.geometry.plane import PlanePose
 from centrode.kinematics.path import JETS
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Entity, Positions, is_drive

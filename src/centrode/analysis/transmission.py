@@ -22,11 +22,11 @@ from centrode.analysis.instant_centres.bodies import TurningBodies, pole_of, tur
 from centrode.analysis.rotatability.causes import least_of, transmission_at_ends, watched_dyads
 from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, course_of
 from centrode.errors import InputError
-from centrode.kinematics.motion import dataset_of, named
-from centrode.kinematics.path import SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import MotionOnPath
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.motion import dataset_of, vocabulary_variable
+from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import MotionOnPath
+from centrode.kinematics.solve import requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import unit_vector
@@ -199,9 +199,9 @@ def transmission_angles(
     """
     prepared = ready(mechanism)
     span = (
-        asked_span(prepared, samples, start, stop)
+        requested_grid(prepared, samples, start, stop)
         if at is None
-        else span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+        else grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
     )
     data = dataset_of(solve(prepared, span))
     structure = prepared.structure
@@ -222,10 +222,14 @@ def transmission_angles(
     extremes = extreme_transmission_angles(prepared, span)
     least, greatest = np.array([extremes[number] for number in numbered]).T
     variables = {
-        "transmission_angle": named("transmission_angle", ("sample", "group"), angles),
-        "pressure_angle": named("pressure_angle", ("sample", "group"), np.abs(np.pi / 2 - angles)),
-        "least_transmission_angle": named("least_transmission_angle", ("group",), least),
-        "greatest_transmission_angle": named("greatest_transmission_angle", ("group",), greatest),
+        "transmission_angle": vocabulary_variable("transmission_angle", ("sample", "group"), angles),
+        "pressure_angle": vocabulary_variable(
+            "pressure_angle", ("sample", "group"), np.abs(np.pi / 2 - angles)
+        ),
+        "least_transmission_angle": vocabulary_variable("least_transmission_angle", ("group",), least),
+        "greatest_transmission_angle": vocabulary_variable(
+            "greatest_transmission_angle", ("group",), greatest
+        ),
         **{name: data[name] for name in ("status", "event_value", "event_kind")},
     }
     coords = {"group": list(found), **{name: data[name] for name in ("time", "drive_value")}}

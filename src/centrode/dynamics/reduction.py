@@ -18,21 +18,21 @@ from centrode.dynamics.masses import coordinates_of as speeds_of
 from centrode.dynamics.masses import share, shares
 from centrode.dynamics.state import About, Moving, State, getters_of
 from centrode.errors import InputError
-from centrode.kinematics.compiled.trace import Untraceable
+from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.kinematics.motion import (
     Variable,
     attributes_of,
     coordinates_of,
     judgements_of,
     labels_of,
-    named,
+    vocabulary_variable,
 )
-from centrode.kinematics.path import span_at
+from centrode.kinematics.path import grid_at
 from centrode.kinematics.plan_evaluation import Event
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import MotionOnPath
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.several_inputs.coefficients import Partials, partials
-from centrode.kinematics.solve import GREATEST_RESULT, Solved, asked_span, solve
+from centrode.kinematics.solve import GREATEST_RESULT, Solved, requested_grid, solve
 from centrode.locale import _, mark
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
@@ -355,7 +355,7 @@ def _forces(directions: _Directions, solved: Solved, burden: MassesAndLoads) -> 
 
 def _mixed(name: str, dimensions: Sequence[str], values: Array, units: Sequence[str]) -> Variable:
     """A variable with one unit, or with one for each combination of drives in the order of the array."""
-    variable = named(name, ("sample", *dimensions), values)
+    variable = vocabulary_variable(name, ("sample", *dimensions), values)
     drives = sum(dimension.startswith("drive") for dimension in dimensions)
     head = "N" if "force" in name else "kg"
     least = 1 if head == "N" else 2
@@ -403,9 +403,9 @@ def reduce(
     prepared = ready(mechanism)
     burden = MassesAndLoads.of(mechanism)
     if at is None:
-        span = asked_span(prepared, samples, start, stop)
+        span = requested_grid(prepared, samples, start, stop)
     else:
-        span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
     return reduction_of(solve(prepared, span), burden)
 
 
@@ -420,8 +420,10 @@ def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dat
     first, last = np.min(solved.span.parameter), np.max(solved.span.parameter)
     variables = _variables(found, solved.ready.parameter.units[0])
     unit = solved.ready.parameter.units[0]
-    variables["drive_rate"] = named("drive_rate", ("sample",), moving.rate.copy(), unit)
-    variables["jumps"] = named("jumps", ("jump",), reducer.jumps(float(first), float(last)), unit)
+    variables["drive_rate"] = vocabulary_variable("drive_rate", ("sample",), moving.rate.copy(), unit)
+    variables["jumps"] = vocabulary_variable(
+        "jumps", ("jump",), reducer.jumps(float(first), float(last)), unit
+    )
     variables["status"] = judgements_of(solved, ())["status"]
     coordinates = {
         name: values for name, values in coordinates_of(solved).items() if name in ("time", "drive")
@@ -449,14 +451,20 @@ def _moving(solved: Solved, reducer: Reducer) -> Moving:
 def _variables(found: Reduced, unit: str) -> dict[str, Variable]:
     by_link, by_load = ("sample", "link"), ("sample", "load")
     return {
-        "reduced_inertia": named("reduced_inertia", ("sample",), found.inertia, unit),
-        "reduced_inertia_slope": named("reduced_inertia_slope", ("sample",), found.inertia_slope, unit),
-        "reduced_moment": named("reduced_moment", ("sample",), found.moment, unit),
-        "reduced_inertia_part": named("reduced_inertia_part", by_link, found.inertia_parts.T, unit),
-        "reduced_inertia_slope_part": named(
+        "reduced_inertia": vocabulary_variable("reduced_inertia", ("sample",), found.inertia, unit),
+        "reduced_inertia_slope": vocabulary_variable(
+            "reduced_inertia_slope", ("sample",), found.inertia_slope, unit
+        ),
+        "reduced_moment": vocabulary_variable("reduced_moment", ("sample",), found.moment, unit),
+        "reduced_inertia_part": vocabulary_variable(
+            "reduced_inertia_part", by_link, found.inertia_parts.T, unit
+        ),
+        "reduced_inertia_slope_part": vocabulary_variable(
             "reduced_inertia_slope_part", by_link, found.inertia_slope_parts.T, unit
         ),
-        "reduced_moment_part": named("reduced_moment_part", by_load, found.moment_parts.T, unit),
+        "reduced_moment_part": vocabulary_variable(
+            "reduced_moment_part", by_load, found.moment_parts.T, unit
+        ),
     }
 
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from centrode.geometry.sphere import Attitude, cross, dot, unit_vector, vector_in_frame
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import PlanLayout
-from centrode.kinematics.sampling import Samples
+from centrode.kinematics.samples import Samples
 from centrode.kinematics.solve import Solved
 from centrode.model.links import Link
 from centrode.model.mechanism import FRAME, Mechanism

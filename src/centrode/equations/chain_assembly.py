@@ -14,7 +14,7 @@ from centrode.equations.plane_chains import Chains, shorten
 from centrode.equations.symbol_table import SymbolTable
 from centrode.equations.symbols import BEARING, LENGTH, RATIO, ZERO, Angle, Letter, Sum, SumTerm
 from centrode.errors import InputError
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.structure.constraints import FRAME, GearRatio, NoSlip
 from centrode.structure.gearing import Round, Straight

@@ -22,7 +22,7 @@ from centrode.equations.sphere_chains import SphereBoard, SpherePlace, laid_on_s
 from centrode.equations.symbol_table import Lettering, SymbolTable
 from centrode.equations.symbols import ZERO, Letter, Meaning, Sum
 from centrode.errors import InputError
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import assur_groups, roman

@@ -23,11 +23,11 @@ from centrode.kinematics.motion import (
     dataset_of,
     judgements_of,
     labels_of,
-    named,
+    vocabulary_variable,
 )
 from centrode.kinematics.path import DrivenBy
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.reading import nearest, value_text
@@ -604,7 +604,7 @@ def integrate(
     prepared = ready(mechanism)
     form = form_of(prepared)
     start = prepared.kinematics.path.initial if prepared.parameter.is_uniform else 0.0
-    solved = solve(prepared, asked_span(prepared, steps + 1, start, stop))
+    solved = solve(prepared, requested_grid(prepared, steps + 1, start, stop))
     scaled = Scaled(form, float(prepared.kinematics.numbers.scale))
     times = solved.span.time
     if method == "rk4":
@@ -679,15 +679,15 @@ def _dataset(
     apart = np.linalg.norm(course.points - closed["position"].to_numpy(), axis=-1)
     judged = judgements_of(solved, ())["status"]
     variables = {
-        "angle": named("angle", ("sample", "link"), course.angles),
-        "angular_velocity": named("angular_velocity", ("sample", "link"), course.spins),
-        "position": named("position", ("sample", "point", "axis"), course.points),
-        "velocity": named("velocity", ("sample", "point", "axis"), course.velocities),
-        "slide": named("slide", ("sample", "guide"), course.slides),
-        "slide_velocity": named("slide_velocity", ("sample", "guide"), course.slips),
-        "drift": named("drift", ("sample", "constraint"), drift),
-        "angle_difference": named("angle_difference", ("sample", "link"), off),
-        "position_difference": named("position_difference", ("sample", "point"), apart),
+        "angle": vocabulary_variable("angle", ("sample", "link"), course.angles),
+        "angular_velocity": vocabulary_variable("angular_velocity", ("sample", "link"), course.spins),
+        "position": vocabulary_variable("position", ("sample", "point", "axis"), course.points),
+        "velocity": vocabulary_variable("velocity", ("sample", "point", "axis"), course.velocities),
+        "slide": vocabulary_variable("slide", ("sample", "guide"), course.slides),
+        "slide_velocity": vocabulary_variable("slide_velocity", ("sample", "guide"), course.slips),
+        "drift": vocabulary_variable("drift", ("sample", "constraint"), drift),
+        "angle_difference": vocabulary_variable("angle_difference", ("sample", "link"), off),
+        "position_difference": vocabulary_variable("position_difference", ("sample", "point"), apart),
         "status": (judged[0], status, judged[2]),
         **{name: closed[name] for name in ("event_value", "event_kind", "event_group")},
     }

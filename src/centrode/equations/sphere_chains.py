@@ -17,7 +17,7 @@ from centrode.equations.linear import Condition, Draft
 from centrode.equations.symbol_table import Lettering
 from centrode.equations.symbols import BEARING, ROUNDING, SIMPLE, TURN, ZERO, Angle, Sum, merged, quarters_of
 from centrode.errors import InputError
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.model.values import makes_arc, unit_vector
 from centrode.structure.constraints import FRAME
@@ -55,7 +55,7 @@ class Axes(NamedTuple):
             _mixed(-sine, self.along, cosine, self.left),
         )
 
-    def moved(self, arc: Angle) -> Axes:
+    def move(self, arc: Angle) -> Axes:
         """Moved on along the arc."""
         cosine, sine = Sum.wave("cos", arc), Sum.wave("sin", arc)
         return Axes(
@@ -237,7 +237,7 @@ class SphereBoard(Lettering):
             return self.axes[body]
         arc = self.arc(body, first, point)
         corner = self.between(first, second, point, (inside[first], inside[second], inside[point]))
-        return self.axes[body].turned(corner).moved(arc)
+        return self.axes[body].turned(corner).move(arc)
 
     def towards(self, body: str, pivot: str, end: str | None) -> tuple[Axes, str]:
         """Axes in a point of a placed body along the arc to another of its points, and the name of that one.
@@ -346,7 +346,7 @@ def _dyad(board: SphereBoard, group: Meet, number: int) -> list[Draft]:
     else:
         turn = board.bearing(carrier.guide or "", (carrier.centre, carrier.end, value), draft)
     out = carrier.axes.turned(turn)
-    there = out.moved(carrier.arc)
+    there = out.move(carrier.arc)
     if carrier.link is not None:
         board.place(carrier.link, carrier.centre, point, out)
     board.points[point] = there.at

@@ -21,7 +21,7 @@ from centrode.equations.symbols import (
     joined,
 )
 from centrode.geometry.plane import along
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.structure.constraints import FRAME, Contact, DisplacementDrive, DistanceDrive, PointOnGuide
 from centrode.structure.gearing import Straight
 

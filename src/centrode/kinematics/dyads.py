@@ -94,7 +94,7 @@ def rolled_turn(
     return phase + gearing.spin(rolling.rolling) * bearing
 
 
-def followed(
+def follow_contact(
     turning: Meshed | Rolled,
     link: str,
     m: Namespace,
@@ -226,7 +226,7 @@ def equation_at(
         spin = gearing.spin(rolling.rolling)
         right = gearing.phase[rolling.rolling] + spin * arm_angle(equation, m, numbers)
         return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}, right
-    given = _given(equation, m, numbers, at)
+    given = _given_angle(equation, m, numbers, at)
     if numbers.reference(equation.link) is not None:  # on the sphere the angle is that between the two
         return {equation.link: 1.0}, given
     return {equation.link: 1.0, equation.relative_to: -1.0}, given
@@ -239,7 +239,7 @@ def arm_angle(arm: Arm, m: Namespace, numbers: Dimensions) -> Number:
     return m.atan2(y, x)
 
 
-def _given(equation: AngleGiven, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
+def _given_angle(equation: AngleGiven, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
     if equation.drive is not None:
         return at.drives[equation.drive]
     rotor = numbers.turn[equation.guide or ""]
@@ -268,7 +268,7 @@ def turn_link(
     if isinstance(turning, Turning):
         add_angle(turning, link, numbers, at)
         return turning_rotor(turning, link, m, numbers, at)
-    rotor, angle = followed(turning, link, m, numbers, at, continued)
+    rotor, angle = follow_contact(turning, link, m, numbers, at, continued)
     if angle is not None:
         at.angles[link] = angle
     return rotor
@@ -304,7 +304,7 @@ class Choices(Protocol):
     def divisor(self, divisor: Number) -> Number:
         """A number that is divided by, as it is: its zero is a place the group cannot pass."""
 
-    def continued(self, key: str, angle: Number) -> Number:
+    def continue_angle(self, key: str, angle: Number) -> Number:
         """An angle in (-pi, pi] with the turns that its path has made; `key` names it."""
 
     def higher(self, m: Namespace, at: Positions) -> None:
@@ -325,7 +325,7 @@ def solve_group(group: Group, m: Namespace, numbers: Dimensions, at: Positions, 
     elif isinstance(group, Meet):
         _meet(group, m, numbers, at, choices)
     elif isinstance(group, Train):
-        solve_train(group, m, numbers, at, choices.continued)
+        solve_train(group, m, numbers, at, choices.continue_angle)
     elif isinstance(group, Newton):
         choices.higher(m, at)
 
@@ -335,7 +335,7 @@ def _turned_link(
 ) -> AnyPose:
     turning = group.turning
     if not isinstance(turning, Turning):
-        rotor = turn_link(turning, group.link, m, numbers, at, choices.continued)
+        rotor = turn_link(turning, group.link, m, numbers, at, choices.continue_angle)
         return pose_at(group.link, group.pivot, rotor, m, numbers, at)
     add_angle(turning, group.link, numbers, at)
     rotor, reference = difference_of(turning, m, numbers, at), numbers.reference(turning.link)
@@ -384,10 +384,10 @@ def _carriage_rotor(
 ) -> Vector | None:
     if group.carriage is None or group.turning is None:
         return None
-    rotor = turn_link(group.turning, group.carriage, m, numbers, at, choices.continued)
+    rotor = turn_link(group.turning, group.carriage, m, numbers, at, choices.continue_angle)
     rolls = [locus.rolling for locus in group.loci if isinstance(locus, Rolloff)]
     if group.carriage not in at.angles and any(group.carriage in (r.link, r.on) for r in rolls):
-        at.angles[group.carriage] = choices.continued(group.carriage, m.atan2(rotor[1], rotor[0]))
+        at.angles[group.carriage] = choices.continue_angle(group.carriage, m.atan2(rotor[1], rotor[0]))
     return rotor
 
 

@@ -13,7 +13,7 @@ from centrode.analysis.instant_centres.bodies import Pair, sliders_of
 from centrode.analysis.instant_centres.centres import Case, bearing
 from centrode.analysis.instant_centres.kennedy import Construction, KennedyStep
 from centrode.errors import Status
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.locale import _
 from centrode.model.labels import body_name
 from centrode.model.mechanism import FRAME, Display, Mechanism

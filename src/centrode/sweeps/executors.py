@@ -9,7 +9,7 @@ import math
 from typing import Protocol
 
 from centrode.errors import InputError
-from centrode.kinematics.compiled.trace import Untraceable
+from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.locale import _
 from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS

@@ -1,7 +1,7 @@
 """Sweeps as machine code: what has no events is computed in one go, the rest as motions with events.
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
-and the formulas of `traced`. The motions of all others have the bits of the arrays (`compiled.events`; with groups of
+and the formulas of `trace_motion`. The motions of all others have the bits of the arrays (`compiled.events`; with groups of
 higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does it.
 """
 
@@ -17,26 +17,26 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.compiled.event_screening import EventScreening
-from centrode.kinematics.compiled.events import Eventful
-from centrode.kinematics.compiled.path_following import SURE, Walk, Walking, Way, beginnings, way_of
-from centrode.kinematics.compiled.trace import Traced, Untraceable, traced
-from centrode.kinematics.compiled.variables import (
+from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.events import Eventful
+from centrode.kinematics.machine_code.path_continuation import SURE, Walk, Walking, Way, beginnings, way_of
+from centrode.kinematics.machine_code.trace import Traced, Untraceable, trace_motion
+from centrode.kinematics.machine_code.variables import (
     ALONG,
     PARAMETER,
     SCALE,
     Pass,
     Varied,
     before_of,
-    boxed,
+    box_array,
     centre_of,
     greatest,
     inputs_of,
     least,
-    taken,
+    take_lanes,
     varied_of,
 )
-from centrode.kinematics.sampling import CLOSED
+from centrode.kinematics.samples import CLOSED
 from centrode.locale import mark
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE, streamer
@@ -312,7 +312,7 @@ class Expressed:
     def columns(self) -> dict[str, list[Node]]:
         """Column -> its numbers: of a sample, or reduced."""
         asked, solved = self.task.asked, self.traced.solved
-        given = {path: boxed([variable(path)]) for path in self.task.paths}
+        given = {path: box_array([variable(path)]) for path in self.task.paths}
         if asked.formulas:
             return {
                 formula.name: [as_node(formula.traced(self.folds, solved, given))]
@@ -409,7 +409,7 @@ class Passing(Protocol):
     def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         """The states when all samples are passed."""
 
-    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         """Write every sample; returns what mechanisms are judged by."""
 
 
@@ -430,7 +430,7 @@ class EachForItself:
         # where nothing moves the samples are counted all the same
         return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
 
-    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         scan = self._scan
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
@@ -457,13 +457,13 @@ class Along:
         asked = self.asked
         return Walking(asked.judging.walk, reduction).reduced(asked.way, rows, asked.kernels, asked.threads)
 
-    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         asked = self.asked
         walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs)
         parts = []
         for part, room in rooms:
             some = {name: row[part] for name, row in rows.items()}
-            parts.append(walking.written(asked.way, some, asked.kernels, asked.threads, room))
+            parts.append(walking.write_samples(asked.way, some, asked.kernels, asked.threads, room))
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
@@ -617,7 +617,7 @@ class MachineCodeExecutor:
         asked = Expressed(
             task,
             varied,
-            traced(task.ready, task.span, varied, differentiable=bool(task.asked.slopes)),
+            trace_motion(task.ready, task.span, varied, differentiable=bool(task.asked.slopes)),
             kernels,
             threads,
         )
@@ -677,7 +677,7 @@ class MachineCodeExecutor:
         for first in range(0, len(left), most):
             lanes = left[first : first + most]
             parts = self._room(len(lanes))
-            self.arrays.run(self.task, taken(numbers, lanes), _rows_at(values, lanes), parts)
+            self.arrays.run(self.task, take_lanes(numbers, lanes), _rows_at(values, lanes), parts)
             _put(parts, lanes, results)
 
     def _room(self, lanes: int) -> StreamedColumns:
@@ -730,7 +730,7 @@ class MachineCodeExecutor:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
         every = EverySample(self.asked.columns, results, at, self.asked.samples)
-        return self._passing.written(rows, every.rooms())
+        return self._passing.write_samples(rows, every.rooms())
 
 
 def _rows_at(values: Rows, lanes: Lanes) -> Rows:

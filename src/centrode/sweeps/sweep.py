@@ -13,8 +13,8 @@ import xarray as xr
 from centrode.dynamics.reduction import REDUCED, check_reducible, reduction_of
 from centrode.errors import InputError
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
 from centrode.model.examples.catalogue import load
 from centrode.model.mechanism import Mechanism
@@ -85,7 +85,7 @@ def sweep(
     name = check_executor(executor)
     design = design_of(mechanism, vary)
     prepared = ready(mechanism)
-    span = asked_span(prepared, samples, start, stop)
+    span = requested_grid(prepared, samples, start, stop)
     motion = _first(solve(prepared, span), outputs, reduce)
     paths = tuple(design.coordinates)
     asked = asked_of(motion, design, outputs, reduce)

@@ -13,7 +13,7 @@ import pytest
 
 import centrode as ct
 from centrode.kinematics.plan_evaluation import FixedSigns
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.numerics.expressions import EXPRESSIONS, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.jets import Jet, JetFunctions

@@ -23,9 +23,9 @@ from centrode.analysis.graphic.stage import (
 from centrode.errors import InputError, MotionError, Status
 from centrode.geometry.plane import pose_with_point
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import JETS, SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.path import JETS, SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.solve import requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
@@ -259,7 +259,7 @@ def diagrams(
         )
     board = DrawingBoard(_step(angle_step, "angle"), _step(length_step, "length"))
     prepared = ready(mechanism)
-    span = span_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
+    span = grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)
     found = _constructed(prepared, exact, span, board, scales or {})
@@ -330,7 +330,7 @@ def _constructed(
 def _course(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
     """The motion as far as it is asked for by default; the instant alone where nothing says how far."""
     try:
-        return dataset_of(solve(prepared, asked_span(prepared, COURSE, None, None)))
+        return dataset_of(solve(prepared, requested_grid(prepared, COURSE, None, None)))
     except InputError:
         return exact
 

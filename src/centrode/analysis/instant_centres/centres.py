@@ -26,7 +26,7 @@ from centrode.analysis.instant_centres.bodies import (
     vectors,
 )
 from centrode.errors import InputError
-from centrode.kinematics.motion import labels_of, named
+from centrode.kinematics.motion import labels_of, vocabulary_variable
 from centrode.kinematics.solve import GREATEST_RESULT
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism, Rolling
@@ -331,7 +331,7 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     front = tuple(map(str, motion["status"].dims))
     labels = [f"{bodies.names[first]},{bodies.names[second]}" for first, second in numbers]
     variables = {
-        name: named(
+        name: vocabulary_variable(
             name, (*front, "pair", "axis")[: values.ndim], values, length_unit="rad" if spherical else "m"
         )
         for name, values in found.items()

@@ -24,7 +24,7 @@ from centrode.analysis.instant_centres.bodies import (
 )
 from centrode.analysis.instant_centres.centres import axis_of, numbered
 from centrode.errors import Status
-from centrode.kinematics.motion import named
+from centrode.kinematics.motion import vocabulary_variable
 from centrode.model.motion_parameter import parameter_values
 
 # Polodes on the sphere: what the end of the instantaneous axis describes in the axes of either body.
@@ -114,11 +114,11 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
     front, unit = tuple(map(str, motion["status"].dims)), "rad" if spherical else "m"
     along = (*front, "axis")
     variables = {
-        "fixed_centrode": named("fixed_centrode", along, found.fixed, length_unit=unit),
-        "moving_centrode": named("moving_centrode", along, found.moving, length_unit=unit),
-        "centrode_piece": named("centrode_piece", front, pieces),
-        "fixed_arc": named("fixed_arc", front, arcs[0], length_unit=unit),
-        "moving_arc": named("moving_arc", front, arcs[1], length_unit=unit),
+        "fixed_centrode": vocabulary_variable("fixed_centrode", along, found.fixed, length_unit=unit),
+        "moving_centrode": vocabulary_variable("moving_centrode", along, found.moving, length_unit=unit),
+        "centrode_piece": vocabulary_variable("centrode_piece", front, pieces),
+        "fixed_arc": vocabulary_variable("fixed_arc", front, arcs[0], length_unit=unit),
+        "moving_arc": vocabulary_variable("moving_arc", front, arcs[1], length_unit=unit),
     }
     kept = motion[["status"]].assign_coords(axis=motion["axis"], drive_value=motion["drive_value"])
     return kept.assign(variables).assign_attrs(link=link, against=against)

@@ -22,10 +22,10 @@ from centrode.errors import InputError, NotComputedYet, Status
 from centrode.geometry.plane import PlanePose, Vector, reversed_rotor, rotate_vector, subtract
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.motion import coordinates_of, judgements_of, labels_of, named
-from centrode.kinematics.path import JETS, SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import start_of
+from centrode.kinematics.motion import coordinates_of, judgements_of, labels_of, vocabulary_variable
+from centrode.kinematics.path import JETS, SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import start_of
 from centrode.kinematics.solve import fit_for, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
@@ -93,7 +93,7 @@ def curvature(
     if places is None:
         assert isinstance(source, xr.Dataset)
         places = prepared.parameter.instants(source)
-    span = span_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64))
+    span = grid_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64))
     solved = solve(prepared, span)
     positions = jet_positions(prepared, span)
     present = np.isin(solved.status[0], (Status.OK, Status.CUT_OFF))
@@ -196,14 +196,14 @@ def _of_pole(seen: Seen, scale: float) -> dict[str, object]:
     ball = np.where(told, pole + square * (square * np.conj(to_inflection)).real, np.nan)
     tangent = np.angle(-1j * normal * seen.rotor)
     return {
-        "pole": named("pole", ("sample", "axis"), vectors(seen.outside(pole))),
-        "inflection_pole": named(
+        "pole": vocabulary_variable("pole", ("sample", "axis"), vectors(seen.outside(pole))),
+        "inflection_pole": vocabulary_variable(
             "inflection_pole", ("sample", "axis"), vectors(seen.outside(pole + to_inflection))
         ),
-        "inflection_diameter": named("inflection_diameter", ("sample",), diameter),
-        "pole_tangent": named("pole_tangent", ("sample",), tangent),
-        "stationary_cubic": named("stationary_cubic", ("sample", "coefficient"), cubic),
-        "ball_point": named("ball_point", ("sample", "axis"), vectors(seen.outside(ball))),
+        "inflection_diameter": vocabulary_variable("inflection_diameter", ("sample",), diameter),
+        "pole_tangent": vocabulary_variable("pole_tangent", ("sample",), tangent),
+        "stationary_cubic": vocabulary_variable("stationary_cubic", ("sample", "coefficient"), cubic),
+        "ball_point": vocabulary_variable("ball_point", ("sample", "axis"), vectors(seen.outside(ball))),
     }
 
 
@@ -225,7 +225,9 @@ def _of_points(seen: Seen, points: Local, scale: float) -> dict[str, object]:
     centre = place + 1j * first / speed / np.where(np.abs(curved) * scale > ROUNDED, curved, np.nan)
     outside = seen.origin[:, None] + seen.rotor[:, None] * centre
     return {
-        "path_curvature": named("path_curvature", ("sample", "point"), curved),
-        "path_curvature_slope": named("path_curvature_slope", ("sample", "point"), slope),
-        "curvature_centre": named("curvature_centre", ("sample", "point", "axis"), vectors(outside)),
+        "path_curvature": vocabulary_variable("path_curvature", ("sample", "point"), curved),
+        "path_curvature_slope": vocabulary_variable("path_curvature_slope", ("sample", "point"), slope),
+        "curvature_centre": vocabulary_variable(
+            "curvature_centre", ("sample", "point", "axis"), vectors(outside)
+        ),
     }

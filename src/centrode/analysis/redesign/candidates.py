@@ -15,7 +15,7 @@ from centrode.geometry.plane import Vector, add, cross, reversed_rotor, rotate_v
 from centrode.kinematics.assembly_mode import side_names, side_words, stated_side
 from centrode.kinematics.dyads import solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.model.files import value_at, with_value
 from centrode.model.mechanism import FRAME, Mechanism

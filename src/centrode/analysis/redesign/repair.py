@@ -26,7 +26,7 @@ from centrode.errors import CentrodeError, InputError, NotComputedYet
 from centrode.geometry.plane import PlaneCircle, dot, subtract
 from centrode.kinematics.dyads import loci_of, solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si

@@ -24,7 +24,7 @@ from centrode.kinematics.change_points import BranchedPlan
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.path import OFF_GRID
 from centrode.kinematics.plan_evaluation import Branches, Event
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
 from centrode.model.reading import body_word

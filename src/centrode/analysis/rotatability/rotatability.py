@@ -23,7 +23,7 @@ from centrode.analysis.rotatability.tours import (
     watched_members,
 )
 from centrode.kinematics.plan_evaluation import Event
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

@@ -18,8 +18,8 @@ from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import JETS, OFF_GRID
 from centrode.kinematics.plan_evaluation import Event, rotor_of_angle, slide_of
-from centrode.kinematics.prepared import Ready
-from centrode.kinematics.sampling import start_of
+from centrode.kinematics.preparation import Ready
+from centrode.kinematics.samples import start_of
 from centrode.kinematics.several_inputs.limits import check_closed, held_path, starting_at
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive, Mechanism

@@ -19,7 +19,7 @@ from centrode.cams.followers.geometry import FollowerCam, Oscillating
 from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.roller_path import angles_of
 from centrode.errors import Status
-from centrode.kinematics.motion import Variable, named
+from centrode.kinematics.motion import Variable, vocabulary_variable
 from centrode.model.cam import Material as DescribedMaterial
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
@@ -609,9 +609,9 @@ def dataset_of_forces(cam: PlateCam, forces: FollowerForces, phi: Array) -> xr.D
             "contact_depth": found.strip.depth,
             "contact_half_width": found.strip.half_width,
         }
-    data = {name: named(name, ("sample",), one) for name, one in values.items()}
+    data = {name: vocabulary_variable(name, ("sample",), one) for name, one in values.items()}
     data["status"] = _status(forces, found)
-    coordinates = {"cam_angle": named("cam_angle", ("sample",), phi)}
+    coordinates = {"cam_angle": vocabulary_variable("cam_angle", ("sample",), phi)}
     return xr.Dataset(data, coords=coordinates, attrs=_facts(cam, forces))
 
 
@@ -619,7 +619,7 @@ def _status(forces: FollowerForces, found: ActingForces) -> Variable:
     lost = (found.push < 0) & (not forces.led)
     status = np.where(np.isnan(found.normal), np.int8(Status.SINGULAR), np.int8(Status.OK))
     status = np.where(lost, np.int8(Status.OPEN), status).astype(np.int8)
-    dimensions, values, attributes = named("status", ("sample",), status)
+    dimensions, values, attributes = vocabulary_variable("status", ("sample",), status)
     attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
     attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
     return dimensions, values, attributes

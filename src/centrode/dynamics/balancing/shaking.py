@@ -17,11 +17,17 @@ from centrode.dynamics.state import Mass, Moving, Place, State
 from centrode.dynamics.steady_motion.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME, Panels
 from centrode.dynamics.steady_motion.steady import SteadySolution, solution_of, turned_at
 from centrode.errors import InputError, MotionError, NotComputedYet
-from centrode.kinematics.motion import Variable, attributes_of, coordinates_of, judgements_of, named
-from centrode.kinematics.path import SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import MotionOnPath
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.motion import (
+    Variable,
+    attributes_of,
+    coordinates_of,
+    judgements_of,
+    vocabulary_variable,
+)
+from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import MotionOnPath
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import nearest, value_text
@@ -552,7 +558,7 @@ def shaking(
         tracks_of(state, masses), masses, ShaftMotion(span.rate, span.second_rate), complex(*centre)
     )
     variables = _curves(effects, solved.ready.parameter.units[0], several=prepared.kinematics.path.by_time)
-    variables["drive_rate"] = named(
+    variables["drive_rate"] = vocabulary_variable(
         "drive_rate", ("sample",), span.rate.copy(), solved.ready.parameter.units[0]
     )
     variables["status"] = judgements_of(solved, ())["status"]
@@ -604,9 +610,9 @@ def _asked(
     prepared = ready(mechanism)
     path = prepared.kinematics.path
     if at is None:
-        span = asked_span(prepared, samples, start, stop)
+        span = requested_grid(prepared, samples, start, stop)
     else:
-        span = span_at(path, np.asarray(at, dtype=np.float64))
+        span = grid_at(path, np.asarray(at, dtype=np.float64))
     if mechanism.machine is not None and path.parameter.is_uniform:
         rate = np.full(len(span.parameter), np.copysign(mechanism.machine.mean_speed, path.forward))
         time = path.parameter.times(span.parameter, path.driven[0].start, rate)
@@ -618,12 +624,14 @@ def _curves(effects: Effects, unit: str, *, several: bool) -> dict[str, Variable
     """Force, its size, moment; what the drive gives, where there is one."""
     force = np.stack([effects.force.real, effects.force.imag], axis=-1)
     found = {
-        "shaking_force": named("shaking_force", ("sample", "axis"), force),
-        "shaking_force_size": named("shaking_force_size", ("sample",), np.abs(effects.force)),
-        "shaking_moment": named("shaking_moment", ("sample",), effects.moment),
+        "shaking_force": vocabulary_variable("shaking_force", ("sample", "axis"), force),
+        "shaking_force_size": vocabulary_variable("shaking_force_size", ("sample",), np.abs(effects.force)),
+        "shaking_moment": vocabulary_variable("shaking_moment", ("sample",), effects.moment),
     }
     if not several:
-        found["inertia_on_drive"] = named("inertia_on_drive", ("sample",), effects.driving, unit)
+        found["inertia_on_drive"] = vocabulary_variable(
+            "inertia_on_drive", ("sample",), effects.driving, unit
+        )
     return found
 
 
@@ -676,14 +684,19 @@ def variables_of(harmonics: Harmonics) -> dict[str, Variable]:
             "amplitude": np.hypot(cosine, sine),
             "phase": np.arctan2(sine, cosine),
         }
-        return {f"{name}_{key}": named(f"{name}_{key}", dims, value) for key, value in values.items()}
+        return {
+            f"{name}_{key}": vocabulary_variable(f"{name}_{key}", dims, value)
+            for key, value in values.items()
+        }
 
     cosine, sine = (
         np.stack([x.real, x.imag], axis=-1) for x in (harmonics.force_cosine, harmonics.force_sine)
     )
     return {
-        "order": named("order", ("order",), harmonics.orders),
+        "order": vocabulary_variable("order", ("order",), harmonics.orders),
         **parts("force_harmonic", cosine, sine, ("order", "axis")),
-        "force_harmonic_greatest": named("force_harmonic_greatest", ("order",), harmonics.force_greatest),
+        "force_harmonic_greatest": vocabulary_variable(
+            "force_harmonic_greatest", ("order",), harmonics.force_greatest
+        ),
         **parts("moment_harmonic", harmonics.moment_cosine, harmonics.moment_sine, ("order",)),
     }

@@ -41,8 +41,8 @@ from centrode.dynamics.reduction import Reducer, reduced
 from centrode.dynamics.state import Moving, State
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Mechanism
@@ -397,7 +397,7 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
     room = room_of(paper)
     burden = MassesAndLoads.in_plane(mechanism)
     prepared = ready(mechanism)
-    solved = solve(prepared, span_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
     exact = dataset_of(solved)
     _refuse_where_it_is_not(exact, at)
     drawing = drawing_of(prepared, exact, DrawingBoard())

@@ -18,7 +18,7 @@ from centrode.dynamics.steady_motion.steady import solution_of, turned_at
 from centrode.dynamics.wrenches import Moment, Vector, Wrench, couple, on_link
 from centrode.geometry.sphere import add, cross, dot, times
 from centrode.kinematics.path import JETS, SampleGrid
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.jets import Jet

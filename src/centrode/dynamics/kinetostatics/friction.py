@@ -20,7 +20,7 @@ from centrode.dynamics.state import State
 from centrode.dynamics.wrenches import Wrench, couple
 from centrode.errors import InputError, NotComputedYet
 from centrode.geometry.plane import rotate_vector
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.model.loads import Load
 from centrode.model.mechanism import FRAME, Mechanism

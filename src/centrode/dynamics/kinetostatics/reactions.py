@@ -58,11 +58,11 @@ from centrode.kinematics.motion import (
     coordinates_of,
     judgements_of,
     labels_of,
-    named,
+    vocabulary_variable,
 )
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Entity
@@ -282,7 +282,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
     parameter = solved.span.parameter
     locking = powers.locking
     locking[rubbed.solution.outcome == Outcome.LOCKED] = JAMMED
-    dimensions, values, attributes = named("self_locking", ("sample",), locking)
+    dimensions, values, attributes = vocabulary_variable("self_locking", ("sample",), locking)
     flags = {
         "flag_values": np.array(list(LOCKING), dtype=np.int8),
         "flag_meanings": " ".join(LOCKING.values()),
@@ -290,14 +290,16 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
     works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
     works = np.where(whole and _found(rubbed), works, np.nan)
     found = {
-        "friction_work": named("friction_work", ("friction",), works),
-        "friction_turns": named("friction_turns", ("sample", "friction"), rubbed.turns.astype(np.int8)),
+        "friction_work": vocabulary_variable("friction_work", ("friction",), works),
+        "friction_turns": vocabulary_variable(
+            "friction_turns", ("sample", "friction"), rubbed.turns.astype(np.int8)
+        ),
         "self_locking": (dimensions, values, attributes | flags),
     }
     if not solved.ready.kinematics.path.by_time:
         first, last = float(np.min(parameter)), float(np.max(parameter))
         places = reversals(solved.ready, rubbed.contacts, first, last)
-        found["jumps"] = named("jumps", ("jump",), places, solved.ready.parameter.units[0])
+        found["jumps"] = vocabulary_variable("jumps", ("jump",), places, solved.ready.parameter.units[0])
     return found
 
 
@@ -368,7 +370,7 @@ def labelled(solved: Solved, burden: MassesAndLoads, found: ReactionSolution, wh
         values[absent] = np.nan
     units = solved.ready.parameter.units
     variables = {
-        name: named(name, ("sample", *_dimensions(name, values)), values, units[0])
+        name: vocabulary_variable(name, ("sample", *_dimensions(name, values)), values, units[0])
         for name, values in parts.items()
     }
     if len(set(units)) > 1:
@@ -376,10 +378,12 @@ def labelled(solved: Solved, burden: MassesAndLoads, found: ReactionSolution, wh
             one.force_unit for one in solved.ready.parameter.drives
         )
     if not solved.ready.kinematics.path.by_time:
-        variables["drive_rate"] = named("drive_rate", ("sample",), found.pace.moving.rate.copy(), units[0])
+        variables["drive_rate"] = vocabulary_variable(
+            "drive_rate", ("sample",), found.pace.moving.rate.copy(), units[0]
+        )
     variables |= _statuses(solved, found)
     sides = np.array([side.label not in undetermined for side in found.sides], dtype=np.int8)
-    variables["determined"] = named("determined", ("side",), sides)
+    variables["determined"] = vocabulary_variable("determined", ("side",), sides)
     attributes = attributes_of(solved) | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
     coordinates = _coordinates(solved, burden, found)
@@ -402,12 +406,12 @@ def _statuses(solved: Solved, found: ReactionSolution) -> dict[str, Variable]:
         "flag_values": np.array(list(Status), dtype=np.int8),
         "flag_meanings": " ".join(status.name.lower() for status in Status),
     }
-    dimensions, values, attributes = named("reaction_status", ("sample",), found.status)
+    dimensions, values, attributes = vocabulary_variable("reaction_status", ("sample",), found.status)
     loss = found.forces.system.inverse.loss[0]
     return {
         "status": motion,
         "reaction_status": (dimensions, values, attributes | flags),
-        "reaction_loss": named("reaction_loss", ("sample",), np.minimum(loss, 1.0)),
+        "reaction_loss": vocabulary_variable("reaction_loss", ("sample",), np.minimum(loss, 1.0)),
     }
 
 
@@ -516,9 +520,9 @@ def reactions(
         return reactions_at(solve(prepared, span), burden, pace, whole=at is None)
     prepared = ready(mechanism)
     if at is None:
-        span = asked_span(prepared, samples, start, stop)
+        span = requested_grid(prepared, samples, start, stop)
     else:
-        span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
     solved = solve(prepared, span)
     return reactions_at(solved, burden, pace_of(solved, burden), contacts, at is None)
 

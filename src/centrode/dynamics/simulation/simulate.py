@@ -34,11 +34,17 @@ from centrode.dynamics.simulation.equation_of_motion import (
 )
 from centrode.dynamics.simulation.stepping import Stepper, Until, compiled, even_times, fixed_steps
 from centrode.errors import InputError, MotionError
-from centrode.kinematics.compiled.trace import Untraceable
-from centrode.kinematics.motion import attributes_of, coordinates_of, dataset_of, judgements_of, named
+from centrode.kinematics.machine_code.trace import Untraceable
+from centrode.kinematics.motion import (
+    attributes_of,
+    coordinates_of,
+    dataset_of,
+    judgements_of,
+    vocabulary_variable,
+)
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.plan_evaluation import layout_of
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, check_size, solve
 from centrode.locale import _
 from centrode.model.files import mechanism_text
@@ -211,7 +217,9 @@ def simulation_dataset(
     solved = solve(setting.prepared, SampleGrid(times, states[VALUE], states[RATE], acceleration))
     unit = solved.ready.parameter.units[0]
     curves = _curves(setting, states, forces, acceleration, moving)
-    curves_named = {name: named(name, ("sample",), values, unit) for name, values in curves.items()}
+    curves_named = {
+        name: vocabulary_variable(name, ("sample",), values, unit) for name, values in curves.items()
+    }
     occasions = _occasions(course, unit)
     facts = _facts(setting, course, curves)
     if motion:
@@ -280,12 +288,14 @@ def inertia_at(setting: Setting, value: float) -> float:
 def _occasions(course: Trajectory, unit: str) -> dict[str, object]:
     found = course.occasions
     kinds = np.array([OCCASIONS.index(one.kind) for one in found], dtype=np.int8)
-    dimensions, values, attributes = named("occasion_kind", ("occasion",), kinds)
+    dimensions, values, attributes = vocabulary_variable("occasion_kind", ("occasion",), kinds)
     attributes["flag_values"] = np.arange(len(OCCASIONS), dtype=np.int8)
     attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in OCCASIONS)
     return {
-        "occasion_time": named("occasion_time", ("occasion",), np.array([one.time for one in found])),
-        "occasion_value": named(
+        "occasion_time": vocabulary_variable(
+            "occasion_time", ("occasion",), np.array([one.time for one in found])
+        ),
+        "occasion_value": vocabulary_variable(
             "occasion_value", ("occasion",), np.array([one.value for one in found]), unit
         ),
         "occasion_kind": (dimensions, values, attributes),

@@ -45,9 +45,9 @@ from centrode.dynamics.simulation.equation_of_motion import Array as States
 from centrode.dynamics.simulation.interpolation import Interpolant
 from centrode.dynamics.state import Moving
 from centrode.errors import MotionError
-from centrode.kinematics.compiled.trace import Untraceable, traced
-from centrode.kinematics.compiled.variables import PARAMETER, TIME, centre_of, varied_of, winding_of
-from centrode.kinematics.compiled.variables import RATE as RATE_VARIABLE
+from centrode.kinematics.machine_code.trace import Untraceable, trace_motion
+from centrode.kinematics.machine_code.variables import PARAMETER, TIME, centre_of, varied_of, winding_of
+from centrode.kinematics.machine_code.variables import RATE as RATE_VARIABLE
 from centrode.kinematics.path import SampleGrid
 from centrode.locale import _, mark
 from centrode.model.simulation import MOST_TURNS
@@ -156,7 +156,7 @@ def _rates(field: Field, t: float, y: States) -> States:
 #
 # Positions are those of the closed forms, traced at each of the four stages: nothing is represented, so
 # nothing is
-# approximated but by the scheme. That needs a mechanism without events, as sweeps do (`kinematics.compiled`).
+# approximated but by the scheme. That needs a mechanism without events, as sweeps do (`kinematics.machine_code`).
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -239,7 +239,7 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
     reducer = rows.reducer
     # two samples whose times and rates differ: then these are variables
     span = SampleGrid(np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([1.0, 2.0]), np.zeros(2))
-    found = traced(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
+    found = trace_motion(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
     if found.steps:
         raise Untraceable(mark("groups of higher class"))
     time, value, rate = (variable(name) for name in (TIME, PARAMETER, RATE_VARIABLE))

@@ -15,7 +15,7 @@ from numpy.polynomial import legendre
 from centrode.dynamics.reduction import Reducer
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.path import SampleGrid
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism

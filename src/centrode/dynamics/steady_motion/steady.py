@@ -34,9 +34,9 @@ from centrode.dynamics.steady_motion.speed import (
     with_inertia,
 )
 from centrode.errors import InputError, MotionError
-from centrode.kinematics.motion import dataset_of, named
+from centrode.kinematics.motion import dataset_of, vocabulary_variable
 from centrode.kinematics.path import SampleGrid
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
 from centrode.locale import _
 from centrode.model import reading
@@ -352,7 +352,8 @@ def steady_dataset(found: SteadySolution, turned: Array, method: Method = "exact
     span = SampleGrid(speed.time(turned), cycle.value(turned), rate, second)
     data = dataset_of(solve(found.prepared, span))
     with_energies = {
-        name: named(name, ("sample",), values) for name, values in _curves(found, turned).items()
+        name: vocabulary_variable(name, ("sample",), values)
+        for name, values in _curves(found, turned).items()
     }
     return data.assign(with_energies).assign_attrs(_facts(found, method))
 

@@ -15,8 +15,8 @@ from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import State, length_unit
 from centrode.dynamics.wrenches import Wrench
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import solve
 from centrode.model.mechanism import FRAME, Mechanism
 
@@ -50,7 +50,7 @@ def joint_forces(mechanism: Mechanism, places: Array) -> xr.Dataset:
 def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:
     """Forces of all loads and weights at given places, as `reactions` takes them; moments are not among them."""
     prepared = ready(mechanism)
-    solved = solve(prepared, span_at(prepared.kinematics.path, places))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, places))
     burden = MassesAndLoads.for_reactions(mechanism)
     state = State.of(solved, pace_of(solved, burden).moving)
     found = []
