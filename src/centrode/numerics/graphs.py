@@ -80,7 +80,7 @@ def rebuilt(
 ) -> dict[str, Node]:
     """Outputs with some nodes replaced, and everything above these built anew.
 
-    `replaced(node, arguments)` gives what stands for a node, its arguments being rebuilt already, or None.
+    `replace_letters(node, arguments)` gives what stands for a node, its arguments being rebuilt already, or None.
     """
     new: dict[Node, Node] = {}
     for node in topological_order(outputs.values()):
