@@ -20,7 +20,7 @@ import xarray as xr
 
 from centrode.analysis.instant_centres.bodies import TurningBodies, pole_of, turning_bodies_of
 from centrode.analysis.rotatability.causes import least_of, transmission_at_ends, watched_dyads
-from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, course_of
+from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, monitored_function
 from centrode.errors import InputError
 from centrode.kinematics.motion import dataset_of, vocabulary_variable
 from centrode.kinematics.path import SampleGrid, grid_at
@@ -144,7 +144,7 @@ def extreme_transmission_angles(ready: Ready, span: SampleGrid) -> dict[int, tup
         dyads = watched_dyads(stretch, guides=True)
         if not first <= last:
             return {group: (nan, nan) for _one, group in dyads}
-        course = course_of(stretch, [one for one, _group in dyads])
+        course = monitored_function(stretch, [one for one, _group in dyads])
         return {group: _extremes(course, k, group) for k, (_one, group) in enumerate(dyads)}
 
 
@@ -240,7 +240,7 @@ def _angle(data: xr.Dataset, numbers: Dimensions, group: Group) -> Array | None:
     """Transmission angle of a group at every sample; None where it has none."""
     if isinstance(group, Aim) and group.contact is None:
         arm = place(data, group.target) - place(data, group.pivot)
-        return _acute(1j * arm, _heading(data, numbers, group.link, group.guide))
+        return _acute(1j * arm, _guide_directions(data, numbers, group.link, group.guide))
     if not isinstance(group, Meet) or any(isinstance(locus, Stop) for locus in group.loci):
         return None
     directions = list(_directions(data, numbers, group))
@@ -259,9 +259,9 @@ def _directions(data: xr.Dataset, numbers: Dimensions, group: Meet) -> Iterator[
             arm = place(data, locus.centre) - place(data, locus.point)
             yield arm if circles else 1j * arm
         elif isinstance(locus, Rail):
-            yield _heading(data, numbers, locus.on, locus.guide)
+            yield _guide_directions(data, numbers, locus.on, locus.guide)
         elif isinstance(locus, Slot) and group.carriage is not None:
-            yield _heading(data, numbers, group.carriage, locus.guide)
+            yield _guide_directions(data, numbers, group.carriage, locus.guide)
 
 
 def place(data: xr.Dataset, point: str) -> Lines:
@@ -270,7 +270,7 @@ def place(data: xr.Dataset, point: str) -> Lines:
     return np.asarray(xy[:, 0] + 1j * xy[:, 1])
 
 
-def _heading(data: xr.Dataset, numbers: Dimensions, link: str, guide: str) -> Lines:
+def _guide_directions(data: xr.Dataset, numbers: Dimensions, link: str, guide: str) -> Lines:
     """Directions of a guide at every sample."""
     turn = np.zeros(data.sizes["sample"]) if link == FRAME else data["angle"].sel(link=link).to_numpy()
     return np.asarray(complex(*numbers.direction[guide]) * np.exp(1j * turn))

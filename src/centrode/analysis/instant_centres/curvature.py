@@ -13,7 +13,7 @@ from centrode.analysis.instant_centres.bodies import (
     ROUNDED,
     Array,
     Seen,
-    described,
+    mechanism_of_motion,
     refuse_batch,
     sliders_of,
     vectors,
@@ -80,7 +80,7 @@ def curvature(
     pole the curvature, on the inflection circle the centre of curvature; Ball's point where every point of
     the inflection circle is one.
     """
-    mechanism, places = _asked(source, at)
+    mechanism, places = _source_mechanism(source, at)
     if mechanism.space == "sphere":
         raise NotComputedYet(
             "space", _("curvature is not computed on the sphere"), _("ask for a planar mechanism")
@@ -97,7 +97,7 @@ def curvature(
     solved = solve(prepared, span)
     positions = jet_positions(prepared, span)
     present = np.isin(solved.status[0], (Status.OK, Status.CUT_OFF))
-    seen = _seen(mechanism, positions, link, against, present)
+    seen = _pose_derivatives(mechanism, positions, link, against, present)
     own = _local_points(mechanism, link) | dict(points or {})
     scale = float(prepared.kinematics.numbers.scale)
     with np.errstate(all="ignore"):
@@ -109,7 +109,7 @@ def curvature(
     return xr.Dataset(variables, coords=kept | coordinate, attrs={"link": link, "against": against})
 
 
-def _asked(
+def _source_mechanism(
     source: Mechanism | xr.Dataset, at: npt.ArrayLike | None
 ) -> tuple[Mechanism, npt.ArrayLike | None]:
     if isinstance(source, Mechanism):
@@ -117,7 +117,7 @@ def _asked(
             raise InputError("at", _("it needs values of the drive"), _("give one or more"))
         return source, at
     refuse_batch(source)
-    return described(source), at
+    return mechanism_of_motion(source), at
 
 
 def _check_body(mechanism: Mechanism, name: str) -> None:
@@ -139,7 +139,7 @@ def jet_positions(prepared: Ready, span: SampleGrid) -> Positions:
         )
 
 
-def _seen(
+def _pose_derivatives(
     mechanism: Mechanism, at: Positions, link: str, against: str, present: npt.NDArray[np.bool_]
 ) -> Seen:
     """Three derivatives of the pose of a link in the axes of another."""

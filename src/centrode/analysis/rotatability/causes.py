@@ -148,7 +148,7 @@ class _About:
         return f"{value * factor:.6g} {shown}"
 
 
-def _one(x: Number) -> float:
+def _as_float(x: Number) -> float:
     return float(np.reshape(x, -1)[0])
 
 
@@ -190,7 +190,7 @@ def _conditions(about: _About, group: Meet) -> tuple[PivotSymbol | None, PivotSy
 def _of_two_rods(about: _About, group: Meet) -> Cause:
     """The centres and the point where the rods meet lie on one line: stretched out, or folded."""
     one, other = (body_of(locus) for locus in group.loci)
-    stretched, apart = _stretched(about, group)
+    stretched, apart = _circle_contact(about, group)
     first, second = (getattr(locus, "centre", "") for locus in group.loci)
     if about.on_sphere:
         condition = f"sin(angle {first}-{group.points[0]}-{second}) = 0"
@@ -210,14 +210,14 @@ def _of_two_rods(about: _About, group: Meet) -> Cause:
     return Cause(sentence, condition)
 
 
-def _stretched(about: _About, group: Meet) -> tuple[bool, float]:
+def _circle_contact(about: _About, group: Meet) -> tuple[bool, float]:
     """Whether two circles touch from outside, and how far apart their centres are."""
-    at = about.tour.stopped(about.value, ARRAYS)
+    at = about.tour.positions_at(about.value, ARRAYS)
     choices = SideChoices(FixedSigns(ARRAYS, {about.index: 0.0}), about.index)
     space = about.numbers.space
     with np.errstate(all="ignore"):
         one, other = loci_of(group, ARRAYS, about.numbers, at, choices)
-        apart = _one(space.distance(ARRAYS, one.centre, other.centre))
+        apart = _as_float(space.distance(ARRAYS, one.centre, other.centre))
     radii = [_radius(circle) for circle in (one, other)]
     total, difference = sum(radii), abs(radii[0] - radii[1])
     total = min(total, 2.0 * np.pi - total) if about.on_sphere else total
@@ -227,9 +227,9 @@ def _stretched(about: _About, group: Meet) -> tuple[bool, float]:
 def _radius(circle: Any) -> float:
     """Radius [m], on the sphere the arc [rad], of a circle."""
     if hasattr(circle, "half"):
-        sine, cosine = (_one(x) for x in circle.half)
+        sine, cosine = (_as_float(x) for x in circle.half)
         return 2.0 * float(np.arctan2(abs(sine), abs(cosine)))
-    return abs(_one(circle.radius))
+    return abs(_as_float(circle.radius))
 
 
 def _of_rod_and_line(about: _About, group: Meet) -> Cause:
@@ -313,7 +313,7 @@ def watched_dyads(tour: DriveSweep, guides: bool = False) -> list[tuple[Watched,
     kinematics = tour.continuation.kinematics
     found = []
     for index, group in enumerate(kinematics.structure.groups):
-        watched = _watched(kinematics, group)
+        watched = _watched_angle(kinematics, group)
         if watched is None and guides:
             watched = _watched_guides(kinematics, group)
         if watched is not None:
@@ -321,7 +321,7 @@ def watched_dyads(tour: DriveSweep, guides: bool = False) -> list[tuple[Watched,
     return found
 
 
-def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
+def _watched_angle(kinematics: Kinematics, group: Group) -> Watched | None:
     """RRR: between the two rods; RRP: between the rod and the normal of the line; RPR: between arm and normal."""
     name = name_of(group)
     sphere = kinematics.numbers.space.name == "sphere"
@@ -471,7 +471,7 @@ def transmission_at_ends(course: MonitoredFunction, k: int) -> list[tuple[float,
     """The acute angle at the ends of the stretch: the drive's limits, or the initial position."""
     found = []
     for at in (end for end in course.tour.span if np.isfinite(end)):
-        value = float(course.watched[k].value(course.tour.stopped(at, ARRAYS), 1)[0])
+        value = float(course.watched[k].value(course.tour.positions_at(at, ARRAYS), 1)[0])
         if np.isfinite(value):
             between = _between(value)
             found.append((min(between, pi - between), at))
