@@ -13,7 +13,7 @@ from benchmarks import force_peers
 from benchmarks.force_peers import ForcePeer
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Task, best_times, paired_times, ratio
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.reactions import find
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer, reduction_of
@@ -65,7 +65,7 @@ def reactions() -> Iterator[Row]:
         prepared = ready(mechanism)
         solved = solve(prepared, requested_grid(prepared, SAMPLES, None, None))
         burden = MassesAndLoads.in_plane(mechanism)
-        pace = pace_of(solved, burden)
+        pace = input_motion_of(solved, burden)
         whole: Task = functools.partial(ct.reactions, mechanism, SAMPLES)
         own: Task = functools.partial(find, solved, burden, pace)
         times = best_times(
@@ -118,7 +118,7 @@ def _against(
 
     def arrays() -> None:
         fresh = solve(prepared, span)
-        find(fresh, burden, pace_of(fresh, burden))
+        find(fresh, burden, input_motion_of(fresh, burden))
 
     times = paired_times(
         {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 import centrode as ct
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.equations import Scheme
 from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
@@ -27,7 +27,7 @@ def motion_and_reactions(
     ends = (None, None) if around is None else (initial - around, initial + around)
     solved = solve(prepared, requested_grid(prepared, samples, *ends))
     burden = MassesAndLoads.for_reactions(mechanism)
-    found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
+    found = reactions_at(solved, burden, input_motion_of(solved, burden), contacts_of(mechanism))
     return dataset_of(solved), found
 
 

@@ -122,7 +122,7 @@ from .study.forces.simulating import regime_rows as regime_rows
 from .present import simulation_figures as simulation_figures
 
 # Shaking forces and counterweights
-from .dynamics.balancing.shaking import shaking as shaking
+from .dynamics.balancing.shaking_forces import shaking as shaking
 from .dynamics.balancing.balance import balance as balance
 from .dynamics.balancing.balance import Balance as Balance
 from .dynamics.balancing.counterweights import Counterweight as Counterweight

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import centrode as ct
 from burdened import burdened
 from centrode.dynamics.loads import MassesAndLoads
-from centrode.dynamics.state import Moving, State
+from centrode.dynamics.state import DriveMotion, State
 from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import requested_grid, solve
 from growing import KINDS, descriptions, grown, mechanism_of
@@ -199,7 +199,7 @@ def test_pulls_of_a_coordinate_do_its_slope(seed: int) -> None:
     initial = prepared.kinematics.path.initial
     solved = solve(prepared, requested_grid(prepared, 5, initial - 0.05, initial + 0.05))
     span = solved.span
-    state = State.of(solved, Moving(span.time, span.parameter, span.rate))
+    state = State.of(solved, DriveMotion(span.time, span.parameter, span.rate))
     for load in MassesAndLoads.of(mechanism).loads:
         for effort in load.efforts:
             done: Any = 0.0

@@ -141,8 +141,16 @@ class Moves:
         return self.new_modules.get(module) or self._in_moved_folder(module)
 
     def new_name(self, module: str, name: str) -> str:
-        """New name of a definition."""
-        return self.table.names.get((module, name), name)
+        """New name of a definition, or of a name that a module imports and passes on."""
+        holder = self.modules.get(module)
+        if (module, name) in self.table.names or holder is None or name in holder.definitions:
+            return self.table.names.get((module, name), name)
+        for imported in holder.names.imports:
+            if imported.local == imported.alias.name == name and imported.scope is holder.names.module:
+                target = self.target(holder, imported)
+                if target is not None and target.name is not None:
+                    return self.new_name(target.module, target.name)
+        return name
 
     def _mention(self) -> re.Pattern[str]:
         """What every file mentions that has anything to do with the moves."""

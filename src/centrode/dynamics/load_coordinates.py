@@ -103,7 +103,7 @@ class Distance:
         return _apart(state, self.first, self.second, self._length(state).value)
 
     def _length(self, state: State) -> Jet:
-        length: Jet = state.m.sqrt(_squared(state, self.first, self.second))
+        length: Jet = state.m.sqrt(_squared_distance(state, self.first, self.second))
         return length
 
 
@@ -124,10 +124,10 @@ class HalfSquare:
         return _apart(state, self.first, self.second, 1.0)
 
     def _half(self, state: State) -> Jet:
-        return _squared(state, self.first, self.second) * 0.5
+        return _squared_distance(state, self.first, self.second) * 0.5
 
 
-def _squared(state: State, first: str, second: str) -> Jet:
+def _squared_distance(state: State, first: str, second: str) -> Jet:
     """Squared straight distance of two points [m^2], on the sphere too."""
     parts = [(v - u) * (v - u) for u, v in zip(state.point(first), state.point(second), strict=True)]
     return sum(parts[1:], parts[0])

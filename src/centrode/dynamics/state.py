@@ -164,7 +164,7 @@ class State:
 
     @classmethod
     def of_samples(
-        cls, mechanism: Mechanism, samples: Samples, moving: Moving, scale: float, side: int = 0
+        cls, mechanism: Mechanism, samples: Samples, moving: DriveMotion, scale: float, side: int = 0
     ) -> State:
         """The state that columns of samples hold."""
         layout, columns = samples.layout, samples.columns
@@ -178,7 +178,7 @@ class State:
         return cls(mechanism, layout, moving.time, moving.parameter, moving.rate, side, scale, getters)
 
     @classmethod
-    def of(cls, solved: Solved, moving: Moving, side: int = 0) -> State:
+    def of(cls, solved: Solved, moving: DriveMotion, side: int = 0) -> State:
         """The state of a motion."""
         mechanism = solved.ready.mechanism
         getters = getters_of(solved, lambda array: array)
@@ -208,7 +208,7 @@ class State:
         if place is None:
             axes = self.layout.axes
             first, unit = axes * self.layout.points.index(name), length_unit(self.mechanism)
-            place = tuple(_scaled(_jet(self.columns["point"](first + k)), unit) for k in range(axes))
+            place = tuple(_scale_jet(_jet(self.columns["point"](first + k)), unit) for k in range(axes))
             self.known[f"point {name}"] = place
         assert isinstance(place, tuple)
         return place
@@ -260,7 +260,7 @@ class State:
 
     def slide(self, guide: str) -> Jet:
         """Displacement along a guide [m]."""
-        return _scaled(self._jet("slide", guide, self.layout.guides), length_unit(self.mechanism))
+        return _scale_jet(self._jet("slide", guide, self.layout.guides), length_unit(self.mechanism))
 
     def rotor(self, link: str) -> Place:
         """Cosine and sine of a link's angle."""
@@ -293,7 +293,7 @@ class State:
 
 
 @dataclass(frozen=True)
-class Moving:
+class DriveMotion:
     """How the path is run through at samples: time [s], parameter, and its derivative by time, each (n)."""
 
     time: Array
@@ -324,7 +324,7 @@ def length_unit(mechanism: Mechanism) -> float:
     return mechanism.sphere_radius if mechanism.space == "sphere" else 1.0
 
 
-def _scaled(jet: Jet, unit: float) -> Jet:
+def _scale_jet(jet: Jet, unit: float) -> Jet:
     return jet if unit == 1.0 else jet * unit
 
 

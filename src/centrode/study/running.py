@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
@@ -110,7 +110,7 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
         return None, []
     try:
         burden = MassesAndLoads.for_reactions(mechanism)
-        found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
+        found = reactions_at(solved, burden, input_motion_of(solved, burden), contacts_of(mechanism))
         return found, _jams(found)
     except (InputError, NotComputedYet) as missing:
         what = f"{missing.where}: {missing.what}" if missing.where else missing.what

@@ -10,7 +10,15 @@ from typing import TypeAlias
 
 import numpy as np
 
-from centrode.dynamics.balancing.shaking import Array, Complex, Effects, ShaftMotion, cross, orders, track
+from centrode.dynamics.balancing.shaking_forces import (
+    Array,
+    Complex,
+    Effects,
+    ShaftMotion,
+    cross,
+    orders,
+    track,
+)
 from centrode.dynamics.state import Mass, State
 from centrode.errors import InputError
 from centrode.locale import _
@@ -79,7 +87,7 @@ class Making:
         """Mass of a disc over the square of its radius [kg/m^2]."""
         return pi * self.density * (self.thickness or 0.0)
 
-    def made(self, product: float, floor: float = 0.0) -> Made:
+    def counterweight_for(self, product: float, floor: float = 0.0) -> Made:
         """The counterweight of a product of mass and radius [kg m]; slopes are those at `floor` if it is less."""
         if self.radius is not None:
             mass, slope, inertia = product / self.radius, self.radius, 0.0
@@ -161,7 +169,7 @@ class Counterweight:
 def counterweight(mechanism: Mechanism, spot: CounterweightPlace, product: complex) -> Counterweight:
     """The counterweight of a product of mass and radius, as a vector in the link's axes [kg m]."""
     product = _straight(complex(product))
-    made = spot.making.made(abs(product))
+    made = spot.making.counterweight_for(abs(product))
     x, y = mechanism.links[spot.link].coordinates[spot.base]
     at = complex(x, y) + made.radius * (product / abs(product) if product else 1.0)
     return Counterweight(
@@ -235,10 +243,10 @@ def with_counterweights(
     for one in counterweights:
         if one.mass > 0.0:
             links[one.link] = _heavier(links[one.link], own.get(one.link), one)
-    return replaced(mechanism, links=links)
+    return replace_parts(mechanism, links=links)
 
 
-def replaced(mechanism: Mechanism, **parts: object) -> Mechanism:
+def replace_parts(mechanism: Mechanism, **parts: object) -> Mechanism:
     """The description with other parts, checked anew."""
     return Mechanism(**{name: getattr(mechanism, name) for name in type(mechanism).model_fields} | parts)
 
@@ -258,7 +266,7 @@ def _heavier(link: Link, own: Mass | None, added: Counterweight) -> Link:
     return link.model_copy(update={**changes, "shape": None, "radius": None})
 
 
-def stiffened(link: Link, own: Mass | None, inertia: float) -> Link:
+def add_inertia(link: Link, own: Mass | None, inertia: float) -> Link:
     """A link with so much more inertia; what its shape tells of it becomes numbers."""
     if own is None:
         return link.model_copy(update={"inertia": inertia})

@@ -13,10 +13,10 @@ import xarray as xr
 from centrode.dynamics.kinetostatics.applied_forces import (
     InputMotion,
     Outer,
+    input_motion_of,
     outer_of,
-    pace_of,
     rates_of,
-    steady_span,
+    steady_grid,
 )
 from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics, Scheme, Teeth
 from centrode.dynamics.kinetostatics.friction import (
@@ -28,10 +28,10 @@ from centrode.dynamics.kinetostatics.friction import (
     Powers,
     Rubbed,
     contacts_of,
+    friction_of_contacts,
     friction_parts,
     refuse_undetermined,
     reversals,
-    rubbed,
     with_friction,
     without_friction,
     works_over,
@@ -135,7 +135,7 @@ def _with_friction(
     """The same with friction, which is as great as the reactions that it changes make it."""
     refuse_undetermined(contacts, found.undetermined, found.sides, solved.ready.mechanism)
     useful = (found.status == Status.OK) | (found.status == Status.CUT_OFF)
-    sizes = rubbed(state, found.forces, contacts, found.pace.acceleration, useful)
+    sizes = friction_of_contacts(state, found.forces, contacts, found.pace.acceleration, useful)
     without = found.outer
     outer = Outer(
         (*without.loads, *sizes.pulls), without.inertia, without.moment + sizes.moment, without.shares
@@ -288,7 +288,7 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
         "flag_meanings": " ".join(LOCKING.values()),
     }
     works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
-    works = np.where(whole and _found(rubbed), works, np.nan)
+    works = np.where(whole and _friction_converged(rubbed), works, np.nan)
     found = {
         "friction_work": vocabulary_variable("friction_work", ("friction",), works),
         "friction_turns": vocabulary_variable(
@@ -317,12 +317,12 @@ def friction_attributes(solved: Solved, rubbed: Rubbed, powers: Powers, whole: b
         "friction_iterations": rubbed.solution.tries,
         "standing": "; ".join(rubbed.standing),
         "efficiency": powers.mean_efficiency(solved.span.parameter)
-        if whole and _found(rubbed)
+        if whole and _friction_converged(rubbed)
         else float("nan"),
     }
 
 
-def _found(rubbed: Rubbed) -> bool:
+def _friction_converged(rubbed: Rubbed) -> bool:
     return bool((rubbed.solution.outcome == Outcome.FOUND).all())
 
 
@@ -357,13 +357,15 @@ DIMENSIONS = {
 }
 
 
-def labelled(solved: Solved, burden: MassesAndLoads, found: ReactionSolution, whole: bool) -> xr.Dataset:
+def reactions_dataset(
+    solved: Solved, burden: MassesAndLoads, found: ReactionSolution, whole: bool
+) -> xr.Dataset:
     """The dataset of `reactions`; `whole` where the samples are a range, and works over it have a sense."""
     parts = found.parts | totals_of(found)
     checks = checks_of(found, rates_of(solved, found.pace))
     # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
     absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
-    undetermined = _masked(parts, found)
+    undetermined = _mask_undetermined(parts, found)
     if "centre_force" in parts:
         parts["joint_moment"] = joint_moments(found, parts["joint_force"])
     for values in parts.values():
@@ -433,7 +435,7 @@ def _coordinates(solved: Solved, burden: MassesAndLoads, found: ReactionSolution
     return coordinates
 
 
-def _masked(parts: dict[str, Array], found: ReactionSolution) -> list[str]:
+def _mask_undetermined(parts: dict[str, Array], found: ReactionSolution) -> list[str]:
     """Put NaN where nothing determines a reaction; the names of these."""
     names = _names(found)
     said: list[str] = []
@@ -516,7 +518,7 @@ def reactions(
             what = _("steady motion is given over a whole cycle")
             raise InputError(_("range"), what, _("leave its ends out, or ask for places with at"))
         _refuse_unknown_speed(contacts)
-        prepared, span, pace = steady_span(mechanism, samples, at)
+        prepared, span, pace = steady_grid(mechanism, samples, at)
         return reactions_at(solve(prepared, span), burden, pace, whole=at is None)
     prepared = ready(mechanism)
     if at is None:
@@ -524,7 +526,7 @@ def reactions(
     else:
         span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
     solved = solve(prepared, span)
-    return reactions_at(solved, burden, pace_of(solved, burden), contacts, at is None)
+    return reactions_at(solved, burden, input_motion_of(solved, burden), contacts, at is None)
 
 
 def _refuse_unknown_speed(contacts: tuple[Contact, ...]) -> None:
@@ -544,4 +546,4 @@ def reactions_at(
 
     `whole` where its samples are a range, over which works have a sense.
     """
-    return labelled(solved, burden, find(solved, burden, pace, contacts), whole)
+    return reactions_dataset(solved, burden, find(solved, burden, pace, contacts), whole)

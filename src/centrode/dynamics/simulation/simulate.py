@@ -32,7 +32,7 @@ from centrode.dynamics.simulation.equation_of_motion import (
     Trajectory,
     of_time,
 )
-from centrode.dynamics.simulation.stepping import Stepper, Until, compiled, even_times, fixed_steps
+from centrode.dynamics.simulation.integrator import Stepper, Until, compile_scan, even_times, fixed_steps
 from centrode.errors import InputError, MotionError
 from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.kinematics.motion import (
@@ -366,11 +366,11 @@ def simulate(
     setting = setting_of(mechanism, settings)
     count = setting.settings.samples if at is None else np.size(at)
     check_size(layout_of(setting.prepared.kinematics), 1, count)
-    course = course_of(setting, executor, progress)
+    course = trajectory_of(setting, executor, progress)
     return simulation_dataset(setting, course, _times(setting, course, at), motion=motion)
 
 
-def course_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Trajectory:
+def trajectory_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Trajectory:
     """Integrate by the scheme that is asked for."""
     settings, until = setting.settings, setting.until
     if settings.scheme != "runge-kutta-4":
@@ -408,7 +408,7 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
     field = setting.field
     if choose_executor(executor) != ARRAYS:
         try:
-            scan = compiled(setting.rows, setting.driving, choose_executor(executor))
+            scan = compile_scan(setting.rows, setting.driving, choose_executor(executor))
         except Untraceable as reason:
             if executor != "auto":
                 raise InputError("executor", _(reason.reason), _('use executor = "auto"')) from None

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import State, length_unit
@@ -52,7 +52,7 @@ def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:
     prepared = ready(mechanism)
     solved = solve(prepared, grid_at(prepared.kinematics.path, places))
     burden = MassesAndLoads.for_reactions(mechanism)
-    state = State.of(solved, pace_of(solved, burden).moving)
+    state = State.of(solved, input_motion_of(solved, burden).moving)
     found = []
     for load in burden.loads:
         with np.errstate(all="ignore"):

@@ -13,7 +13,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.masses import masses_of
-from centrode.dynamics.state import Mass, Moving, Place, State
+from centrode.dynamics.state import DriveMotion, Mass, Place, State
 from centrode.dynamics.steady_motion.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME, Panels
 from centrode.dynamics.steady_motion.steady import SteadySolution, solution_of, turned_at
 from centrode.errors import InputError, MotionError, NotComputedYet
@@ -169,7 +169,7 @@ class Instants:
         check_speed(speed)
         if speed == "steady":
             found = solution_of(mechanism)
-            return cls(found.prepared, lambda values: steady_pace(found, values), found.cycle.panels)
+            return cls(found.prepared, lambda values: steady_shaft_motion(found, values), found.cycle.panels)
         if mechanism.space == "sphere":
             raise on_sphere()
         prepared = ready(mechanism)
@@ -183,7 +183,7 @@ class Instants:
             reach = values if places is None else np.append(values, places.mesh[[0, -1]])
             places = MotionOnPath.along(self.ready, self.ready.kinematics, reach)
             self._places = places
-        moving = Moving(0.0 * values, values, np.ones(len(values)))
+        moving = DriveMotion(0.0 * values, values, np.ones(len(values)))
         return State.of_samples(
             self.ready.mechanism, places.at(values), moving, self.ready.kinematics.path.scale
         )
@@ -204,7 +204,7 @@ def on_sphere() -> NotComputedYet:
     return NotComputedYet("space", _("forces on the sphere are not computed yet"), _("describe a plane one"))
 
 
-def steady_pace(found: SteadySolution, values: Array) -> ShaftMotion:
+def steady_shaft_motion(found: SteadySolution, values: Array) -> ShaftMotion:
     """The real speed and acceleration of a drive in steady motion."""
     cycle = found.cycle
     turned = cycle.sense * (values - cycle.first)
@@ -470,7 +470,7 @@ def harmonics_of(turning: ShakingTurning, most: int) -> Harmonics:
         if error <= SETTLED:
             break
         before, count = found, 2 * count
-        panels = None if panels is None else _halved(panels)
+        panels = None if panels is None else _halve_panels(panels)
     cosine, sine = found
     return Harmonics(
         orders,
@@ -498,7 +498,7 @@ def _gauss(turning: ShakingTurning, panels: Panels) -> tuple[Array, Array]:
     return turning.first + sense * panels.nodes, panels.weights / abs(turning.period)
 
 
-def _halved(panels: Panels) -> Panels:
+def _halve_panels(panels: Panels) -> Panels:
     middles = 0.5 * (panels.edges[:-1] + panels.edges[1:])
     return Panels(np.sort(np.concatenate([panels.edges, middles])))
 
@@ -551,9 +551,9 @@ def shaking(
         what = _("{orders} harmonics were asked for").format(orders=orders)
         raise InputError("orders", what, _("ask for 1 to {most}").format(most=MOST_ORDERS))
     centre, masses = place_of(mechanism, about), heavy(mechanism)
-    prepared, span = _asked(mechanism, samples, start, stop, at, speed)
+    prepared, span = _sampled_range(mechanism, samples, start, stop, at, speed)
     solved = solve(prepared, span)
-    state = State.of(solved, Moving(span.time, span.parameter, span.rate))
+    state = State.of(solved, DriveMotion(span.time, span.parameter, span.rate))
     effects = effects_of(
         tracks_of(state, masses), masses, ShaftMotion(span.rate, span.second_rate), complex(*centre)
     )
@@ -587,7 +587,7 @@ def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
     return x, y
 
 
-def _asked(
+def _sampled_range(
     mechanism: Mechanism,
     samples: int | None,
     start: float | None,
