@@ -151,8 +151,8 @@ from .present import cam_figures as cam_figures
 from .present import write_cam_motion_csv as write_cam_motion_csv
 from .present import write_cam_laws_csv as write_cam_laws_csv
 from .present import cam_motion_figure as cam_motion_figure
-from .cams.followers.sizing import follower_cam as follower_cam
-from .cams.followers.sizing import least_cam as least_cam
+from .cams.followers.base_circle import follower_cam as follower_cam
+from .cams.followers.base_circle import least_cam as least_cam
 from .cams.followers.manufacture import follower_outlines as follower_outlines
 from .cams.followers.manufacture import cam_points as cam_points
 from .cams.followers.forces import cam_forces as cam_forces

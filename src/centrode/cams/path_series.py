@@ -595,7 +595,7 @@ def _march(
             steps.append(SeriesStep(place.phi, stall.phi, series))
             return steps, Ending(place, stall)
         steps.append(SeriesStep(place.phi, to, series))
-        place = _moved(series, place.phi, to)
+        place = _move_centre(series, place.phi, to)
         if to == end:
             if wrong is not None and stall is None:
                 raise refusal(law, wrong)
@@ -624,7 +624,7 @@ def _nearest(sense: int, reach: float, end: float, breaks: tuple[float, ...], st
     return sense * min(sense * place for place in (reach, end, *ahead))
 
 
-def _moved(series: tuple[Series, Series, Series], centre: float, to: float) -> StallState:
+def _move_centre(series: tuple[Series, Series, Series], centre: float, to: float) -> StallState:
     offset = to - centre
     values = []
     for coefficients in series:

@@ -11,8 +11,8 @@ import xarray as xr
 
 from centrode.cams.cam import status_of
 from centrode.cams.contact_stress import Greatest, LineContact, Stressed, stress_along
+from centrode.cams.followers.base_circle import follower_cam
 from centrode.cams.followers.manufacture import follower_profile
-from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.parameter_choice.search import contact_of, working_arc
 from centrode.cams.path_series import path_of
 from centrode.cams.profiles import ProfileBody, cam_body
@@ -71,7 +71,7 @@ def profile_dataset(body: ProfileBody, samples: int, *, groove: bool = False) ->
     closed = body.closed
     phi = _angles(closed, samples)
     frame, inner = frames(closed, phi), body.profile(phi)
-    _places, arcs = closed.located(phi)
+    _places, arcs = closed.locate(phi)
     kinds = np.array([arc.kind for arc in closed.arcs])
     variables = {
         "carrier_angle": vocabulary_variable("carrier_angle", ("sample",), phi),

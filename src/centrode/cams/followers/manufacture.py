@@ -10,8 +10,8 @@ from itertools import pairwise
 import numpy as np
 import xarray as xr
 
+from centrode.cams.followers.base_circle import follower_cam
 from centrode.cams.followers.geometry import Array, Corner, Face, FollowerCam, FollowerContact
-from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.nodes import inside
 from centrode.cams.profiles import CamOutline, Layer
 from centrode.errors import InputError
@@ -192,7 +192,7 @@ def _before(cam: FollowerCam, at: float) -> FollowerContact:
     return cam.contact(np.array([inside(cam.edges[0], end)[1]]))
 
 
-def joined(outlines: list[CamOutline], layer: Layer) -> Array:
+def join_outlines(outlines: list[CamOutline], layer: Layer) -> Array:
     """All points (n, 2) [m] of a layer in their order, those where pieces meet once."""
     found: list[Array] = []
     for one in outlines:

@@ -358,10 +358,10 @@ def compare_laws(
     laws = {name: SegmentedLaw((Segment(1.0, 1.0, name),)) for name in names}
     if own is not None:
         laws[ITS_OWN] = SegmentedLaw((own,))
-    return _labelled(laws, rise, angle, speed, samples)
+    return _motion_dataset(laws, rise, angle, speed, samples)
 
 
-def _labelled(
+def _motion_dataset(
     laws: Mapping[str, SegmentedLaw], rise: float, angle: float, speed: float | None, samples: int
 ) -> xr.Dataset:
     if not laws:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from centrode.cams.followers.sizing import follower_cam
+from centrode.cams.followers.base_circle import follower_cam
 from centrode.cams.profiles import cam_body
 from centrode.cams.results import walking_wheel
 from centrode.errors import InputError
