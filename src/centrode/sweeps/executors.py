@@ -73,7 +73,7 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
     if name == arrays.name or (name == AUTO and positions < designs.WORTH_COMPILING):
         return arrays, arrays.name
     try:
-        found = _traced(task, design, threads, MACHINE_CODE)
+        found = _machine_code_executor(task, design, threads, MACHINE_CODE)
     except Untraceable as why:
         if name == AUTO:
             return arrays, f"{arrays.name} ({why.reason})"
@@ -82,7 +82,9 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
     return found, found.name
 
 
-def _traced(task: SweepTask, design: Design, threads: int, kernels: str) -> MachineCodeExecutor:
+def _machine_code_executor(
+    task: SweepTask, design: Design, threads: int, kernels: str
+) -> MachineCodeExecutor:
     values = design.rows(0, 1)
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
     found = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
@@ -94,7 +96,7 @@ def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tu
     """Derivatives are those of expressions: on arrays these are computed by NumPy."""
     kernels = choose_executor(name) if name == AUTO else name
     try:
-        found = _traced(task, design, threads, kernels)
+        found = _machine_code_executor(task, design, threads, kernels)
     except Untraceable as why:
         what = _("derivatives cannot be computed here: {reason}").format(reason=_(why.reason))
         raise InputError("gradient", what, _("leave gradient out")) from None

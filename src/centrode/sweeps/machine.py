@@ -205,7 +205,7 @@ class Slopes:
     def _by_paths(self, fold: Fold) -> States:
         """A state for each path."""
         slopes = self.of_node(fold.value)
-        labels = {path: by(fold.name, path) for path in slopes}
+        labels = {path: derivative_name(fold.name, path) for path in slopes}
         parts = {labels[path]: slope for path, slope in slopes.items()}
         return States(parts, {path: variable(label) for path, label in labels.items()})
 
@@ -252,7 +252,7 @@ def _is_something(factor: Node) -> bool:
     return factor.operation != CONSTANT or factor.detail != 0.0
 
 
-def by(name: str, path: str) -> str:
+def derivative_name(name: str, path: str) -> str:
     """Name of the derivative of a fold by the value at a path."""
     return f"{name} by {path}"
 
@@ -502,7 +502,7 @@ class StreamedColumns(dict[str, AnyArray]):
         return found
 
 
-def streamed(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
+def streamed_columns(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
     """The columns that have a float64 of every sample."""
     return [
         column for column in columns if column.dimensions[:1] == ("sample",) and column.kind == np.float64
@@ -511,7 +511,7 @@ def streamed(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
 
 def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColumns:
     """Fresh memory for columns, with streams where there is any."""
-    kept = streamed(columns)
+    kept = streamed_columns(columns)
     found = StreamedColumns(
         {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
     )
@@ -667,7 +667,7 @@ class MachineCodeExecutor:
         for lanes, solved in self._eventful.solved(numbers, left):
             parts = self._room(len(lanes))
             fill_columns(self.task, solved, _rows_at(values, lanes), parts)
-            _put(parts, lanes, results)
+            _put_columns(parts, lanes, results)
 
     def _on_arrays(
         self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
@@ -678,7 +678,7 @@ class MachineCodeExecutor:
             lanes = left[first : first + most]
             parts = self._room(len(lanes))
             self.arrays.run(self.task, take_lanes(numbers, lanes), _rows_at(values, lanes), parts)
-            _put(parts, lanes, results)
+            _put_columns(parts, lanes, results)
 
     def _room(self, lanes: int) -> StreamedColumns:
         """Columns of mechanisms that do not stand side by side."""
@@ -693,7 +693,9 @@ class MachineCodeExecutor:
     def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
         """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
         found = (
-            self._reduced(rows, at, results) if self.task.asked.reduced else self._written(rows, at, results)
+            self._fill_reductions(rows, at, results)
+            if self.task.asked.reduced
+            else self._fill_samples(rows, at, results)
         )
         results["samples_ok"][at] = self.asked.samples
         results["worst_residual"][at] = found[RESIDUAL]
@@ -702,7 +704,7 @@ class MachineCodeExecutor:
             clear &= found[slack] > 0.0
         return clear
 
-    def _reduced(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_reductions(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
         """Fill in one number, or a few, of each motion; returns what mechanisms are judged by."""
         rows = dict(rows)
         columns = self.asked.final
@@ -726,7 +728,7 @@ class MachineCodeExecutor:
             parts.append(judging_states(self.asked))
         return together(*parts)
 
-    def _written(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
         every = EverySample(self.asked.columns, results, at, self.asked.samples)
@@ -737,6 +739,6 @@ def _rows_at(values: Rows, lanes: Lanes) -> Rows:
     return {path: np.asarray(x)[lanes] for path, x in values.items()}
 
 
-def _put(parts: StreamedColumns, lanes: Lanes, results: Mapping[str, AnyArray]) -> None:
+def _put_columns(parts: StreamedColumns, lanes: Lanes, results: Mapping[str, AnyArray]) -> None:
     for name, part in parts.items():
         results[name][lanes] = part

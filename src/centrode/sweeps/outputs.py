@@ -129,10 +129,10 @@ def _output(motion: xr.Dataset, name: object) -> Output:
     if quantity not in known:
         what = _("there is no quantity {name}").format(name=value_text(quantity))
         raise InputError("outputs", what, nearest(quantity, known))
-    return numbered(motion, name, quantity, rest)
+    return output_of_quantity(motion, name, quantity, rest)
 
 
-def numbered(motion: xr.Dataset, name: str, quantity: str, rest: str) -> Output:
+def output_of_quantity(motion: xr.Dataset, name: str, quantity: str, rest: str) -> Output:
     """The output of a quantity, and of the labels in `rest`: "C", "C.x", or nothing for all."""
     variable = motion[quantity]
     where: list[int | slice] = []
@@ -171,7 +171,7 @@ FOLDS = frozenset((*REDUCTIONS, "sum"))
 """What formulas may do over samples; those of REDUCTIONS also stand alone."""
 
 
-def folded(name: str, values: Array, ok: Mask) -> Array:
+def fold_samples(name: str, values: Array, ok: Mask) -> Array:
     """One number of the samples (axis 1) that are ok; NaN where none is.
 
     Parameters
@@ -210,9 +210,9 @@ class Folding(Arrays):
 
     def fold(self, name: str, values: Any) -> Array:
         """One number a mechanism of what may vary from sample to sample."""
-        return folded(name, np.broadcast_to(np.asarray(values, dtype=np.float64), self.ok.shape), self.ok)[
-            :, None
-        ]
+        return fold_samples(
+            name, np.broadcast_to(np.asarray(values, dtype=np.float64), self.ok.shape), self.ok
+        )[:, None]
 
 
 # Formulas of the motion: one number a mechanism, of anything the motion has at its samples.
@@ -334,7 +334,7 @@ def _variable(motion: xr.Dataset, words: tuple[str, ...]) -> Variable:
     if words[0] == "varied":
         return Variable("varied", words[1])
     rest = ".".join(words[1:])
-    return Variable("output", ".".join(words), numbered(motion, ".".join(words), words[0], rest))
+    return Variable("output", ".".join(words), output_of_quantity(motion, ".".join(words), words[0], rest))
 
 
 def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Variable]) -> None:
@@ -411,7 +411,8 @@ class SweepOutputs:
             return {formula.name: formula.of(solved, values, ok) for formula in self.formulas}
         if self.reduction is not None:
             return {
-                output.name: folded(self.reduction, output.of(solved, values), ok) for output in self.outputs
+                output.name: fold_samples(self.reduction, output.of(solved, values), ok)
+                for output in self.outputs
             }
         return {"status": solved.status} | {output.name: output.of(solved, values) for output in self.outputs}
 

@@ -27,7 +27,17 @@ from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import METHODS, Grid, Sample, design_of, grid, sample, unit_of
 from centrode.sweeps.executors import Executor, check_executor, check_threads, executor_of
 from centrode.sweeps.outputs import Reduce, asked_of, with_slopes
-from centrode.sweeps.store import Blocks, InMemory, Kept, SweepFrame, frame_of, opened, read, tally_of, told
+from centrode.sweeps.store import (
+    Blocks,
+    InMemory,
+    Kept,
+    SweepFrame,
+    frame_of,
+    open_store,
+    read_store,
+    tally_of,
+    with_tally,
+)
 
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -97,10 +107,10 @@ def sweep(
     if store is None:
         return _in_memory(frame, blocks, task, chosen, progress)
     _check_size(frame, designs.IN_STORE, _("reduce it, or ask for fewer"))
-    with opened(Path(store), frame, blocks, task) as kept:
+    with open_store(Path(store), frame, blocks, task) as kept:
         found = kept.tally.mechanisms
         _compute(frame, kept, task, chosen, progress)
-    data = told(read(Path(store), frame), frame, kept.tally)
+    data = with_tally(read_store(Path(store), frame), frame, kept.tally)
     return data.assign_attrs(mechanisms_found=found)
 
 
