@@ -162,9 +162,8 @@ class Moves:
     def _is_touched(self, source: Source) -> bool:
         code = source.is_python or (source.path.suffix == ".md" and PACKAGE in source.text)
         named = any(re.search(rf"\b{method}\b", source.text) for method in self.methods)
-        return code and (
-            source.module in self.new_modules or named or bool(self._relevant.search(source.text))
-        )
+        ours = {*self.new_modules, *(module for module, _name in self.table.names)}
+        return code and (source.module in ours or named or bool(self._relevant.search(source.text)))
 
     def target(self, source: Source, imported: Imported) -> Target | None:
         """What an import means; None if it is not of the package."""
