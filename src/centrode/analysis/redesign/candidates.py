@@ -82,7 +82,7 @@ def varyings(prepared: Ready, vary: Sequence[str] | None, bounds: Bounds | None)
             _("{n} numbers were named").format(n=len(paths)),
             _("name {least} to {most}").format(least=1, most=MOST_PATHS),
         )
-    return tuple(_varying(prepared, path, (bounds or {}).get(path)) for path in paths)
+    return tuple(_varying_value(prepared, path, (bounds or {}).get(path)) for path in paths)
 
 
 def default_paths(mechanism: Mechanism) -> list[str]:
@@ -106,7 +106,7 @@ def places_anew(mechanism: Mechanism) -> bool:
     return points or any(isinstance(guide.through, Placed) for guide in mechanism.guides)
 
 
-def _varying(prepared: Ready, path: str, bounds: tuple[Value, Value] | None) -> Varying:
+def _varying_value(prepared: Ready, path: str, bounds: tuple[Value, Value] | None) -> Varying:
     mechanism = prepared.mechanism
     try:
         before = value_at(mechanism, path)

@@ -17,7 +17,7 @@ import xarray as xr
 from centrode.cams.nodes import mesh
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import Variable, labels_of, vocabulary_variable
-from centrode.laws import CURVES, Segment, SegmentedLaw
+from centrode.laws import CURVES, LawSegment, SegmentedLaw
 from centrode.locale import _, mark
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
@@ -316,7 +316,7 @@ def compare_laws(
     angle: float = 1.0,
     speed: float | None = None,
     curves: Sequence[str] = tuple(CURVES),
-    own: Segment | None = None,
+    own: LawSegment | None = None,
     samples: int = SAMPLES,
 ) -> xr.Dataset:
     """Laws of motion beside each other, for one rise.
@@ -329,7 +329,7 @@ def compare_laws(
     speed : float [rad/s]
         Of the cam; with it the peaks are also told in time.
     curves : names of curves
-    own : Segment
+    own : LawSegment
         A further law, from 0 to `rise` over `angle`.
     samples : int
         Of each curve.
@@ -355,7 +355,7 @@ def compare_laws(
             )
     if not (math.isfinite(rise) and rise and math.isfinite(angle) and angle > 0):
         raise InputError("", _("a rise needs a height that is not 0 and a positive angle"), _("correct them"))
-    laws = {name: SegmentedLaw((Segment(1.0, 1.0, name),)) for name in names}
+    laws = {name: SegmentedLaw((LawSegment(1.0, 1.0, name),)) for name in names}
     if own is not None:
         laws[ITS_OWN] = SegmentedLaw((own,))
     return _motion_dataset(laws, rise, angle, speed, samples)

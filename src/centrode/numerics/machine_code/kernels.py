@@ -169,7 +169,7 @@ def _compile_kernel(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine
 def _function(text: str, machine: Target) -> Loaded:
     """The function of a text, from disk if its object code is there."""
     name = cache.name_of(text, VERSIONS, repr(machine))
-    code = cache.read(name)
+    code = cache.read_entry(name)
     if code is not None:
         return load_object_code(code, machine)
     code = object_code(text, machine)
