@@ -1,8 +1,8 @@
 """Sweeps as machine code: what has no events is computed in one go, the rest as motions with events.
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
-and the formulas of `trace_motion`. The motions of all others have the bits of the arrays (`compiled.events`; with groups of
-higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does it.
+and the formulas of `trace_motion`. The motions of all others have the bits of the arrays (`machine_code.events`; with
+groups of higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does it.
 """
 
 from __future__ import annotations
