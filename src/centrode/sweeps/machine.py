@@ -2,7 +2,7 @@
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
 and the formulas of `trace_motion`. The motions of all others have the bits of the arrays (`machine_code.events`; with
-groups of higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does it.
+groups of higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does.
 """
 
 from __future__ import annotations
