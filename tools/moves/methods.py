@@ -129,8 +129,8 @@ def attributes(
             ):
                 if isinstance(node.args[0], ast.Name) and is_module(source, node.args[0].id):
                     continue
-                start, end = names.span(second)
-                yield Edit(start + 1, end - 1, here[second.value])
+                first, last = names.span(second)
+                yield Edit(first + 1, last - 1, here[second.value])
 
 
 def _attributes_of_classes(tree: ast.Module) -> Iterator[tuple[str, str]]:

@@ -426,9 +426,8 @@ class GroupSystem:
         inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         for k in range(1, order + 1):
             motion = _as_jets(shifts, free, k)
-            values = self.residual(
-                JETS, self.at(JETS, known.map_numbers(lambda x, k=k: truncate_jet(x, k)), state, motion)
-            )  # type: ignore[misc]
+            below = known.map_numbers(lambda x, k=k: truncate_jet(x, k))  # type: ignore[misc]
+            values = self.residual(JETS, self.at(JETS, below, state, motion))
             moved, rest = linear.reduced([_minus_coefficient(x, k) for x in values])
             freely = list(times(inverse, self.stack(rest)).T)
             for entity, shift in linear.whole(moved, freely).items():
