@@ -115,7 +115,7 @@ def _choose_signs(system: Any, bodies: dict[str, Any], crank: Array, motion: xr.
     names = list(system._object.signs)
     for signs in itertools.product((1, -1), repeat=len(names)):
         system._object.signs.update(zip(names, signs, strict=True))
-        system._compiled = True
+        system._formula = True
         with np.errstate(all="ignore"):
             system.solve_kinematics(crank.copy())
         apart = [

@@ -13,12 +13,12 @@ from benchmarks import force_peers
 from benchmarks.force_peers import ForcePeer
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Task, best_times, paired_times, ratio
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.reactions import find
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.reduction import Reducer, reduction_of
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import requested_grid, solve
 
 SAMPLES = 361
 NAME = "six-bar-press"
@@ -33,7 +33,7 @@ def reductions() -> Iterator[Row]:
     """The six-bar press: from the description, and where the motion is there already."""
     mechanism = ct.example(NAME)
     prepared = ready(mechanism)
-    span = asked_span(prepared, SAMPLES, None, None)
+    span = requested_grid(prepared, SAMPLES, None, None)
     solved = solve(prepared, span)
     reducer = Reducer.of(mechanism)
     times = paired_times(
@@ -63,9 +63,9 @@ def reactions() -> Iterator[Row]:
     for name in (NAME, FOUR_BAR):
         mechanism = ct.example(name)
         prepared = ready(mechanism)
-        solved = solve(prepared, asked_span(prepared, SAMPLES, None, None))
+        solved = solve(prepared, requested_grid(prepared, SAMPLES, None, None))
         burden = MassesAndLoads.in_plane(mechanism)
-        pace = pace_of(solved, burden)
+        pace = input_motion_of(solved, burden)
         whole: Task = functools.partial(ct.reactions, mechanism, SAMPLES)
         own: Task = functools.partial(find, solved, burden, pace)
         times = best_times(
@@ -110,7 +110,7 @@ def _against(
 ) -> Row:
     """One peer at so many samples; `inner`: it has no derivatives at the first and the last."""
     prepared = ready(mechanism)
-    span = asked_span(prepared, samples, None, None)
+    span = requested_grid(prepared, samples, None, None)
     burden = MassesAndLoads.in_plane(mechanism)
     ours = ct.reactions(mechanism, samples)
     peer = build(mechanism, ct.motion(mechanism, samples), float(ours["drive_rate"][0]))
@@ -118,7 +118,7 @@ def _against(
 
     def arrays() -> None:
         fresh = solve(prepared, span)
-        find(fresh, burden, pace_of(fresh, burden))
+        find(fresh, burden, input_motion_of(fresh, burden))
 
     times = paired_times(
         {

@@ -20,9 +20,9 @@ from benchmarks.plans import DIMENSIONS, DRIVE, EACH, LANES, SAMPLES, SIX, Plan,
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Shared, Task, best_times, paired_times, ratio, two_threads
 from benchmarks.written import FEW, in_cache, streamed, to_memory
-from centrode.kinematics.compiled.variables import PARAMETER
+from centrode.kinematics.machine_code.variables import PARAMETER
 from centrode.numerics import machine_code
-from centrode.numerics.expressions import Node, operated, variable
+from centrode.numerics.expressions import Node, apply_operation, variable
 from centrode.numerics.machine_code import cache
 from centrode.numerics.scans import (
     Reduction,
@@ -71,7 +71,7 @@ def _write_bound() -> float:
 def _divider_bound(operation: str) -> float:
     """Time of a division or a root in vectors as wide as the kernels' [ns]: several that do not wait for each other."""
     drive, states = variable(PARAMETER), [variable(f"s{i}") for i in range(DIVIDED)]
-    found = [drive / x if operation == "divide" else operated("sqrt", x) for x in states]
+    found = [drive / x if operation == "divide" else apply_operation("sqrt", x) for x in states]
     scan = Scan((), (PARAMETER,), {}, {f"s{i}": x for i, x in enumerate(found)})
     run = functools.partial(kernel_of(scan).run, None, DRIVE + 1.0, np.ones((DIVIDED, LANES)))
     return best_times({"": run})[""] / (LANES * SAMPLES * DIVIDED) * 1e9

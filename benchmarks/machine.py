@@ -14,7 +14,7 @@ from benchmarks.motions import BATCH, BATCHES, SAMPLES
 from benchmarks.table import Row
 from benchmarks.timing import best_times
 from centrode.kinematics.plan_evaluation import FixedSigns
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.numerics.jets import Jet, JetFunctions
 
 CACHED = 8192

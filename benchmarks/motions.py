@@ -14,8 +14,8 @@ import centrode as ct
 from benchmarks import peer
 from benchmarks.table import Row
 from benchmarks.timing import best_times
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.solve import requested_grid, solve
 from centrode.structure.dimensions import Dimensions, dimensions_of
 
 Array = npt.NDArray[np.float64]
@@ -50,7 +50,7 @@ def worked_mechanisms() -> Iterator[Row]:
             continue
         times = best_times(
             {
-                "solve": functools.partial(solve, prepared, asked_span(prepared, SAMPLES, None, None)),
+                "solve": functools.partial(solve, prepared, requested_grid(prepared, SAMPLES, None, None)),
                 "motion": functools.partial(ct.motion, mechanism, SAMPLES),
                 "peer positions": functools.partial(other.positions, SAMPLES),
                 "peer motion": functools.partial(other.motion, SAMPLES),
@@ -90,7 +90,7 @@ def batches() -> Iterator[Row]:
                 "solve": functools.partial(
                     solve,
                     batch.prepared,
-                    asked_span(batch.prepared, SAMPLES, None, None),
+                    requested_grid(batch.prepared, SAMPLES, None, None),
                     numbers=batch.numbers,
                     lanes=BATCH,
                 ),
@@ -131,7 +131,7 @@ def _batch(name: str, paths: tuple[str, ...]) -> Batch:
 
 
 def _lane(numbers: Dimensions, lane: int) -> Dimensions:
-    return numbers.mapped(lambda x: x if isinstance(x, float) else float(x[lane]))
+    return numbers.map_numbers(lambda x: x if isinstance(x, float) else float(x[lane]))
 
 
 def peer_of(prepared: Ready, numbers: Dimensions, motion: xr.Dataset) -> peer.Peer:

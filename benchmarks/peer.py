@@ -12,7 +12,7 @@ import lazy_loader
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.structure.constraints import FRAME
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Meet, Rail, RigidPoint, Rod, TurnedLink, TwoPointLink

@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 import centrode as ct
-from centrode.kinematics.compiled.variables import NODE_JETS, PARAMETER, varied_of
+from centrode.kinematics.machine_code.variables import NODE_JETS, PARAMETER, varied_of
 from centrode.kinematics.plan_evaluation import FixedSigns, rotor_of_angle
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.numerics.expressions import EXPRESSIONS, Node, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.jets import Jet

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import centrode as ct
 from benchmarks.table import Promise, Row
 from benchmarks.timing import best_times
+from centrode.dynamics.simulation.integrator import compile_scan
 from centrode.dynamics.simulation.simulate import setting_of
-from centrode.dynamics.simulation.stepping import compiled
 
 STEPS = 10_000
 NAMES = ("spherical-crank-rocker", "spherical-crank-rocker-rigid", "six-bar-press-run-up")
@@ -25,7 +25,7 @@ def simulations() -> Iterator[Row]:
         fixed = {"scheme": "runge-kutta-4", "steps": STEPS, "samples": 1001}
         settings = mechanism.simulation.model_copy(update=fixed)
         setting = setting_of(mechanism, settings)
-        scan = compiled(setting.rows, setting.driving, "machine code")
+        scan = compile_scan(setting.rows, setting.driving, "machine code")
         assert settings.duration is not None
         times = best_times(
             {

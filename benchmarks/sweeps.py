@@ -15,9 +15,9 @@ import centrode as ct
 from benchmarks.plans import SIX
 from benchmarks.table import Promise, Row
 from benchmarks.timing import best_times, paired_times, ratio, two_threads
-from centrode.kinematics.compiled.batch import solve_many
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.machine_code.batch import solve_many
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import requested_grid, solve
 from centrode.structure.dimensions import dimensions_of
 
 Array = npt.NDArray[np.float64]
@@ -179,7 +179,7 @@ def _motions(name: str, paths: tuple[str, ...]) -> Row:
     prepared = ready(ct.example(name))
     values = _values(name, paths, FEW)
     numbers = dimensions_of(prepared.mechanism, values, np)
-    span = asked_span(prepared, SAMPLES, None, None)
+    span = requested_grid(prepared, SAMPLES, None, None)
     times = best_times(
         {
             "code": functools.partial(solve_many, prepared, span, numbers, FEW),
@@ -226,7 +226,7 @@ def _with_events() -> Iterator[Row]:
         few = {path: values[:FEW] for path, values in vary.items()}
         run = functools.partial(ct.sweep, ct.example(name), outputs=f"position.{point}", samples=SAMPLES)
         prepared = ready(ct.example(name))
-        span = asked_span(prepared, SAMPLES, None, None)
+        span = requested_grid(prepared, SAMPLES, None, None)
         numbers = dimensions_of(prepared.mechanism, few, np)
         times = best_times(
             {

@@ -16,8 +16,8 @@ from benchmarks.motions import peer_of
 from benchmarks.plans import DRIVE, EACH, LANES, SAMPLES, Plan
 from benchmarks.table import Promise, Row
 from benchmarks.timing import ROUNDS, Task, Times, paired_times, ratio
-from centrode.kinematics.compiled.variables import PARAMETER
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.machine_code.variables import PARAMETER
+from centrode.kinematics.preparation import ready
 from centrode.numerics import machine_code
 from centrode.numerics.expressions import Node
 from centrode.numerics.scans import Scan, call_of, room_of, run_on_arrays

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import centrode as ct
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from mechanisms import rounding, solve_evenly
 
 SPEED = 12.0

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.cams.contact_stress import ContactMaterial, LineContact, pressed
+from centrode.cams.contact_stress import ContactMaterial, LineContact, contact_strip
 from centrode.cams.curvature_laws import ExponentialCurvature
 from centrode.cams.parameter_choice.problem import Family, Mesh, PathTrial
 from centrode.cams.path_series import ExpandedPath, expanded_path
@@ -47,7 +47,7 @@ def measured(parameters: Array, end: float = END, angles: int = 301) -> dict[str
     phi = np.linspace(0.0, end, angles)
     rho, slope = path.radius(phi, 1)
     gamma, curvature = path.pressure_angle(phi), path.curvature(phi)[0]
-    stress = pressed(CONTACT, gamma, curvature).pressure
+    stress = contact_strip(CONTACT, gamma, curvature).pressure
     return {
         "stress": float(np.max(np.where(np.isfinite(stress), stress, np.inf))),
         "pressure_angle": float(np.max(np.abs(gamma))),

@@ -13,10 +13,10 @@ import xarray as xr
 import centrode as ct
 from centrode.analysis.graphic.diagrams import Driven, drawing_of, driven_rates, stages
 from centrode.analysis.graphic.stage import ConstructionStage, DrawingBoard, VectorDrawing
-from centrode.geometry.plane import Pose
+from centrode.geometry.plane import PlanePose
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.structure.constraints import Positions
 
@@ -40,7 +40,7 @@ def errors(mechanism: ct.Mechanism, at: float, tries: int = 4) -> tuple[Array, A
 
 
 def errors_of(prepared: Ready, at: float, tries: int = 4) -> tuple[Array, Array] | None:
-    span = span_at(prepared.kinematics.path, np.array([at]))
+    span = grid_at(prepared.kinematics.path, np.array([at]))
     exact = dataset_of(solve(prepared, span))
     if int(exact["status"][0]) not in (ct.Status.OK, ct.Status.CUT_OFF):
         return None
@@ -73,11 +73,11 @@ def nudged(drawing: VectorDrawing, random: np.random.Generator) -> VectorDrawing
         x, y = STEP * scale * random.uniform(-1.0, 1.0, size=2)
         return at[0] + x, at[1] + y
 
-    def pose(link: str, own: Pose) -> Pose:
+    def pose(link: str, own: PlanePose) -> PlanePose:
         if link == "frame":
             return own
         turned = complex(*own.rotor) * cmath.exp(1j * STEP * random.uniform(-1.0, 1.0))
-        return Pose(place(own.origin), (turned.real, turned.imag))
+        return PlanePose(place(own.origin), (turned.real, turned.imag))
 
     points = {name: place(at) for name, at in drawing.at.points.items()}
     poses = {name: pose(name, own) for name, own in drawing.at.poses.items()}

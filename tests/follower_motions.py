@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.laws.segments import Segment, SegmentedLaw
+from centrode.laws.segments import LawSegment, SegmentedLaw
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 
@@ -33,7 +33,7 @@ class Lift:
 
 def lift_of(*rows: tuple[float, float | None, str]) -> Lift:
     """Rows of (degrees, value at the end, curve); None dwells."""
-    found = [Segment(math.radians(angle), to, curve) for angle, to, curve in rows]
+    found = [LawSegment(math.radians(angle), to, curve) for angle, to, curve in rows]
     return Lift(SegmentedLaw(tuple(found)))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from centrode.geometry.plane import Pose, subtract, turned
+from centrode.geometry.plane import PlanePose, rotate_vector, subtract
 from centrode.kinematics.path import JETS
 from centrode.kinematics.solve import Solved
 from centrode.numerics.jets import Jet
@@ -24,5 +24,5 @@ def jet_positions(solved: Solved, sample: int) -> Positions:
         rotor = (JETS.cos(angle), JETS.sin(angle))
         point, local = next(iter(kinematics.numbers.local[name].items()))
         at.angles[name] = angle
-        at.poses[name] = Pose(subtract(at.points[point], turned(local, rotor)), rotor)
+        at.poses[name] = PlanePose(subtract(at.points[point], rotate_vector(local, rotor)), rotor)
     return at

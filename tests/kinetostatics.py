@@ -5,14 +5,14 @@ from __future__ import annotations
 import xarray as xr
 
 import centrode as ct
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.equations import Scheme
 from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import requested_grid, solve
 from centrode.structure.plan import Structure, structure_of
 
 _last: list[tuple[ct.Mechanism, Structure]] = []
@@ -25,9 +25,9 @@ def motion_and_reactions(
     prepared = ready(mechanism)
     initial = prepared.kinematics.path.initial
     ends = (None, None) if around is None else (initial - around, initial + around)
-    solved = solve(prepared, asked_span(prepared, samples, *ends))
+    solved = solve(prepared, requested_grid(prepared, samples, *ends))
     burden = MassesAndLoads.for_reactions(mechanism)
-    found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
+    found = reactions_at(solved, burden, input_motion_of(solved, burden), contacts_of(mechanism))
     return dataset_of(solved), found
 
 

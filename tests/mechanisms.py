@@ -20,8 +20,8 @@ from tools.campaigns.columns import slide as slide
 import centrode as ct
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.numerics.jets import Jet
 from centrode.structure.dimensions import Dimensions
 
@@ -196,14 +196,14 @@ def on_branch(solved: Solved, parameter: Array) -> FixedSigns:
     first_lane = np.zeros(parameter.shape, dtype=np.intp)
 
     def continued(key: str, angle: Any) -> Any:
-        return solved.branches.turns[key].continued(angle, parameter, first_lane)
+        return solved.branches.turns[key].continue_angle(angle, parameter, first_lane)
 
     return FixedSigns(JETS, signs, continued)
 
 
 def nudged(numbers: Dimensions, random: np.random.Generator) -> Dimensions:
     """The same dimensions, each number changed by up to `STEP` of the greatest length; directions by that angle."""
-    length = numbers.mapped(lambda x: x + STEP * numbers.scale * random.uniform(-1.0, 1.0))
+    length = numbers.map_numbers(lambda x: x + STEP * numbers.scale * random.uniform(-1.0, 1.0))
 
     def turned(rotors: Mapping[str, Any]) -> dict[str, Any]:
         found = {}
@@ -220,7 +220,7 @@ def nudged(numbers: Dimensions, random: np.random.Generator) -> Dimensions:
 
     own = numbers.gearing
     gearing = replace(
-        own.resized(lambda x: x + small() * numbers.scale),
+        own.scale_lengths(lambda x: x + small() * numbers.scale),
         ratio={name: x * (1.0 + small()) for name, x in own.ratio.items()},
         phase={name: x + small() for name, x in own.phase.items()},
     )
@@ -236,4 +236,4 @@ def solve_evenly(
     prepared: Ready, samples: int, start: float | None = None, stop: float | None = None
 ) -> Solved:
     """Motion at evenly spaced samples, as plain arrays."""
-    return solve(prepared, asked_span(prepared, samples, start, stop))
+    return solve(prepared, requested_grid(prepared, samples, start, stop))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import centrode as ct
 from burdened import burdened
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.structure.dimensions import dimensions_of
 from mechanisms import EPS, parts_of
 

@@ -12,8 +12,8 @@ import numpy.typing as npt
 import xarray as xr
 
 import centrode as ct
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.structure.dimensions import Dimensions
 from mechanisms import STEP, Parts, nudged, parts_of
@@ -64,7 +64,7 @@ class Redriven:
 
 
 def _angles(prepared: Ready, link: str, base: Array) -> tuple[Array, Array, Array]:
-    solved = solve(prepared, span_at(prepared.kinematics.path, base))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, base))
     angles = solved.angles[:, 0, :, solved.layout.links.index(link)]
     return angles[0], angles[1], angles[2]
 
@@ -96,7 +96,7 @@ def _stretch(mechanism: ct.Mechanism, link: str, base: float) -> tuple[float, fl
     """Nearest extremes of a link's angle on both sides of a value of the drive, by ever shorter pieces of a turn."""
     prepared = ready(mechanism)
     values = base + np.linspace(-np.pi, np.pi, 721)
-    solved = solve(prepared, span_at(prepared.kinematics.path, values))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, values))
     slope = solved.angles[1, 0, :, solved.layout.links.index(link)]
     sense = np.sign(slope[360])
     ends = []
@@ -142,7 +142,7 @@ def answer(mechanism: ct.Mechanism, values: Array, tries: int = 4) -> Array:
     prepared = ready(mechanism)
     numbers, path = prepared.kinematics.numbers, prepared.kinematics.path
     random = np.random.default_rng(11)
-    exact = _columns(solve(prepared, span_at(path, values)), 0)
+    exact = _columns(solve(prepared, grid_at(path, values)), 0)
     found = np.zeros((3, len(values)))
     changed: dict[float, list[Dimensions]] = {}
     for _ in range(tries):
@@ -151,7 +151,7 @@ def answer(mechanism: ct.Mechanism, values: Array, tries: int = 4) -> Array:
     for sense, some in changed.items():
         step = STEP * sense * np.maximum(np.abs(values), path.unit)
         # mechanisms of a batch do not know of each other, so all with one step are solved together
-        near = solve(prepared, span_at(path, values + step), _together(some), len(some))
+        near = solve(prepared, grid_at(path, values + step), _together(some), len(some))
         for lane in range(len(some)):
             found = np.fmax(found, np.max(np.abs(_columns(near, lane) - exact), axis=2) / STEP)
     return np.maximum(found, 1.0)
@@ -162,10 +162,10 @@ def _together(some: list[Dimensions]) -> Dimensions:
     rows: list[list[float]] = []
     for one in some:
         row: list[float] = []
-        one.mapped(row.append)
+        one.map_numbers(row.append)
         rows.append(row)
     columns = iter(np.array(rows).T)
-    return some[0].mapped(lambda _number: next(columns))
+    return some[0].map_numbers(lambda _number: next(columns))
 
 
 def _columns(solved: Solved, lane: int) -> Array:

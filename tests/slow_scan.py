@@ -54,7 +54,7 @@ class Places:
 
     def at(self, lanes: Any, q: Any) -> tuple[Any, Any]:
         """Guards (groups, k), and all that moves (numbers, k)."""
-        used = self.kinematics.taken(lanes)
+        used = self.kinematics.take(lanes)
         guards = Guards(ARRAYS, self.signs)
         with np.errstate(all="ignore"):
             at = used.positions(ARRAYS, q, guards)

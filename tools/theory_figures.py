@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import centrode as ct
 from centrode.geometry import sphere
-from centrode.geometry.on_sphere import SPHERE, Circle
+from centrode.geometry.on_sphere import SPHERE, SphereCircle
 from centrode.numerics.arrays import ARRAYS
 from centrode.present.style import INK, MUTED, PALETTE, house_style
 
@@ -132,7 +132,11 @@ def _circles(axes: Axes) -> None:
     first, second = (one / np.linalg.norm(one) for one in CENTRES)
     halves = [sphere.half(ARRAYS, arc) for arc in ARCS]
     met = [
-        np.array(SPHERE.meet(Circle(tuple(first), halves[0]), Circle(tuple(second), halves[1]), root, root))
+        np.array(
+            SPHERE.meet(
+                SphereCircle(tuple(first), halves[0]), SphereCircle(tuple(second), halves[1]), root, root
+            )
+        )
         for root in (np.sqrt, lambda radicand: -np.sqrt(radicand))
     ]
     turn = np.linspace(0.0, math.tau, 361)

@@ -27,10 +27,10 @@ from .model.cam_files import cam_text as cam_text
 from .model.schema import cam_schema as cam_schema
 
 # Built-in mechanisms and classics
-from .model.examples.loading import load as load
-from .model.examples.loading import load_cam as load_cam
-from .model.examples.loading import example as example
-from .model.examples.loading import load_either as load_either
+from .model.examples.catalogue import load as load
+from .model.examples.catalogue import load_cam as load_cam
+from .model.examples.catalogue import example as example
+from .model.examples.catalogue import load_either as load_either
 from .model.examples import example_names as example_names
 from .model.examples import example_text as example_text
 from .model.classics import four_bar as four_bar
@@ -122,7 +122,7 @@ from .study.forces.simulating import regime_rows as regime_rows
 from .present import simulation_figures as simulation_figures
 
 # Shaking forces and counterweights
-from .dynamics.balancing.shaking import shaking as shaking
+from .dynamics.balancing.shaking_forces import shaking as shaking
 from .dynamics.balancing.balance import balance as balance
 from .dynamics.balancing.balance import Balance as Balance
 from .dynamics.balancing.counterweights import Counterweight as Counterweight
@@ -151,8 +151,8 @@ from .present import cam_figures as cam_figures
 from .present import write_cam_motion_csv as write_cam_motion_csv
 from .present import write_cam_laws_csv as write_cam_laws_csv
 from .present import cam_motion_figure as cam_motion_figure
-from .cams.followers.sizing import follower_cam as follower_cam
-from .cams.followers.sizing import least_cam as least_cam
+from .cams.followers.base_circle import follower_cam as follower_cam
+from .cams.followers.base_circle import least_cam as least_cam
 from .cams.followers.manufacture import follower_outlines as follower_outlines
 from .cams.followers.manufacture import cam_points as cam_points
 from .cams.followers.forces import cam_forces as cam_forces

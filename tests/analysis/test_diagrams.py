@@ -14,8 +14,8 @@ from centrode.analysis.graphic.checks import STEPS
 from centrode.analysis.graphic.diagrams import diagrams, drawing_of, driven_rates
 from centrode.analysis.graphic.stage import DrawingBoard, Edge, cross, meet, round_scale
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import solve
 from drawn import EPS, OPERATIONS, answers, errors, errors_of
 from growing import descriptions, mechanism_of
@@ -167,7 +167,7 @@ def test_a_translating_link_has_its_centre_at_infinity() -> None:
 def test_reading_errors_shrink_with_the_step(step: float) -> None:
     press = ct.example("six-bar-press")
     prepared = ready(press)
-    span = span_at(prepared.kinematics.path, np.array([0.5]))
+    span = grid_at(prepared.kinematics.path, np.array([0.5]))
     exact = dataset_of(solve(prepared, span))
     driven = driven_rates(prepared, span)
     condition = answers(prepared, drawing_of(prepared, exact, DrawingBoard()), driven, tries=8)

@@ -16,7 +16,7 @@ import pytest
 import centrode as ct
 from centrode.analysis.redesign.candidates import Candidates, impossible, varyings
 from centrode.analysis.redesign.repair import DEFAULT_ANGLE, ENOUGH, Repair
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from mechanisms import four_bar
 
 Array = npt.NDArray[np.float64]

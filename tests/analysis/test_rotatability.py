@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.analysis.rotatability.tours import DWELL_BAND, Swing
+from centrode.analysis.rotatability.tours import DWELL_BAND, LinkStroke
 from growing import DYADS, grown, mechanism_of
 from mechanisms import EPS, four_bar
 from turning import assert_swings
 
 
-def swing_of(found: ct.Rotatability, name: str) -> Swing:
+def swing_of(found: ct.Rotatability, name: str) -> LinkStroke:
     return next(swing for swing in found.one.swings if swing.name == name)
 
 

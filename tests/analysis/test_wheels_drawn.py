@@ -7,7 +7,7 @@ import re
 import pytest
 
 import centrode as ct
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.structure.groups import Aim, Meet, Touch
 from drawn import errors
 

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from cam_families import CONTACT, END, family, measured, path_of
 from centrode.cams.parameter_choice.problem import MEASURES, Family, Mesh, PathTrial, paths_of
-from centrode.cams.parameter_choice.search import Choice, choose, trade_off
+from centrode.cams.parameter_choice.search import ParameterChoice, choose, trade_off
 from centrode.errors import InputError
 
 EPS = 2.0**-52
@@ -24,12 +24,12 @@ def excess(values: Mapping[str, float], bounds: Mapping[str, float]) -> float:
     return max(MEASURES[name].sign * (values[name] - bound) / bound for name, bound in bounds.items())
 
 
-def parameters(choice: Choice) -> np.ndarray:
+def parameters(choice: ParameterChoice) -> np.ndarray:
     return np.array(list(choice.chosen.parameters.values()))
 
 
 @pytest.fixture(scope="module")
-def chosen() -> Choice:
+def chosen() -> ParameterChoice:
     return choose(family(), START, "size", BOUNDS)
 
 
@@ -59,7 +59,7 @@ def test_a_path_that_stalls_is_steep_and_finite() -> None:
     assert np.abs(tried.gamma).max() > math.radians(71.25)  # that is refused
 
 
-def test_the_bounds_are_kept_along_the_path(chosen: Choice) -> None:
+def test_the_bounds_are_kept_along_the_path(chosen: ParameterChoice) -> None:
     assert chosen.admissible
     found = measured(parameters(chosen), angles=20001)
     # bounds to 1e-9 by promise; the search's own angles miss a smooth top by less than a part in 1e7 of a step
@@ -70,7 +70,7 @@ def test_the_bounds_are_kept_along_the_path(chosen: Choice) -> None:
     assert chosen.agreeing > 1
 
 
-def test_neighbours_are_not_better(chosen: Choice) -> None:
+def test_neighbours_are_not_better(chosen: ParameterChoice) -> None:
     """Of designs at many distances, along the path itself: what keeps the bounds is not smaller."""
     rng = np.random.default_rng(5)
     best, size = parameters(chosen), chosen.chosen.measures["size"].value
@@ -87,7 +87,7 @@ def test_neighbours_are_not_better(chosen: Choice) -> None:
     assert kept >= 20
 
 
-def test_slopes_and_multipliers(chosen: Choice) -> None:
+def test_slopes_and_multipliers(chosen: ParameterChoice) -> None:
     """At the optimum the slopes balance, and the multipliers foretell what moved bounds do."""
     assert chosen.residual <= 1e-6
     size = chosen.chosen.measures["size"].value

@@ -22,7 +22,7 @@ from centrode.cams.parameter_choice.search import (
     start_of,
 )
 from centrode.cams.path_series import path_of
-from centrode.cams.return_arc import designed, working_arc
+from centrode.cams.return_arc import design_return, working_arc
 from centrode.cams.walking_wheel import mover
 from centrode.model.cam import Cam, varied
 
@@ -61,7 +61,7 @@ def test_the_gap_is_that_of_the_walking_wheel(name: str) -> None:
     assert cam.mover is not None
     assert cam.roller is not None
     arc = working_arc(path_of(cam), cam.mover.legs)
-    wheel = mover(designed(arc).closed, cam.mover.legs, cam.mover.post, cam.roller.radius)
+    wheel = mover(design_return(arc).closed, cam.mover.legs, cam.mover.post, cam.roller.radius)
     assert measures_of(cam, 721)["gap"] == pytest.approx(wheel.print_gap, rel=1e-12)
 
 
@@ -73,7 +73,7 @@ def test_steps_of_the_examples_are_alike() -> None:
         assert cam.mover is not None
         assert cam.roller is not None
         arc = working_arc(path_of(cam), cam.mover.legs)
-        steps.append(mover(designed(arc).closed, cam.mover.legs, cam.mover.post, cam.roller.radius).step)
+        steps.append(mover(design_return(arc).closed, cam.mover.legs, cam.mover.post, cam.roller.radius).step)
     assert abs(steps[0] - steps[1]) <= 0.5e-4 * math.tau / 3
 
 

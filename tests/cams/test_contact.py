@@ -15,9 +15,9 @@ from centrode.cams.contact_stress import (
     ContactMaterial,
     LineContact,
     contact_modulus,
+    contact_strip,
     line_contact,
     normal_load,
-    pressed,
     reduced_elasticity,
     relative_curvature,
     source_stress,
@@ -129,7 +129,7 @@ def test_the_factor_of_the_source_is_that_of_steel() -> None:
     assert abs(math.sqrt(0.175) - 0.418) <= 0.0005
     contact = LineContact(5000.0, 0.02, 0.015, STEEL, STEEL)
     gamma, curvature = np.array([0.0, 0.2, -0.4]), np.array([10.0, 20.0, -5.0])
-    ratio = source_stress(contact, gamma, curvature) / pressed(contact, gamma, curvature).pressure
+    ratio = source_stress(contact, gamma, curvature) / contact_strip(contact, gamma, curvature).pressure
     assert ratio == pytest.approx(0.418 / exact, rel=16 * EPS)
     assert np.all(abs(ratio - 1) <= 0.0005 / exact)
 

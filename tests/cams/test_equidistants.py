@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from cam_shapes import EPS, Limacon, paper_path, three_point_curvature
-from centrode.cams.profiles import ProfileBody, equidistant, fitting, greatest_roller, undercut
-from centrode.cams.return_arc import Arc, ClosedPath, designed, working_arc
+from centrode.cams.profiles import ProfileBody, check_roller_fits, equidistant, greatest_roller, undercut
+from centrode.cams.return_arc import Arc, ClosedPath, design_return, working_arc
 from centrode.cams.roller_path import frames
 from centrode.errors import InputError
 from circle_path import CirclePath
@@ -65,7 +65,7 @@ def test_equidistants_keep_their_distance_and_the_angle_of_the_normal() -> None:
 
 
 def test_the_profile_is_the_envelope_of_the_rollers_by_force() -> None:
-    closed = designed(working_arc(paper_path(), legs=4)).closed
+    closed = design_return(working_arc(paper_path(), legs=4)).closed
     body = ProfileBody(closed, ROLLER)
     phi = np.linspace(closed.start, closed.stop, 20001)
     centres = frames(closed, phi).place
@@ -84,7 +84,7 @@ def test_the_profile_is_the_envelope_of_the_rollers_by_force() -> None:
 
 
 def test_curvature_computed_back_from_three_points_converges_to_the_profile() -> None:
-    closed = designed(working_arc(paper_path(), legs=4)).closed
+    closed = design_return(working_arc(paper_path(), legs=4)).closed
     body = ProfileBody(closed, ROLLER)
     errors = []
     for count in (200, 400, 800):
@@ -121,7 +121,7 @@ def test_a_roller_below_the_least_bend_leaves_no_undercut() -> None:
 
 
 def test_an_undercut_over_the_end_of_a_turn_is_one() -> None:
-    closed = designed(working_arc(paper_path(), legs=4)).closed
+    closed = design_return(working_arc(paper_path(), legs=4)).closed
     found = undercut(closed, closed.edges, 0.06)
     assert [round(math.degrees(one.start)) for one in found] == [39, 274]
     for one in found:
@@ -137,14 +137,14 @@ def test_a_roller_larger_than_the_hollow_of_a_groove_is_refused_with_the_greates
     most, at = greatest_roller(curve, edges, "outer")
     assert most == pytest.approx(hollow, rel=64 * EPS)
     assert abs(abs(at) - math.pi) < 1e-12
-    fitting(curve, edges, hollow * 0.999, "outer")
+    check_roller_fits(curve, edges, hollow * 0.999, "outer")
     with pytest.raises(InputError, match=r"larger than the hollow at -?180 deg; stay below 40 mm"):
-        fitting(curve, edges, 1.001 * hollow, "outer")
+        check_roller_fits(curve, edges, 1.001 * hollow, "outer")
     # the inner side of the same hollow takes any roller; convex stretches bound it
     convex, _at = greatest_roller(curve, edges)
     assert convex < hollow
     with pytest.raises(InputError, match="undercuts"):
-        fitting(curve, edges, convex * 1.01, "inner")
+        check_roller_fits(curve, edges, convex * 1.01, "inner")
 
 
 def test_a_roller_that_overlaps_the_cam_across_a_waist_is_found() -> None:
@@ -157,7 +157,7 @@ def test_a_roller_that_overlaps_the_cam_across_a_waist_is_found() -> None:
     assert depth >= 0.006 - 1e-6
     assert abs(abs(at) - math.pi / 2) < 0.5
     assert ProfileBody(ClosedPath((arc,)), 0.008).overlap == (0.0, 0.0)
-    closed = designed(working_arc(paper_path(), legs=4)).closed
+    closed = design_return(working_arc(paper_path(), legs=4)).closed
     assert ProfileBody(closed, ROLLER).overlap == (0.0, 0.0)
 
 

@@ -15,13 +15,13 @@ from centrode.cams.followers.geometry import (
     Oscillating,
     Point,
     Translating,
-    oscillating,
     oscillating_face,
-    translating,
+    oscillating_follower,
+    translating_follower,
 )
-from centrode.cams.followers.manufacture import follower_outlines, joined
+from centrode.cams.followers.manufacture import follower_outlines, join_outlines
 from centrode.errors import InputError
-from centrode.laws.segments import Segment, SegmentedLaw
+from centrode.laws.segments import LawSegment, SegmentedLaw
 from follower_motions import Array, Lift, lift_of, rise_dwell_fall_dwell
 
 EPS = float(np.finfo(float).eps)
@@ -32,9 +32,9 @@ R = 0.008
 
 def cams() -> dict[str, FollowerCam]:
     return {
-        "knife": FollowerCam(MOTION, translating(0.04, 0.005), Point(0.0), 0.04),
-        "roller": FollowerCam(MOTION, translating(0.04 + R, -0.004), Point(R), 0.04, -1.0),
-        "arm": FollowerCam(SWING, oscillating(0.04 + R, 0.06, 0.07), Point(R), 0.04),
+        "knife": FollowerCam(MOTION, translating_follower(0.04, 0.005), Point(0.0), 0.04),
+        "roller": FollowerCam(MOTION, translating_follower(0.04 + R, -0.004), Point(R), 0.04, -1.0),
+        "arm": FollowerCam(SWING, oscillating_follower(0.04 + R, 0.06, 0.07), Point(R), 0.04),
         "face": FollowerCam(MOTION, Translating(0.04), Face(), 0.04),
         "turning face": FollowerCam(
             rise_dwell_fall_dwell(0.08), oscillating_face(0.04, 0.11, 0.003), Face(), 0.04, -1.0
@@ -84,7 +84,7 @@ def test_a_cam_cut_from_the_points_by_a_tool_reproduces_the_lift(
     name: str, tool: float, tolerance: float
 ) -> None:
     cam = cams()[name]
-    centres = joined(follower_outlines(cam, tolerance, tool), "cutter")
+    centres = join_outlines(follower_outlines(cam, tolerance, tool), "cutter")
     points = left_by(centres[:: int(cam.sense)], tool)
     phi = np.linspace(0.01, TURN - 0.01, 61)
     found, contact = np.array([lift_on(cam, points, one) for one in phi]), cam.contact(phi)
@@ -131,7 +131,7 @@ def test_pieces_meet_also_at_corners(contact: str, sense: float) -> None:
     )
     motion = lift_of((90, 0.01, "uniform"), (90, 0.0, "harmonic"), (180, None, "dwell"))
     touch = {"roller": Point(0.01), "flat": Face(), "knife": Point(0.0)}[contact]
-    guide = Translating(0.04) if contact == "flat" else translating(0.04 + touch.roller)
+    guide = Translating(0.04) if contact == "flat" else translating_follower(0.04 + touch.roller)
     cam = FollowerCam(motion, guide, touch, 0.04, sense)
     tool = 0.006 if contact != "knife" else None
     for layer in ("profile", "cutter") if tool else ("profile",):
@@ -151,16 +151,16 @@ def test_pieces_meet_also_at_corners(contact: str, sense: float) -> None:
 def test_a_knife_edge_leaves_corners() -> None:
     """About an outward corner of the profile the cutter rolls; into a sharp inner one none comes."""
     motion = lift_of((90, 0.01, "cycloidal"), (90, 0.0, "uniform"), (180, None, "dwell"))
-    cam = FollowerCam(motion, translating(0.04), Point(0.0), 0.04)
+    cam = FollowerCam(motion, translating_follower(0.04), Point(0.0), 0.04)
     with pytest.raises(InputError, match="no cutter comes into a sharp inner corner"):
         follower_outlines(cam, 1e-6, 0.01)
     fall = SegmentedLaw(
         (
-            Segment(math.pi / 2, 0.01, "uniform"),
-            Segment(3 * math.pi / 2, 0.0, "polynomial", (-0.01,), (0.02 / math.pi,)),
+            LawSegment(math.pi / 2, 0.01, "uniform"),
+            LawSegment(3 * math.pi / 2, 0.0, "polynomial", (-0.01,), (0.02 / math.pi,)),
         )
     )
-    cam = FollowerCam(Lift(fall), translating(0.04), Point(0.0), 0.04)
+    cam = FollowerCam(Lift(fall), translating_follower(0.04), Point(0.0), 0.04)
     (corner,) = cam.corners
     pieces = [one for one in follower_outlines(cam, 1e-6, 0.01) if one.layer == "cutter"]
     (arc,) = [one for one in pieces if np.ptp(one.phi) == pytest.approx(corner.turn, rel=1e-12)]
@@ -171,7 +171,7 @@ def test_a_knife_edge_leaves_corners() -> None:
 
 
 def test_a_cutter_larger_than_a_hollow_is_refused_with_the_greatest() -> None:
-    cam = FollowerCam(rise_dwell_fall_dwell(0.03), translating(0.02 + 0.004), Point(0.004), 0.02)
+    cam = FollowerCam(rise_dwell_fall_dwell(0.03), translating_follower(0.02 + 0.004), Point(0.004), 0.02)
     most, _at = cam.greatest_cutter
     assert 0.004 < most < math.inf
     follower_outlines(cam, 1e-5, most * (1 - 1e-9))
@@ -203,7 +203,7 @@ def test_files_of_outlines(tmp_path: Path) -> None:
         (line,) = space.query(f'LWPOLYLINE[layer=="points-{layer}"]')
         np.testing.assert_allclose(
             np.array(line.get_points("xy")),
-            1e3 * joined(outlines, layer),
+            1e3 * join_outlines(outlines, layer),
             atol=1e-9,  # type: ignore[arg-type]
         )
         assert len(space.query(f'SPLINE[layer=="{layer}"]')) == len(cams()["arm"].edges) - 1

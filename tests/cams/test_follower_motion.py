@@ -19,7 +19,7 @@ from centrode.cams.followers.motion import (
     peaks_of,
 )
 from centrode.errors import InputError
-from centrode.laws import CURVES, Segment, SegmentedLaw
+from centrode.laws import CURVES, LawSegment, SegmentedLaw
 
 EPS = sys.float_info.epsilon
 PI = math.pi
@@ -38,7 +38,7 @@ LITERATURE = {
 @pytest.mark.parametrize("name", LITERATURE)
 def test_peak_coefficients_are_those_of_the_literature(name: str) -> None:
     *printed, exact = LITERATURE[name]
-    found = peaks_of(SegmentedLaw((Segment(1.0, 1.0, name),))).coefficients
+    found = peaks_of(SegmentedLaw((LawSegment(1.0, 1.0, name),))).coefficients
     for value, text, closed in zip(found, printed, exact, strict=True):
         assert value == pytest.approx(closed, rel=64 * EPS)
         # Four figures are printed; the last of 5.773 is cut, not rounded.
@@ -50,9 +50,9 @@ def test_peak_coefficients_are_those_of_the_literature(name: str) -> None:
 @pytest.mark.parametrize("name", LITERATURE)
 def test_coefficients_do_not_depend_on_rise_and_angle(name: str, rise: float, angle: float) -> None:
     law = SegmentedLaw(
-        (Segment(0.7, 0.5, "uniform"), Segment(angle, 0.5 + rise, name), Segment(1.0, 0.0, "3-4-5"))
+        (LawSegment(0.7, 0.5, "uniform"), LawSegment(angle, 0.5 + rise, name), LawSegment(1.0, 0.0, "3-4-5"))
     )
-    found, expected = peaks_of(law, 1), peaks_of(SegmentedLaw((Segment(1.0, 1.0, name),)))
+    found, expected = peaks_of(law, 1), peaks_of(SegmentedLaw((LawSegment(1.0, 1.0, name),)))
     # The angle of a place is rounded beside 0.7 + 2.5; the next derivative, at most 4 pi times as great, carries it on.
     rounding = 64 * EPS * 4 * PI * (1 + 0.7 / angle) * (1 + 1.0 / abs(rise))
     assert found.coefficients == pytest.approx(expected.coefficients, rel=rounding)
@@ -67,12 +67,12 @@ def test_velocity_times_acceleration_has_its_closed_forms() -> None:
         "uniform": 0.0,
     }
     for name, value in expected.items():
-        found = peaks_of(SegmentedLaw((Segment(1.0, 1.0, name),))).torque
+        found = peaks_of(SegmentedLaw((LawSegment(1.0, 1.0, name),))).torque
         assert found == pytest.approx(value, rel=64 * EPS, abs=0)
 
 
 def test_where_laws_jump_against_dwells() -> None:
-    found = {name: peaks_of(SegmentedLaw((Segment(1.0, 1.0, name),))).first_jump for name in CURVES}
+    found = {name: peaks_of(SegmentedLaw((LawSegment(1.0, 1.0, name),))).first_jump for name in CURVES}
     assert found == {
         "uniform": 1,
         "harmonic": 2,
@@ -82,7 +82,7 @@ def test_where_laws_jump_against_dwells() -> None:
         "modified sine": 3,
         "modified trapezoid": 3,
     }
-    smooth = SegmentedLaw((Segment(1.0, 1.0, "polynomial", (0.0,) * 4, (0.0,) * 4),))
+    smooth = SegmentedLaw((LawSegment(1.0, 1.0, "polynomial", (0.0,) * 4, (0.0,) * 4),))
     assert peaks_of(smooth).first_jump is None
 
 
@@ -182,14 +182,14 @@ def test_jumps_at_joints_are_those_of_the_curves(name: str, order: int, size: fl
     assert [round(math.degrees(joint.angle)) for joint in joints] == [100, 140, 260, 360]
 
 
-def matched(draw: np.random.Generator, order: int) -> tuple[list[Segment], np.ndarray]:
+def matched(draw: np.random.Generator, order: int) -> tuple[list[LawSegment], np.ndarray]:
     """Polynomials around a turn that agree at every joint up to an order."""
     angles = draw.uniform(0.3, 1.0, 4)
     angles *= math.tau / angles.sum()
     rates = draw.normal(size=(4, order)) * 0.01
     lifts = [*draw.uniform(0.01, 0.03, 3), 0.0]
     segments = [
-        Segment(
+        LawSegment(
             float(angle), float(lift), "polynomial", tuple(rates[k - 1].tolist()), tuple(rates[k].tolist())
         )
         for k, (angle, lift) in enumerate(zip(angles, lifts, strict=True))
@@ -207,7 +207,7 @@ def test_no_jump_is_seen_where_segments_agree_and_each_is_where_they_do_not(seed
     moved = rates[1].copy()
     moved[order - 1] *= 1 + 1e-9
     one = segments[2]
-    segments[2] = Segment(one.time, one.to, one.curve, tuple(moved.tolist()), one.at_end)
+    segments[2] = LawSegment(one.time, one.to, one.curve, tuple(moved.tolist()), one.at_end)
     joints = joints_of(FollowerMotion(SegmentedLaw(tuple(segments), True)))
     assert [joint.first_jump for joint in joints] == [None, order, None, None]
     expected = moved[order - 1] - rates[1, order - 1]
@@ -233,7 +233,7 @@ def test_inner_jumps_of_curves_of_several_formulas_count() -> None:
     motion = follower_motion(whole)
     assert first_jump(motion) == 2  # nothing is asked of the acceleration
     assert motion.law.segments[0].inner_jump == 3
-    sine = SegmentedLaw((Segment(1.0, 1.0, "modified sine"),))
+    sine = SegmentedLaw((LawSegment(1.0, 1.0, "modified sine"),))
     assert sine.segments[0].inner_jump == 4
 
 

@@ -15,9 +15,9 @@ from centrode.cams.followers.geometry import (
     Oscillating,
     Point,
     Translating,
-    oscillating,
     oscillating_face,
-    translating,
+    oscillating_follower,
+    translating_follower,
 )
 from centrode.errors import InputError
 from centrode.numerics.jets import Jet
@@ -48,7 +48,7 @@ def flat(motion: object, base: float, sense: float = 1.0, offset: float = 0.0) -
 def rolled(
     motion: object, base: float, roller: float, offset: float = 0.0, sense: float = 1.0
 ) -> FollowerCam:
-    guide = translating(base + roller, offset)
+    guide = translating_follower(base + roller, offset)
     return FollowerCam(motion, guide, Point(roller), base, sense)  # type: ignore[arg-type]
 
 
@@ -162,7 +162,7 @@ def cams() -> dict[str, FollowerCam]:
     return {
         "knife": rolled(motion, 0.04, 0.0, 0.005),
         "roller": rolled(motion, 0.04, 0.009, -0.004, -1.0),
-        "arm": FollowerCam(swing, oscillating(0.05, 0.06, 0.07), Point(0.01), 0.04, 1.0),
+        "arm": FollowerCam(swing, oscillating_follower(0.05, 0.06, 0.07), Point(0.01), 0.04, 1.0),
         "face": flat(motion, 0.04, -1.0),
         "turning face": FollowerCam(
             rise_dwell_fall_dwell(0.08), oscillating_face(0.04, 0.11, 0.003), Face(), 0.04, -1.0
@@ -229,9 +229,11 @@ def test_undercut_of_a_roller_between_its_cusps() -> None:
         assert bend == pytest.approx(r, rel=64 * EPS)
     most, where = cam.greatest_roller
     assert most < r and (first.start < where < first.stop or second.start < where < second.stop)
-    smaller = FollowerCam(motion, translating(base + r), Point(0.999999 * most), base + r - most)
+    smaller = FollowerCam(motion, translating_follower(base + r), Point(0.999999 * most), base + r - most)
     assert not smaller.undercuts
-    assert len(FollowerCam(motion, translating(base + r), Point(1.000001 * most), base).undercuts) == 2
+    assert (
+        len(FollowerCam(motion, translating_follower(base + r), Point(1.000001 * most), base).undercuts) == 2
+    )
 
 
 def test_a_stretch_across_the_beginning_is_told_in_one_piece() -> None:
@@ -280,9 +282,9 @@ def test_extremes_are_those_of_many_places() -> None:
 
 def test_a_follower_that_misses_the_base_circle_is_refused() -> None:
     with pytest.raises(InputError, match="misses the base circle"):
-        translating(0.02, -0.02)
+        translating_follower(0.02, -0.02)
     with pytest.raises(InputError, match=r"starts between 20 and 140 mm, not at 150"):
-        oscillating(0.15, 0.06, 0.08)
+        oscillating_follower(0.15, 0.06, 0.08)
     with pytest.raises(InputError, match="put the pivot farther away"):
         oscillating_face(0.05, 0.04)
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from centrode.cams.followers.geometry import Face, Point
-from centrode.cams.followers.sizing import (
+from centrode.cams.followers.base_circle import (
     Admissible,
     FollowerLayout,
     best_offset,
     exact_margin,
     least_base_radius,
 )
+from centrode.cams.followers.geometry import Face, Point
 from centrode.errors import InputError, MotionError
 from follower_motions import lift_of, rise_dwell_fall_dwell
 

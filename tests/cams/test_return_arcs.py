@@ -16,8 +16,8 @@ from centrode.cams.return_arc import (
     Ends,
     ReturnCurve,
     derivatives,
-    designed,
-    mirrored,
+    design_return,
+    mirror_arc,
     working_arc,
 )
 from centrode.cams.roller_path import SymmetricPath, frames
@@ -43,19 +43,19 @@ def assert_joined(closed: ClosedPath, contact: int) -> None:
 @pytest.mark.parametrize("contact", [2, 3])
 @pytest.mark.parametrize("legs", [3, 4, 6])
 def test_a_designed_arc_joins_in_value_slope_and_curvature(legs: int, contact: int) -> None:
-    assert_joined(designed(working_arc(paper_path(), legs=legs), contact=contact).closed, contact)
+    assert_joined(design_return(working_arc(paper_path(), legs=legs), contact=contact).closed, contact)
 
 
 def test_an_arc_that_is_not_symmetric_joins_as_well() -> None:
     path = paper_path().half
-    found = designed(working_arc(path), ArcBounds(convex=True))
+    found = design_return(working_arc(path), ArcBounds(convex=True))
     assert found.closed.arcs[0].start == 0.0
     assert_joined(found.closed, 2)
     assert found.curvature.least >= 0.0
 
 
 def test_a_circle_about_the_centre_is_closed_by_itself() -> None:
-    found = designed(working_arc(SymmetricPath(CirclePath(0.05, 0.0, 20.0, 0.0)), legs=5))
+    found = design_return(working_arc(SymmetricPath(CirclePath(0.05, 0.0, 20.0, 0.0)), legs=5))
     phi = np.linspace(0.0, math.tau, 200)
     np.testing.assert_allclose(found.closed.radius(phi)[0], 0.05, rtol=64 * EPS)
     assert found.additions == 0
@@ -64,7 +64,7 @@ def test_a_circle_about_the_centre_is_closed_by_itself() -> None:
 def test_the_smoothest_arc_is_the_smoothest() -> None:
     """(rho''' + rho')^2 integrated by another rule: whatever is added makes it greater, by its own integral."""
     working = working_arc(paper_path(), legs=4)
-    curve = designed(working).curve
+    curve = design_return(working).curve
     phi = np.linspace(curve.ends.start, curve.ends.stop, 20001)
 
     def rough(one: ReturnCurve) -> float:
@@ -97,7 +97,7 @@ BOUNDS = [
 
 @pytest.mark.parametrize("bounds", BOUNDS)
 def test_bounds_are_kept_over_the_whole_arc(bounds: ArcBounds) -> None:
-    found = designed(working_arc(paper_path(), legs=4), bounds)
+    found = design_return(working_arc(paper_path(), legs=4), bounds)
     assert found.additions > 0 and found.roughness > 0.0
     assert_joined(found.closed, 2)
     phi = np.linspace(found.curve.ends.start, found.curve.ends.stop, 30001)
@@ -114,17 +114,18 @@ def test_bounds_are_kept_over_the_whole_arc(bounds: ArcBounds) -> None:
 
 def test_the_pressure_angle_is_kept() -> None:
     bounds = ArcBounds(pressure_angle=0.25)
-    found = designed(working_arc(paper_path().half), bounds)
+    found = design_return(working_arc(paper_path().half), bounds)
     phi = np.linspace(found.curve.ends.start, found.curve.ends.stop, 30001)
     rho, slope = found.curve.radius(phi, 1)
     assert np.abs(np.arctan2(slope, rho)).max() <= 0.25 + 1e-9
-    assert np.abs(designed(working_arc(paper_path().half)).pressure_angle.least) > 0.25
+    assert np.abs(design_return(working_arc(paper_path().half)).pressure_angle.least) > 0.25
 
 
 def test_tighter_bounds_cost_roughness() -> None:
     working = working_arc(paper_path(), legs=4)
     costs = [
-        designed(working, ArcBounds(greatest_radius=one)).roughness for one in (0.075, 0.072, 0.068, 0.064)
+        design_return(working, ArcBounds(greatest_radius=one)).roughness
+        for one in (0.075, 0.072, 0.068, 0.064)
     ]
     assert costs[0] == 0.0
     assert costs == sorted(costs)
@@ -134,21 +135,21 @@ def test_tighter_bounds_cost_roughness() -> None:
 def test_what_is_impossible_is_told_with_numbers() -> None:
     bounds = ArcBounds(greatest_radius=0.066, least_bend=0.0545)
     with pytest.raises(MotionError) as refusal:
-        designed(working_arc(paper_path(), legs=4), bounds)
+        design_return(working_arc(paper_path(), legs=4), bounds)
     numbers = [float(one) for one in re.findall(r"[\d.]+(?= mm)", str(refusal.value))]
     radius, radius_bound, bend, bend_bound = numbers
     assert (radius_bound, bend_bound) == (66.0, 54.5)
     assert radius > 66.0 and bend < 54.5
     # by so much the best arc misses: it exists within bounds widened to that
     wider = ArcBounds(greatest_radius=1.001e-3 * radius, least_bend=0.999e-3 * bend)
-    assert designed(working_arc(paper_path(), legs=4), wider).additions > 0
+    assert design_return(working_arc(paper_path(), legs=4), wider).additions > 0
 
 
 def test_a_bound_that_the_joint_breaks_is_told_there() -> None:
     with pytest.raises(
         InputError, match=r"at 45 deg: the polar radius grows to 56\.0051 mm, the bound is 55 mm"
     ):
-        designed(working_arc(paper_path(), legs=4), ArcBounds(greatest_radius=0.055))
+        design_return(working_arc(paper_path(), legs=4), ArcBounds(greatest_radius=0.055))
 
 
 @pytest.mark.parametrize(
@@ -161,7 +162,7 @@ def test_bounds_make_sense(bounds: dict[str, float]) -> None:
 
 
 def test_mirror_images_have_the_kink_of_the_paper() -> None:
-    closed = mirrored(working_arc(paper_path(), legs=4))
+    closed = mirror_arc(working_arc(paper_path(), legs=4))
     kinks = [joint for joint in closed.joints if abs(joint.kink) > 1e-9]
     assert [round(math.degrees(one.at)) for one in kinks] == [45, 135, 225, 315]
     # half a unit of the table's last digit, through asin
@@ -178,7 +179,7 @@ def test_mirror_images_have_the_kink_of_the_paper() -> None:
 
 def test_an_unsymmetric_arc_is_mirrored_at_both_ends() -> None:
     path = paper_path().half
-    closed = mirrored(working_arc(path))
+    closed = mirror_arc(working_arc(path))
     assert len(closed.arcs) == 4
     phi = np.linspace(0.01, 1.5, 20)
     np.testing.assert_allclose(closed.radius(math.pi - phi)[0], path.radius(phi)[0], rtol=64 * EPS)
@@ -187,7 +188,7 @@ def test_an_unsymmetric_arc_is_mirrored_at_both_ends() -> None:
 
 def test_mirror_images_that_do_not_close_are_refused_with_the_nearest_that_does() -> None:
     with pytest.raises(InputError, match="an arc of 50 deg do not close; take 45 deg"):
-        mirrored(working_arc(paper_path(), half=math.radians(50)))
+        mirror_arc(working_arc(paper_path(), half=math.radians(50)))
 
 
 def test_a_path_that_is_too_short_is_refused() -> None:
@@ -200,8 +201,8 @@ def test_a_path_that_is_too_short_is_refused() -> None:
 def test_derivatives_are_those_of_the_radius() -> None:
     """Central differences of each derivative are the next: over all arcs, mirrored ones too."""
     for closed in (
-        designed(working_arc(paper_path(), legs=4)).closed,
-        mirrored(working_arc(paper_path(), legs=4)),
+        design_return(working_arc(paper_path(), legs=4)).closed,
+        mirror_arc(working_arc(paper_path(), legs=4)),
     ):
         middles = (
             np.array([0.5 * (a + b) for a, b in zip(closed.edges[:-1], closed.edges[1:], strict=True)]) + 0.01

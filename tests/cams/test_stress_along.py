@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 from cam_families import CONTACT, STEEL
-from centrode.cams.contact_stress import LineContact, greatest_along, pressed, stress_along
+from centrode.cams.contact_stress import LineContact, contact_strip, greatest_along, stress_along
 from centrode.cams.curvature_laws import ExponentialCurvature, LinearCurvature
 from centrode.cams.path_series import expanded_path
 from centrode.cams.results import cam_contact
@@ -48,12 +48,12 @@ def test_an_eccentric_circle() -> None:
     phi = np.linspace(-math.pi, math.pi, 41)
     found = stress_along(path, CONTACT, phi)
     sine = centre / radius * np.sin(phi)
-    closed = pressed(CONTACT, -np.arcsin(sine), 1 / radius).pressure
+    closed = contact_strip(CONTACT, -np.arcsin(sine), 1 / radius).pressure
     # the angle is read off a state with errors of some roundings, over its cosine
     np.testing.assert_allclose(found.strip.pressure, closed, rtol=256 * EPS)
     assert abs(found.greatest.angle) == pytest.approx(math.pi / 2, abs=1e-7)  # a flat top: root of rounding
     assert found.greatest.value == pytest.approx(
-        float(pressed(CONTACT, math.asin(centre / radius), 1 / radius).pressure), rel=256 * EPS
+        float(contact_strip(CONTACT, math.asin(centre / radius), 1 / radius).pressure), rel=256 * EPS
     )
 
 
@@ -77,7 +77,9 @@ def test_the_greatest_stress_is_where_its_slope_is_zero() -> None:
     candidates = [*inner, 0.0, 1.3]
     values = [
         float(
-            pressed(CONTACT, path.pressure_angle(np.array([p])), path.curvature(np.array([p]))[0]).pressure[0]
+            contact_strip(
+                CONTACT, path.pressure_angle(np.array([p])), path.curvature(np.array([p]))[0]
+            ).pressure[0]
         )
         for p in candidates
     ]

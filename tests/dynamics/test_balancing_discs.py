@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from balanced import SPEED, four_bar, rest_of
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from mechanisms import rounding, solve_evenly
 from samples import few
 

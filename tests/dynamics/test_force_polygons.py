@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from burdened import burdened
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from growing import KINDS, grown, mechanism_of
 from growing_higher import higher_descriptions
 from mechanisms import EPS, parts_of

@@ -15,7 +15,7 @@ from centrode.dynamics.kinetostatics.friction import (
     FrictionLaw,
     FrictionRule,
     Outcome,
-    followed,
+    solve_friction,
 )
 from mechanisms import EPS
 from samples import few
@@ -24,7 +24,7 @@ from samples import few
 def one(factor: float, base: complex, gain: complex, rule: FrictionRule = FrictionRule.LENGTH) -> Followed:
     """A single size at one position."""
     parts = np.array([[[base.real, base.imag]]]), np.array([[[[gain.real], [gain.imag]]]])
-    return followed(FrictionLaw(np.array([[factor]]), *parts, np.array([rule], dtype=np.int8)))
+    return solve_friction(FrictionLaw(np.array([[factor]]), *parts, np.array([rule], dtype=np.int8)))
 
 
 @pytest.mark.parametrize("gain", [0.0, 0.5, -0.5, -3.0, -40.0, 0.999])
@@ -73,7 +73,7 @@ def test_the_greater_of_two_and_the_signed() -> None:
 def test_no_size_and_no_force() -> None:
     assert one(0.3, 0.0, 0.7).sizes[0, 0] == 0.0
     assert one(0.0, 1.0, 5.0).sizes[0, 0] == 0.0
-    empty = followed(
+    empty = solve_friction(
         FrictionLaw(np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2, 2, 2)), np.zeros(2, dtype=np.int8))
     )
     assert empty.sizes.shape == (0, 2)
@@ -96,7 +96,7 @@ def test_where_little_feeds_back_plain_iteration_comes_to_the_same(seed: int, wi
     law = FrictionLaw(
         law.factor * (0.7 / np.maximum(law.feedback, 0.7))[:, None], law.base, law.gain, law.rules
     )
-    found = followed(law)
+    found = solve_friction(law)
     assert (found.outcome == Outcome.FOUND).all()
     sizes = np.zeros((count, width))
     for _round in range(400):  # 0.7^400 is nothing beside rounding
@@ -120,7 +120,7 @@ def test_what_is_followed_solves_and_joins_on_to_no_friction(seed: int, width: i
         random.normal(size=(8, width, 2, width)),
         np.full(width, FrictionRule.LENGTH, dtype=np.int8),
     )
-    found = followed(law)
+    found = solve_friction(law)
     assert (found.outcome != Outcome.LOST).all()
     good = found.outcome == Outcome.FOUND
     assert (found.sizes[good] >= 0).all()
@@ -133,4 +133,4 @@ def test_what_is_followed_solves_and_joins_on_to_no_friction(seed: int, width: i
         less = FrictionLaw(
             part.factor * (0.999 * found.share[locked])[:, None], part.base, part.gain, part.rules
         )
-        assert (followed(less).outcome == Outcome.FOUND).all()
+        assert (solve_friction(less).outcome == Outcome.FOUND).all()

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import centrode as ct
 from burdened import burdened
 from centrode.dynamics.force_polygons.statics import FreeBodies
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from growing import KINDS, grown, mechanism_of
 from mechanisms import EPS
 from samples import few

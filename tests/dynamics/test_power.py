@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from burdened import burdened, kinetic_energy, powers
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from growing import KINDS, descriptions, grown, mechanism_of
 from growing_higher import HIGHER, grown_higher
 from mechanisms import EPS

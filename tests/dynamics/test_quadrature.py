@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from centrode.dynamics.steady_motion.cycle import MOST_PANELS, NODES, Panels, resolved
+from centrode.dynamics.steady_motion.cycle import MOST_PANELS, NODES, Panels, resolve_panels
 from centrode.numerics.search import extremes
 
 Array = npt.NDArray[np.float64]
@@ -32,7 +32,7 @@ def test_polynomials_are_exact(degree: int) -> None:
 @pytest.mark.parametrize("sharp", [1.5, 1.05, 1.001])
 def test_the_error_told_bounds_the_error(sharp: float) -> None:
     """A peak of any width: the integral of 1/(a + cos x) over a turn is 2 pi / sqrt(a^2 - 1)."""
-    panels, values = resolved(lambda x: (1.0 / (sharp + np.cos(x)))[None], TURN, (1e-13,))
+    panels, values = resolve_panels(lambda x: (1.0 / (sharp + np.cos(x)))[None], TURN, (1e-13,))
     series = panels.series(values[0])
     exact = 2 * math.pi / math.sqrt(sharp**2 - 1)
     # the peak itself is rounded by the difference a + cos x
@@ -43,7 +43,7 @@ def test_the_error_told_bounds_the_error(sharp: float) -> None:
 
 @pytest.mark.parametrize("at", [1.0, math.pi, 5.0])
 def test_a_jump_that_nobody_announced(at: float) -> None:
-    panels, values = resolved(lambda x: np.where(x < at, -1.0, 2.0 + np.sin(x))[None], TURN, (1e-13,))
+    panels, values = resolve_panels(lambda x: np.where(x < at, -1.0, 2.0 + np.sin(x))[None], TURN, (1e-13,))
     series = panels.series(values[0])
     exact = -at + 2 * (2 * math.pi - at) + math.cos(at) - 1.0
     assert abs(series.total - exact) <= series.error + 64 * EPS * 20
@@ -53,7 +53,7 @@ def test_a_jump_that_nobody_announced(at: float) -> None:
 
 def test_a_jump_on_an_edge_costs_nothing() -> None:
     edges = np.unique(np.append(TURN, 1.0))
-    panels, values = resolved(lambda x: np.where(x < 1.0, -1.0, 2.0)[None], edges, (1e-13,))
+    panels, values = resolve_panels(lambda x: np.where(x < 1.0, -1.0, 2.0)[None], edges, (1e-13,))
     assert len(panels.edges) == len(edges)
     series = panels.series(values[0])
     assert series.at(np.array([1.0])) == pytest.approx(2.0)  # what holds behind it
@@ -62,7 +62,7 @@ def test_a_jump_on_an_edge_costs_nothing() -> None:
 
 def test_noise_ends_at_the_greatest_number_of_panels() -> None:
     noise = np.random.default_rng(1)
-    panels, _values = resolved(lambda x: noise.normal(size=(1, len(x))), TURN, (1e-13,))
+    panels, _values = resolve_panels(lambda x: noise.normal(size=(1, len(x))), TURN, (1e-13,))
     assert len(panels.edges) - 1 <= MOST_PANELS
 
 

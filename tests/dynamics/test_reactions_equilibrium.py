@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 import centrode as ct
 from burdened import burdened
 from centrode.dynamics.loads import MassesAndLoads
-from centrode.dynamics.state import Moving, State
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.dynamics.state import DriveMotion, State
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import requested_grid, solve
 from growing import KINDS, descriptions, grown, mechanism_of
 from growing_higher import HIGHER, grown_higher
 from kinetostatics import motion_and_reactions, number_of_equations, structure
@@ -197,9 +197,9 @@ def test_pulls_of_a_coordinate_do_its_slope(seed: int) -> None:
     mechanism = mechanism_of(burdened(grown(kinds, seed), seed))
     prepared = ready(mechanism)
     initial = prepared.kinematics.path.initial
-    solved = solve(prepared, asked_span(prepared, 5, initial - 0.05, initial + 0.05))
+    solved = solve(prepared, requested_grid(prepared, 5, initial - 0.05, initial + 0.05))
     span = solved.span
-    state = State.of(solved, Moving(span.time, span.parameter, span.rate))
+    state = State.of(solved, DriveMotion(span.time, span.parameter, span.rate))
     for load in MassesAndLoads.of(mechanism).loads:
         for effort in load.efforts:
             done: Any = 0.0

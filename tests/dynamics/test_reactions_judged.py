@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.equations import EPSILON, ForceSystem, InPlane, inverse_of
 from centrode.dynamics.kinetostatics.reactions import checks_of, find
 from centrode.dynamics.loads import MassesAndLoads
-from centrode.dynamics.state import Moving, State
+from centrode.dynamics.state import DriveMotion, State
 from centrode.dynamics.steady_motion.steady import SETTLED
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import requested_grid, solve
 from centrode.structure.constraints import PointInLink
 from centrode.structure.rank import jacobian
 from mechanisms import EPS, parts_of
@@ -78,9 +78,9 @@ def test_equilibrium_holds_to_rounding_however_near_a_dead_point() -> None:
 def test_checks_tell_of_wrong_reactions() -> None:
     """Each of the three residuals sees a force that is off by a thousandth."""
     prepared = ready(ct.example("six-bar-press"))
-    solved = solve(prepared, asked_span(prepared, 5, None, None))
+    solved = solve(prepared, requested_grid(prepared, 5, None, None))
     burden = MassesAndLoads.of(prepared.mechanism)
-    found = find(solved, burden, pace_of(solved, burden))
+    found = find(solved, burden, input_motion_of(solved, burden))
     rates = found.pace.moving.rate[:, None]
     assert max(checks_of(found, rates).values()) <= 1e3 * EPS
     for unknown, names in (
@@ -205,13 +205,13 @@ def test_what_is_not_determined_by_singular_values(seed: int) -> None:
     )
     found = ct.reactions(mechanism, at=[0.9, 1.0])
     structure = ready(mechanism).structure
-    state = solve(ready(mechanism), span_at(ready(mechanism).kinematics.path, np.array([0.9])))
-    at = InPlane().positions(State.of(state, Moving(*(np.ones(1),) * 3)), structure.dimensions)
+    state = solve(ready(mechanism), grid_at(ready(mechanism).kinematics.path, np.array([0.9])))
+    at = InPlane().positions(State.of(state, DriveMotion(*(np.ones(1),) * 3)), structure.dimensions)
     matrix = jacobian(
         structure.constraints,
         structure.unknowns,
         structure.dimensions,
-        at.mapped(lambda x: float(np.ravel(x)[0])),
+        at.map_numbers(lambda x: float(np.ravel(x)[0])),
     )
     _left, values, right = np.linalg.svd(matrix.T)
     free = right[int(np.sum(values > 1e-9 * values[0])) :]

@@ -14,7 +14,7 @@ import centrode as ct
 from centrode.dynamics.masses import masses_of
 from centrode.dynamics.reduction import Reducer
 from centrode.kinematics.path import JETS
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.numerics.jets import Jet
 from mechanisms import EPS, OPERATIONS, conditioning, on_branch, solve_evenly
 
@@ -124,7 +124,7 @@ def jet_of_inertia(mechanism: ct.Mechanism, values: Array) -> Jet:
         place = kinematics.numbers.space.place(JETS, pose, (x + centre.along, y + centre.across))
         total = total + sum((x.slope() * x.slope() for x in place), Jet((0.0, 0.0))) * mass.mass
         cosine, sine = (x if isinstance(x, Jet) else Jet((x, 0.0, 0.0)) for x in pose.rotor)
-        turning = cosine.lowered() * sine.slope() - sine.lowered() * cosine.slope()
+        turning = cosine.lower_order() * sine.slope() - sine.lower_order() * cosine.slope()
         total = total + turning * turning * mass.inertia
     assert isinstance(total, Jet)
     return total

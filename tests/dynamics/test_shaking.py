@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 import centrode as ct
 from burdened import burdened, velocity_of_centre
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from growing import DYADS, grown
 from mechanisms import EPS, OPERATIONS, link, point, rounding, solve_evenly
 from samples import few

@@ -9,7 +9,7 @@ import pytest
 
 import centrode as ct
 from centrode.dynamics.simulation import equation_of_motion
-from centrode.dynamics.simulation.stepping import Stepper
+from centrode.dynamics.simulation.integrator import Stepper
 from centrode.kinematics.solve import BYTES, GREATEST_RESULT
 from centrode.model.simulation import MOST_TURNS
 from centrode.numerics.machine_code import PRESENT

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.dynamics.simulation.integrator import compile_scan
 from centrode.dynamics.simulation.simulate import setting_of
-from centrode.dynamics.simulation.stepping import compiled
 from centrode.numerics.machine_code import PRESENT
 from simulated import PENDULUM, crank_rocker, pendulum, rotor, sledge, spherical
 
@@ -68,7 +68,7 @@ def test_the_scan_runs_on_numpy_too() -> None:
     """The same scan, the same numbers but for the last bits of sine and cosine."""
     setting = setting_of(crank_rocker(SMOOTH), ct.Simulation(driving="2", speed=3, duration=1))
     states = [
-        compiled(setting.rows, setting.driving, kind).states(0.3, 3.0, 0.2, 40)
+        compile_scan(setting.rows, setting.driving, kind).states(0.3, 3.0, 0.2, 40)
         for kind in ("arrays", "machine code")
     ]
     assert np.max(np.abs(states[0] - states[1])) <= 1e4 * 2.0**-52 * np.max(np.abs(states[0]))

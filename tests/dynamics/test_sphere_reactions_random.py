@@ -11,7 +11,7 @@ import xarray as xr
 
 import centrode as ct
 from centrode.dynamics.kinetostatics.equations import Scheme
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from growing_sphere import Growing, grown
 from mechanisms import EPS
 from samples import few

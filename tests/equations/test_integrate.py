@@ -15,7 +15,7 @@ from hypothesis import assume, given, settings
 
 import centrode as ct
 from centrode.equations.integration import NUDGE, STRIDE, Scaled, adaptive_steps, cauchy_form
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from growing import descriptions, mechanism_of
 from mechanisms import EPS, four_bar
 from samples import few

@@ -11,8 +11,8 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from centrode.equations.spelling import Spelling, formula_of, parts_of, spelled, spelled_sum
-from centrode.equations.symbols import Angle, Letter, Sum, SumTerm, expression, merged
+from centrode.equations.spelling import FormulaSpelling, formula_of, parts_of, spell_formula, spelled_sum
+from centrode.equations.symbols import Angle, Letter, Sum, SumTerm, expression, merge_waves
 
 ANGLES = [Letter(i, f"phi{i}") for i in range(1, 4)]
 LENGTHS = [Letter(100 + i, f"l{i}") for i in range(1, 4)]
@@ -84,8 +84,8 @@ def test_sums_add_and_multiply_as_numbers_do(one: Sum, other: Sum) -> None:
 
 @given(simple_sums())
 def test_taken_together_a_sum_stays_what_it_is(total: Sum) -> None:
-    assert abs(number(merged(total)) - number(total)) <= allowed(total)
-    assert len(merged(total).terms) <= len(total.terms)
+    assert abs(number(merge_waves(total)) - number(total)) <= allowed(total)
+    assert len(merge_waves(total).terms) <= len(total.terms)
     found = formula_of(total)
     assert abs(number(found.total) - number(total)) <= allowed(total, found.total)
 
@@ -119,11 +119,11 @@ PAIRS = {
 @pytest.mark.parametrize("name", PAIRS)
 def test_pairs_become_one_wave(name: str) -> None:
     total, text = PAIRS[name]
-    found = merged(total)
+    found = merge_waves(total)
     if text is None:
         assert found == total
     else:
-        assert spelled_sum(found, Spelling()) == text
+        assert spelled_sum(found, FormulaSpelling()) == text
 
 
 def test_right_angles_are_signs_and_other_functions() -> None:
@@ -139,17 +139,17 @@ def test_right_angles_are_signs_and_other_functions() -> None:
 def test_formulas_are_written_as_in_textbooks() -> None:
     l1, l2, phi = LENGTHS[0], LENGTHS[1], sin((2, 1)).terms
     under = SumTerm(((l2, 1),), next(iter(phi)).waves)
-    single = formula_of((length(1) * cos((1, 1))).divided(under).scaled(-1))
+    single = formula_of((length(1) * cos((1, 1))).divide(under).scale(-1))
     assert str(single) == "-(l₁/l₂) cos φ₁/sin φ₂"
-    several = formula_of((length(1) * cos((1, 1)) + length(3) * cos((2, 1))).divided(under))
+    several = formula_of((length(1) * cos((1, 1)) + length(3) * cos((2, 1))).divide(under))
     assert str(several) == "(l₁ cos φ₁ + l₃ cos φ₂)/(l₂ sin φ₂)"
     assert str(formula_of(Sum({}))) == "0"
     assert str(formula_of(Sum.number(Fraction(-1, 2)))) == "-1/2"
     assert str(formula_of(Sum({SumTerm(((l1, -1),)): 3}))) == "3/l₁"
     assert str(formula_of(Sum({SumTerm(((l1, 2),)): 1}))) == "l₁²"
     difference = formula_of(-sin((1, 1), (2, -1)) * cos((3, 1)))
-    assert spelled(difference, Spelling(), turned=True) == "cos φ₃ sin(φ₂ - φ₁)"
-    assert spelled(difference, Spelling(), differences_first=True) == "-sin(φ₁ - φ₂) cos φ₃"
+    assert spell_formula(difference, FormulaSpelling(), turned=True) == "cos φ₃ sin(φ₂ - φ₁)"
+    assert spell_formula(difference, FormulaSpelling(), differences_first=True) == "-sin(φ₁ - φ₂) cos φ₃"
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from centrode.geometry.meeting import meet_circle_and_line, meet_circles, meet_circles_on_sphere
-from centrode.geometry.plane import Circle, Line
+from centrode.geometry.intersections import meet_circle_and_line, meet_circles, meet_circles_on_sphere
+from centrode.geometry.plane import Line, PlaneCircle
 from centrode.numerics.jets import Jet, JetFunctions
 
 ORDER = 5
@@ -61,8 +61,8 @@ def test_derivatives_of_every_order(seed: int, fixed: str) -> None:
     side = 1 if seed % 2 else -1
     given = [one[0] if i in still else Jet(one) for i, one in enumerate(numbers)]
     found = meet_circles(
-        Circle((given[0], given[1]), given[2]),
-        Circle((given[3], given[4]), given[5]),
+        PlaneCircle((given[0], given[1]), given[2]),
+        PlaneCircle((given[3], given[4]), given[5]),
         lambda x: side * JETS.sqrt(x),
     )
     expected = exact(numbers, side)
@@ -98,7 +98,7 @@ def test_derivatives_on_lines(seed: int, still: str) -> None:
         (math.cos(given[5]), math.sin(given[5])) if 5 in stand else (JETS.cos(given[5]), JETS.sin(given[5]))
     )
     found = meet_circle_and_line(
-        Circle((given[0], given[1]), given[2]),
+        PlaneCircle((given[0], given[1]), given[2]),
         Line((given[3], given[4]), direction),
         lambda x: side * JETS.sqrt(x),
     )
@@ -194,15 +194,15 @@ def _turn(numbers: list[list[float]], side: int) -> Any:
 def test_circles_that_stand() -> None:
     """Plain numbers give a plain place, with the bits of the moving one's value."""
     one, other = ((0.0, 0.0), 3.0), ((5.0, 0.0), 4.0)
-    plain = meet_circles(Circle(*one), Circle(*other), math.sqrt)
+    plain = meet_circles(PlaneCircle(*one), PlaneCircle(*other), math.sqrt)
     assert plain == pytest.approx((1.8, 2.4), rel=EPS * 4)
-    moves = meet_circles(Circle((Jet((0.0, 1.0)), 0.0), 3.0), Circle(*other), JETS.sqrt)
+    moves = meet_circles(PlaneCircle((Jet((0.0, 1.0)), 0.0), 3.0), PlaneCircle(*other), JETS.sqrt)
     assert tuple(x.value for x in moves) == plain
 
 
 def test_touching_circles_have_no_finite_velocity() -> None:
     centre = Jet((np.float64(0.0), 1.0)), 0.0
     with np.errstate(all="ignore"):
-        moves = meet_circles(Circle(centre, 2.0), Circle((5.0, 0.0), 3.0), JetFunctions(np).sqrt)
+        moves = meet_circles(PlaneCircle(centre, 2.0), PlaneCircle((5.0, 0.0), 3.0), JetFunctions(np).sqrt)
     assert [float(x.value) for x in moves] == [2.0, 0.0]
     assert not all(np.isfinite(x.coefficients[1]) for x in moves)

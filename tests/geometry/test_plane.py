@@ -10,8 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from centrode.geometry import plane
-from centrode.geometry.meeting import meet_circle_and_line, meet_circles
-from centrode.geometry.plane import Circle, Line, Pose, Vector
+from centrode.geometry.intersections import meet_circle_and_line, meet_circles
+from centrode.geometry.plane import Line, PlaneCircle, PlanePose, Vector
 from centrode.numerics.arrays import ARRAYS
 
 EPS = 2.0**-52
@@ -38,11 +38,13 @@ def signed(sign: float) -> plane.Root:
 def test_turning_keeps_products(a: Vector, b: Vector, angle: float) -> None:
     r = rotor(angle)
     allowed = 16 * EPS * (1 + math.hypot(*a) * math.hypot(*b))
-    assert plane.dot(plane.turned(a, r), plane.turned(b, r)) == pytest.approx(plane.dot(a, b), abs=allowed)
-    assert plane.cross(plane.turned(a, r), plane.turned(b, r)) == pytest.approx(
+    assert plane.dot(plane.rotate_vector(a, r), plane.rotate_vector(b, r)) == pytest.approx(
+        plane.dot(a, b), abs=allowed
+    )
+    assert plane.cross(plane.rotate_vector(a, r), plane.rotate_vector(b, r)) == pytest.approx(
         plane.cross(a, b), abs=allowed
     )
-    back = plane.turned(plane.turned(a, r), plane.reversed_rotor(r))
+    back = plane.rotate_vector(plane.rotate_vector(a, r), plane.reversed_rotor(r))
     assert apart(back, a) <= 8 * EPS * (1 + math.hypot(*a))
     assert plane.cross((1.0, 0.0), (0.0, 1.0)) == 1.0
 
@@ -59,7 +61,7 @@ def test_poses_put_their_points_where_they_are_told(local: Vector, at: Vector, a
 @given(VECTOR, VECTOR, VECTOR, ANGLE)
 def test_pose_by_two_points(first: Vector, second: Vector, origin: Vector, angle: float) -> None:
     assume(apart(first, second) > 0.1)
-    pose = Pose(origin, rotor(angle))
+    pose = PlanePose(origin, rotor(angle))
     found = plane.pose_by_two_points(first, second, plane.place(pose, first), plane.place(pose, second))
     # errors of the places over the distance between them, times the greatest arm
     allowed = 64 * EPS * 12 / apart(first, second)
@@ -72,7 +74,7 @@ def test_pose_by_two_points(first: Vector, second: Vector, origin: Vector, angle
 def test_circles_meet(a: Vector, b: Vector, r: float, s: float, sign: float) -> None:
     distance = apart(a, b)
     assume(abs(r - s) + 0.05 < distance < r + s - 0.05)
-    p = meet_circles(Circle(a, r), Circle(b, s), signed(sign))
+    p = meet_circles(PlaneCircle(a, r), PlaneCircle(b, s), signed(sign))
     # the height over the line is the root of a radicand known to some eps: eps over the sine of the triangle
     sine = abs(plane.cross(plane.subtract(b, a), plane.subtract(p, a))) / (distance * r)
     allowed = 64 * EPS * 8 / (sine * min(distance, 1.0))
@@ -88,7 +90,7 @@ def test_radicand_of_circles_is_sixteen_squared_areas() -> None:
         found.append(x)
         return 0.0
 
-    meet_circles(Circle((0.0, 0.0), 3.0), Circle((5.0, 0.0), 4.0), root)
+    meet_circles(PlaneCircle((0.0, 0.0), 3.0), PlaneCircle((5.0, 0.0), 4.0), root)
     assert found == [16 * 6.0**2]
 
 
@@ -98,7 +100,7 @@ def test_circle_and_line_meet(centre: Vector, r: float, through: Vector, angle: 
     d = rotor(angle)
     distance = plane.cross(d, plane.subtract(centre, through))
     assume(abs(distance) < r - 0.02)
-    p = meet_circle_and_line(Circle(centre, r), Line(through, d), signed(sign))
+    p = meet_circle_and_line(PlaneCircle(centre, r), Line(through, d), signed(sign))
     half = math.sqrt(r * r - distance * distance)
     allowed = 64 * EPS * 12 * r / half
     assert apart(p, centre) == pytest.approx(r, abs=allowed)
@@ -139,7 +141,7 @@ def test_a_link_aims_its_line_at_a_target(
     assert math.hypot(*pose.rotor) == pytest.approx(1.0, abs=allowed)
     assert apart(plane.place(pose, pivot), at) <= allowed
     on_line = plane.subtract(target, plane.place(pose, through))
-    direction = plane.turned(d, pose.rotor)
+    direction = plane.rotate_vector(d, pose.rotor)
     assert plane.cross(direction, on_line) == pytest.approx(0.0, abs=allowed * 8)
     assert sign * plane.dot(direction, plane.subtract(target, at)) > 0
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mpmath import mp
 
 from centrode.geometry import sphere
-from centrode.geometry.meeting import meet_circles_on_sphere
+from centrode.geometry.intersections import meet_circles_on_sphere
 from centrode.geometry.on_sphere import SPHERE
 from centrode.geometry.sphere import Attitude, Coordinates, HalfArc, Vector
 from centrode.numerics.arrays import ARRAYS
@@ -51,7 +51,7 @@ def an_attitude(pole: Coordinates, angle: float) -> Attitude:
     """Any attitude: the first axis at a place, turned about it."""
     x = unit(pole)
     north, _west = sphere.meridian(ARRAYS, pole)
-    y = sphere.turned(ARRAYS, x, north, (math.cos(angle), math.sin(angle)))
+    y = sphere.rotate_tangent(ARRAYS, x, north, (math.cos(angle), math.sin(angle)))
     return Attitude(x, y, sphere.cross(x, y))
 
 
@@ -70,7 +70,7 @@ def test_coordinates() -> None:
 @given(PLACE, ANGLE, PLACE, PLACE)
 def test_attitudes_keep_arcs(pole: Coordinates, angle: float, a: Coordinates, b: Coordinates) -> None:
     attitude = an_attitude(pole, angle)
-    places = [sphere.carried(attitude, unit(at)) for at in (a, b)]
+    places = [sphere.vector_in_frame(attitude, unit(at)) for at in (a, b)]
     assume(1e-3 < arc(unit(a), unit(b)) < math.pi - 1e-3)
     assert arc(*places) == pytest.approx(arc(unit(a), unit(b)), abs=32 * EPS)
     found = sphere.attitude_by_two_points(ARRAYS, a, b, *places)
@@ -134,8 +134,8 @@ def unit_at(distance: float) -> Vector:
     """A place at an arc from (0.3, 0.2)."""
     x = unit((0.3, 0.2))
     north, _west = sphere.meridian(ARRAYS, (0.3, 0.2))
-    along = sphere.turned(ARRAYS, x, north, (math.cos(1.0), math.sin(1.0)))
-    return sphere.combined((math.cos(distance), x), (math.sin(distance), along))
+    along = sphere.rotate_tangent(ARRAYS, x, north, (math.cos(1.0), math.sin(1.0)))
+    return sphere.linear_combination((math.cos(distance), x), (math.sin(distance), along))
 
 
 @settings(max_examples=40)
@@ -147,7 +147,7 @@ def test_a_turned_link_has_its_angle(
     sines = [math.sin(arc(unit(p), unit(q))) for p, q in ((zero, end), (pivot, second))]
     assume(min(sines) > 0.05)
     base = an_attitude(pole, attitude)
-    at = sphere.carried(base, unit(zero))
+    at = sphere.vector_in_frame(base, unit(zero))
     reference = (pivot, second, zero, end)
     rotor = (math.cos(angle), math.sin(angle))
     pose = SPHERE.turned_pose(ARRAYS, base, rotor, pivot, at, reference)

@@ -10,9 +10,9 @@ import pytest
 
 import centrode as ct
 from centrode.kinematics import change_points
-from centrode.kinematics.higher_class import tracing
+from centrode.kinematics.higher_class import curve_continuation
+from centrode.kinematics.higher_class.curve_continuation import CurveTracks
 from centrode.kinematics.higher_class.newton import SMALL
-from centrode.kinematics.higher_class.tracing import CurveTracks
 from centrode.kinematics.path import Path
 from mechanisms import EPS, OPERATIONS, Parts, events, parts_of, statuses
 from redriven import answer
@@ -128,7 +128,7 @@ def traced(monkeypatch: pytest.MonkeyPatch) -> list[CurveTracks]:
     found: list[CurveTracks] = []
 
     def noted(*asked: Any) -> Any:
-        tracks, events = tracing.trace(*asked)
+        tracks, events = curve_continuation.trace(*asked)
         found.append(tracks)
         return tracks, events
 

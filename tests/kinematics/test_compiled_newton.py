@@ -10,12 +10,12 @@ import pytest
 
 import centrode as ct
 from centrode.geometry.plane import dot
-from centrode.kinematics.compiled.newton import inverse
-from centrode.kinematics.compiled.path_following import NODES, beginnings, way_of
-from centrode.kinematics.compiled.trace import chains_of
-from centrode.kinematics.compiled.variables import FIRST, PARAMETER, SAMPLE, STEP
 from centrode.kinematics.higher_class.system import GroupSystem
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.machine_code.newton import inverse
+from centrode.kinematics.machine_code.path_continuation import NODES, beginnings, way_of
+from centrode.kinematics.machine_code.trace import chains_of
+from centrode.kinematics.machine_code.variables import FIRST, PARAMETER, SAMPLE, STEP
+from centrode.kinematics.preparation import ready
 from centrode.numerics.expressions import as_node, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.scans import evaluate

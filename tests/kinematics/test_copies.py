@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import centrode as ct
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved
 from centrode.structure.groups import Newton
 from growing import descriptions, mechanism_of

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from mechanisms import EPS, events, link, point, slide, statuses
 
 CHANGE_POINTS = {

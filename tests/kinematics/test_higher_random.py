@@ -9,8 +9,8 @@ from hypothesis import assume, given, settings
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.kinematics.path import JETS, span_at
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.path import JETS, grid_at
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.numerics.jets import Jet
 from growing_higher import higher_descriptions
@@ -54,7 +54,7 @@ def test_the_initial_position_is_the_one_drawn(parts: dict[str, Any]) -> None:
 def test_constraints_hold_with_two_derivatives(parts: dict[str, Any]) -> None:
     prepared = prepared_of(parts)
     values = prepared.kinematics.path.initial + np.linspace(-0.3, 0.3, 5)
-    solved = solve(prepared, span_at(prepared.kinematics.path, values))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, values))
     condition = answer(prepared.mechanism, values)
     assert not (solved.status == ct.Status.UNCONVERGED).any()
     scale = float(prepared.kinematics.numbers.scale)

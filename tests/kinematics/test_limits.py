@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.several_inputs.limits import held_path, starting_at
 from drives import apart, five_bar
 from mechanisms import EPS, four_bar

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.kinematics.compiled import batch
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.machine_code import batch
+from centrode.kinematics.preparation import ready
 from centrode.numerics import machine_code
 from centrode.structure.groups import Newton
 

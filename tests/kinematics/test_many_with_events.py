@@ -10,11 +10,11 @@ import numpy.typing as npt
 import pytest
 
 import centrode as ct
-from centrode.kinematics.compiled import batch
-from centrode.kinematics.compiled.events import Eventful
-from centrode.kinematics.path import SampleGrid, span_at
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.machine_code import batch
+from centrode.kinematics.machine_code.events import Eventful
+from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.numerics import machine_code
 from centrode.structure.dimensions import dimensions_of
 from drives import five_bar
@@ -60,7 +60,9 @@ def both(mechanism: ct.Mechanism, vary: Vary, at: Array | int) -> tuple[Solved, 
     """The motions with machine code, and by arrays, at places or at so many samples."""
     prepared = ready(mechanism)
     span: SampleGrid = (
-        asked_span(prepared, at, None, None) if isinstance(at, int) else span_at(prepared.kinematics.path, at)
+        requested_grid(prepared, at, None, None)
+        if isinstance(at, int)
+        else grid_at(prepared.kinematics.path, at)
     )
     numbers, lanes = dimensions_of(mechanism, vary, np), len(next(iter(vary.values())))
     return batch.solve_many(prepared, span, numbers, lanes), solve(prepared, span, numbers, lanes)

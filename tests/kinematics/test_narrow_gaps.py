@@ -10,12 +10,12 @@ import pytest
 
 import centrode as ct
 import growing_sphere
-from centrode.kinematics.compiled import batch
 from centrode.kinematics.events import BENDS
-from centrode.kinematics.path import JETS, span_at
+from centrode.kinematics.machine_code import batch
+from centrode.kinematics.path import JETS, grid_at
 from centrode.kinematics.plan_evaluation import FixedSigns
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.solve import asked_span, of_batch, solve
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.solve import of_batch, requested_grid, solve
 from centrode.numerics import machine_code
 from centrode.numerics.bends import Bent
 from centrode.numerics.jets import Jet
@@ -71,7 +71,7 @@ def test_a_point_that_runs_to_infinity_within_a_cell(gap: float) -> None:
     bound = 16 * EPS / gap
     prepared = ready(mechanism)
     start = prepared.kinematics.path.initial
-    solved = solve(prepared, span_at(prepared.kinematics.path, start + np.linspace(0.05, 6.05, 61)))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, start + np.linspace(0.05, 6.05, 61)))
     assert solved.branches.reach(0)[1] == pytest.approx(places[0], abs=bound)
     poles = [e.at for e in solved.events() if e.kind == "limit"]
     np.testing.assert_allclose(poles, places, rtol=0.0, atol=bound)
@@ -117,7 +117,7 @@ def test_limits_just_before_a_pole(seed: int) -> None:
     assert abs(slow[side] - at) <= FOUND
     sense = 1.0 if side else -1.0
     places = at + sense * np.append(-0.5 * STEP, np.geomspace(1e-8, 10 * STEP, 20))
-    solved = solve(prepared, span_at(prepared.kinematics.path, np.sort(places)[:: int(sense)]))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, np.sort(places)[:: int(sense)]))
     assert abs(solved.branches.reach(0)[side] - at) <= FOUND
     assert solved.status[0, 0] == ct.Status.OK
     assert (solved.status[0, 1:] != ct.Status.OK).all()
@@ -131,7 +131,7 @@ def test_a_batch_against_the_scan() -> None:
         vary = varied(mechanism, lanes, 0.02)
         slow = by_scan(prepared, vary, lanes)
         start = prepared.kinematics.path.initial
-        span = asked_span(prepared, 9, start - np.pi + 0.1, start + np.pi - 0.1)
+        span = requested_grid(prepared, 9, start - np.pi + 0.1, start + np.pi - 0.1)
         fast = solve(prepared, span, dimensions_of(mechanism, vary, np), lanes).branches.reaches()
         closed = ~np.isnan(slow).any(axis=1)
         near = closed[:, None] & (np.abs(slow - start) < np.pi - 0.2)
@@ -147,7 +147,7 @@ def test_machine_code_agrees(seed: int, monkeypatch: pytest.MonkeyPatch) -> None
     prepared, lanes = ready(mechanism), 8
     numbers = dimensions_of(mechanism, varied(mechanism, lanes, 0.02), np)
     start = prepared.kinematics.path.initial
-    span = asked_span(prepared, 61, start - 1.5, start + 1.5)
+    span = requested_grid(prepared, 61, start - 1.5, start + 1.5)
     fast, slow = (f(prepared, span, numbers, lanes) for f in (batch.solve_many, solve))
     np.testing.assert_array_equal(fast.status, slow.status)
     told = [sorted((e.lane, e.group, e.kind, e.at) for e in x.branches.events) for x in (fast, slow)]
@@ -174,10 +174,10 @@ def chains(kinds: tuple[str, ...], count: int) -> list[tuple[list[str], int]]:
 def test_random_chains_against_the_scan(made: Callable[..., ct.Mechanism], kinds: tuple[str, ...]) -> None:
     for chain in chains(kinds, 8):
         prepared = ready(made(*chain))
-        numbers = prepared.kinematics.numbers.mapped(lambda x: np.array([x]) if x != 0.0 else x)
+        numbers = prepared.kinematics.numbers.map_numbers(lambda x: np.array([x]) if x != 0.0 else x)
         slow = reaches(of_batch(prepared.kinematics, numbers), prepared.assembled.signs, 1, np.pi)[0]
         start = prepared.kinematics.path.initial
-        found = solve(prepared, asked_span(prepared, 3, start - np.pi, start + np.pi)).branches.reach(0)
+        found = solve(prepared, requested_grid(prepared, 3, start - np.pi, start + np.pi)).branches.reach(0)
         for scanned, searched in zip(slow, found, strict=True):
             if np.isfinite(scanned) or abs(searched - start) < np.pi:
                 assert abs(scanned - searched) <= FOUND, chain

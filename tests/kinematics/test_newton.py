@@ -13,7 +13,7 @@ from centrode.kinematics.higher_class.newton import newton
 from centrode.kinematics.higher_class.system import GroupMotion, GroupSystem
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import EvaluationPolicy
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
 from centrode.numerics.rounding import ROUNDED, Rounded
@@ -63,7 +63,7 @@ def test_convergence_is_quadratic(prepared: Ready) -> None:
         free = list(size * random.uniform(-1.0, 1.0, (system.free, 1)))
         linear = system.linear(system.at(ARRAYS, system.known, state))
         still = {entity: (0.0,) * entity.unknowns for entity in linear.tangents}
-        found = newton(system, system.moved(state, GroupMotion(linear.whole(still, free), free)))
+        found = newton(system, system.move(state, GroupMotion(linear.whole(still, free), free)))
         assert found.found.all()
         steps = found.sizes[:, 0][np.isfinite(found.sizes[:, 0])]
         curvature = 20.0 / np.min(np.linalg.svd(linear.matrix[0], compute_uv=False))
@@ -83,7 +83,7 @@ def test_the_small_equations_are_the_great_ones(prepared: Ready) -> None:
         gaps = []
         for size in (1e-3, 1e-4):
             free = [np.array([size if i == j else 0.0]) for i in range(system.free)]
-            moved = system.moved(state, GroupMotion(linear.whole(still, free), free))
+            moved = system.move(state, GroupMotion(linear.whole(still, free), free))
             values = system.residual(ARRAYS, system.at(ARRAYS, system.known, moved))
             gaps.append(max(abs(float(v[0])) for i, v in enumerate(values) if i not in kept) / scale)
         assert gaps[0] <= 10.0 * 1e-3**2 * system.free

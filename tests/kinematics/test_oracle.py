@@ -10,7 +10,7 @@ import mpmath as mp
 import pytest
 
 import centrode as ct
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved
 from centrode.structure.plan import structure_of
 from mechanisms import rounding, solve_evenly

@@ -8,9 +8,9 @@ import numpy as np
 from hypothesis import assume, given, settings
 
 import centrode as ct
-from centrode.geometry.plane import Pose
+from centrode.geometry.plane import PlanePose
 from centrode.kinematics.path import JETS
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Entity, Positions, is_drive
@@ -71,7 +71,10 @@ def test_velocities_solve_the_linear_equations(parts: dict[str, Any]) -> None:
         jets = jet_positions(solved, k)
         at = Positions(
             {name: tuple(plain(x) for x in v) for name, v in jets.points.items()},  # type: ignore[misc]
-            {name: Pose(*(tuple(plain(x) for x in v) for v in pose)) for name, pose in jets.poses.items()},  # type: ignore[arg-type]
+            {
+                name: PlanePose(*(tuple(plain(x) for x in v) for v in pose))
+                for name, pose in jets.poses.items()
+            },  # type: ignore[arg-type]
             {"link0": solved.span.parameter[k]},
         )
         rates = np.concatenate([rate_of(entity, jets, solved, k) for entity in structure.unknowns])

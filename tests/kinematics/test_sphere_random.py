@@ -11,8 +11,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import centrode as ct
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import Solved, solve
 from growing_sphere import Growing, angle_at, coordinates, mechanisms, unit
 from mechanisms import EPS, Parts, conditioning, solve_evenly
@@ -32,7 +32,7 @@ def test_mechanisms_assemble_where_they_were_drawn(grown: Growing) -> None:
     prepared = ready(ct.Mechanism(**grown.parts()))
     drives = len(grown.drives)
     assert prepared.mobility == drives
-    solved = solve(prepared, span_at(prepared.kinematics.path, at_start(prepared.kinematics.path.initial)))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, at_start(prepared.kinematics.path.initial)))
     condition = conditioning(solved, tries=4)[0, 0] if drives == 1 else WORTH
     assume(condition <= WORTH)
     at = prepared.assembled.positions

@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import centrode as ct
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.model.classics import inverted_slider_crank
 from mechanisms import EPS, conditioning, events, four_bar, link, point, slide, solve_evenly, statuses
 

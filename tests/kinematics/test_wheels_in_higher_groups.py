@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from mechanisms import EPS, Parts, parts_of
 
 ROLLED_ROD: Parts = {

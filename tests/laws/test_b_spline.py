@@ -10,7 +10,7 @@ import pytest
 from scipy.interpolate import BSpline, make_interp_spline
 
 from centrode.errors import InputError
-from centrode.laws import Segment, SegmentedLaw
+from centrode.laws import LawSegment, SegmentedLaw
 from centrode.laws.rises import Piece, Pieces
 from centrode.laws.segments import Condition, b_spline, polynomial
 from centrode.numerics.arrays import ARRAYS
@@ -137,8 +137,8 @@ def test_inside_all_derivatives_but_the_last_are_continuous() -> None:
 def test_a_segment_of_a_law_may_be_one() -> None:
     law = SegmentedLaw(
         (
-            Segment(1.0, 2.0, "cycloidal"),
-            Segment(2.0, 0.0, "b-spline", (0.0, 0.0), (0.0, 0.0), ((0.5, 1.5), (1.0, 0.5)), 5),
+            LawSegment(1.0, 2.0, "cycloidal"),
+            LawSegment(2.0, 0.0, "b-spline", (0.0, 0.0), (0.0, 0.0), ((0.5, 1.5), (1.0, 0.5)), 5),
         )
     )
     assert [law.jet(math, t) for t in (0.0, 1.0, 3.0)] == [0.0, 2.0, 0.0]
@@ -149,12 +149,12 @@ def test_a_segment_of_a_law_may_be_one() -> None:
 @pytest.mark.parametrize("degree", [0, 16])
 def test_degrees_are_bounded(degree: int) -> None:
     with pytest.raises(InputError, match="between 1 and 15"):
-        Segment(1.0, 1.0, "b-spline", degree=degree)
+        LawSegment(1.0, 1.0, "b-spline", degree=degree)
 
 
 def test_ends_take_fewer_derivatives_than_the_degree() -> None:
     with pytest.raises(InputError, match="degree 3 takes fewer derivatives at an end than that, got 3"):
-        Segment(1.0, 1.0, "b-spline", (0.0, 0.0, 0.0), (), (), 3)
+        LawSegment(1.0, 1.0, "b-spline", (0.0, 0.0, 0.0), (), (), 3)
 
 
 def test_what_cannot_be_computed_is_refused() -> None:

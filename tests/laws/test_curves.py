@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from centrode.laws import CURVES, Curve
+from centrode.laws import CURVES, RiseCurve
 from centrode.laws.rises import Piece
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
@@ -85,7 +85,7 @@ def truth(name: str, u: float) -> list[float]:
         return [float(x) for x in (value, speed, acceleration(at), mpmath.diff(acceleration, at, **near))]
 
 
-def allowed(curve: Curve, order: int) -> float:
+def allowed(curve: RiseCurve, order: int) -> float:
     """Rounding of a derivative: the terms' sizes, times the operations on each."""
 
     def size(piece: Piece) -> float:
@@ -101,7 +101,7 @@ def allowed(curve: Curve, order: int) -> float:
     return 2 * (8 + max(len(piece.powers) for piece in curve.pieces)) * EPS * max(map(size, curve.pieces))
 
 
-def derivatives(curve: Curve, u: float) -> list[float]:
+def derivatives(curve: RiseCurve, u: float) -> list[float]:
     jet = curve.jet(JETS, Jet.variable(np.float64(u), 3))
     return [float(jet.derivative(k)) for k in range(4)]
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from centrode.errors import InputError
-from centrode.laws import CURVES, Law, Segment, SegmentedLaw
+from centrode.laws import CURVES, Law, LawSegment, SegmentedLaw
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
@@ -16,10 +16,10 @@ from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
 EPS = sys.float_info.epsilon
 JETS = JetFunctions(ARRAYS)
 PRESS = (
-    Segment(2.0, 0.12, "cycloidal"),
-    Segment(0.5, None, "dwell"),
-    Segment(1.0, 0.05, "3-4-5"),
-    Segment(0.5, 0.0, "polynomial", (0.0, 0.0), (0.02,), ((0.125, 0.04),)),
+    LawSegment(2.0, 0.12, "cycloidal"),
+    LawSegment(0.5, None, "dwell"),
+    LawSegment(1.0, 0.05, "3-4-5"),
+    LawSegment(0.5, 0.0, "polynomial", (0.0, 0.0), (0.02,), ((0.125, 0.04),)),
 )
 
 
@@ -30,7 +30,7 @@ def derivatives(law: Law, t: float, order: int = 3) -> list[float]:
 
 @pytest.mark.parametrize("name", CURVES)
 def test_a_segment_is_the_curve_in_its_own_time_and_size(name: str) -> None:
-    law = SegmentedLaw((Segment(0.5, 1.0, "uniform"), Segment(4.0, -2.0, name)))
+    law = SegmentedLaw((LawSegment(0.5, 1.0, "uniform"), LawSegment(4.0, -2.0, name)))
     for u in (0.0, 0.1, 0.3, 0.5, 0.7, 0.9):
         jet = CURVES[name].jet(JETS, Jet.variable(np.float64(u), 3))
         found = derivatives(law, 0.5 + 4 * u)
@@ -60,14 +60,14 @@ def test_speed_and_acceleration_run_through_joints(count: int) -> None:
 
 
 def test_derivatives_at_joints_are_those_of_what_begins_there() -> None:
-    law = SegmentedLaw((Segment(1.0, 2.0, "uniform"), Segment(1.0, -1.0, "uniform")))
+    law = SegmentedLaw((LawSegment(1.0, 2.0, "uniform"), LawSegment(1.0, -1.0, "uniform")))
     assert [derivatives(law, t, 1) for t in (0.0, 1.0, 2.0)] == [[0.0, 2.0], [2.0, -3.0], [-1.0, -3.0]]
     jet = law.jet(JETS, Jet.variable(np.array([0.0, 1.0, 2.0]), 1))
     assert jet.derivative(1).tolist() == [2.0, -3.0, -3.0]
 
 
 def test_before_and_after_it_stays() -> None:
-    law = SegmentedLaw((Segment(1.0, 2.0, "uniform"),))
+    law = SegmentedLaw((LawSegment(1.0, 2.0, "uniform"),))
     assert derivatives(law, -0.1) == [0.0, 0.0, 0.0, 0.0]
     assert derivatives(law, 1.1) == [2.0, 0.0, 0.0, 0.0]
     np.testing.assert_array_equal(law.jet(ARRAYS, np.array([-9.0, 0.5, 9.0])), [0.0, 1.0, 2.0])
@@ -75,7 +75,11 @@ def test_before_and_after_it_stays() -> None:
 
 
 def test_segments_repeat_and_the_value_runs_on() -> None:
-    segments = (Segment(1.0, 2.0, "cycloidal"), Segment(0.5, None, "dwell"), Segment(0.5, 1.5, "uniform"))
+    segments = (
+        LawSegment(1.0, 2.0, "cycloidal"),
+        LawSegment(0.5, None, "dwell"),
+        LawSegment(0.5, 1.5, "uniform"),
+    )
     once, law = SegmentedLaw(segments), SegmentedLaw(segments, repeat=True)
     assert law.span is None
     t = np.linspace(0, 2, 33)[:-1]  # whole multiples of 1/16: turns are exact
@@ -87,7 +91,7 @@ def test_segments_repeat_and_the_value_runs_on() -> None:
 
 def test_turns_of_a_period_that_is_no_binary_number() -> None:
     """Where the turn is mistaken by rounding, the formulas at its ends go on: no gap and no stop."""
-    law = SegmentedLaw((Segment(0.1, 1.0, "uniform"),), repeat=True)
+    law = SegmentedLaw((LawSegment(0.1, 1.0, "uniform"),), repeat=True)
     t = np.arange(-200, 200) * 0.1
     jet = law.jet(JETS, Jet.variable(t, 1))
     np.testing.assert_allclose(jet.value, 10 * t, rtol=0, atol=4 * EPS * 10 * np.abs(t).max())
@@ -129,11 +133,11 @@ def test_laws_can_be_sent_and_compared() -> None:
 )
 def test_bad_segments_are_refused(wrong: dict[str, object], message: str) -> None:
     with pytest.raises(InputError, match=message):
-        Segment(**{"time": 1.0, "to": 1.0, "curve": "3-4-5", **wrong})  # type: ignore[arg-type]
+        LawSegment(**{"time": 1.0, "to": 1.0, "curve": "3-4-5", **wrong})  # type: ignore[arg-type]
 
 
 def test_bad_laws_are_refused() -> None:
     with pytest.raises(InputError, match="at least one"):
         SegmentedLaw(())
     with pytest.raises(InputError, match="segment 2 is too short"):
-        SegmentedLaw((Segment(1e20, 1.0, "uniform"), Segment(1.0, 2.0, "uniform")))
+        SegmentedLaw((LawSegment(1e20, 1.0, "uniform"), LawSegment(1.0, 2.0, "uniform")))

@@ -8,7 +8,7 @@ import pytest
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.laws import Segment, SegmentedLaw
+from centrode.laws import LawSegment, SegmentedLaw
 from centrode.model.files import mechanism_text, parse_mechanism
 from centrode.model.schema import mechanism_schema
 from centrode.model.segments import rate
@@ -42,7 +42,7 @@ def test_every_key_is_read_with_its_unit() -> None:
     assert law.repeat
     rise, dwell, back = law.segments
     assert (rise.time, rise.to, rise.curve) == (2.0, pytest.approx(120 * DEGREE), "cycloidal")
-    assert dwell == Segment(0.5, None, "dwell")
+    assert dwell == LawSegment(0.5, None, "dwell")
     assert (back.time, back.to, back.curve) == (1.0, -1.0, "polynomial")
     assert back.at_start == pytest.approx((0.0, 9 * DEGREE, 3.0))
     assert back.at_end == pytest.approx((-math.pi / 3, 2 * math.pi, DEGREE))
@@ -54,7 +54,7 @@ def test_numbers_of_a_displacement_are_lengths() -> None:
         guide="C",
         segments=[{"to": "120 mm", "time": 2, "curve": "polynomial", "speed_at_start": "5 mm/s"}],  # type: ignore[list-item]
     )
-    assert drive.motion_law == SegmentedLaw((Segment(2.0, 0.12, "polynomial", (0.005,)),))
+    assert drive.motion_law == SegmentedLaw((LawSegment(2.0, 0.12, "polynomial", (0.005,)),))
     with pytest.raises(InputError, match=r"segment 1, to: expected a length \(m\), got \"3 deg\""):
         ct.Drive(guide="C", segments=[{"to": "3 deg", "time": 2, "curve": "uniform"}])  # type: ignore[list-item]
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from centrode.errors import InputError
 from centrode.model.examples import example_names
-from centrode.model.examples.loading import example
+from centrode.model.examples.catalogue import example
 from centrode.model.files import mechanism_from, mechanism_text, parse_mechanism, read_mechanism
 from centrode.model.mechanism import Mechanism, Placed
 

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.expressions import EXPRESSIONS, Node, as_node, constant, operated, variable
+from centrode.numerics.expressions import EXPRESSIONS, Node, apply_operation, as_node, constant, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.scans import evaluate
@@ -95,7 +95,7 @@ def test_threads_get_the_same_nodes() -> None:
         (x / 4.0, x * 0.25),
         (x / -0.5, x * -2.0),
         (m.abs(x) * -1.0 * -1.0, m.abs(x)),
-        (operated("negate", -x), x),
+        (apply_operation("negate", -x), x),
         (x + -y, x - y),
         (-x + y, y - x),
         (x - -y, x + y),
@@ -208,10 +208,10 @@ def test_a_formula_cannot_branch_on_a_value() -> None:
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: operated("add", x, x < y),
+        lambda: apply_operation("add", x, x < y),
         lambda: m.where(as_node(x), x, y),
         lambda: m.both(x < y, x),
-        lambda: operated("sqrt", x, y),
+        lambda: apply_operation("sqrt", x, y),
     ],
 )
 def test_conditions_and_numbers_do_not_mix(make: Callable[[], Any]) -> None:

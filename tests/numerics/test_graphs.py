@@ -10,7 +10,14 @@ import pytest
 
 from centrode.numerics.expressions import EXPRESSIONS as FUNCTIONS
 from centrode.numerics.expressions import constant, variable
-from centrode.numerics.graphs import LONGEST, Graph, counted, listing, ordered, split
+from centrode.numerics.graphs import (
+    LONGEST,
+    Graph,
+    graph_listing,
+    operation_counts,
+    split_graph,
+    topological_order,
+)
 from centrode.numerics.scans import evaluate
 from centrode.numerics.text_formula import compile_formula
 
@@ -27,7 +34,7 @@ def dyad() -> Graph:
 
 
 def test_arguments_come_first_and_once() -> None:
-    order = ordered(dyad().outputs.values())
+    order = topological_order(dyad().outputs.values())
     assert len(set(order)) == len(order)
     seen: set[object] = set()
     for node in order:
@@ -46,7 +53,7 @@ def test_depth_does_not_matter() -> None:
 
 def test_shared_parts_are_counted_once() -> None:
     assert dyad().counts == Counter(multiply=9, subtract=4, add=1, sqrt=1, divide=1, sin=1, cos=1, atan2=1)
-    assert counted(Graph({"y": x * x + a * x})) == "2 multiply, 1 add"
+    assert operation_counts(Graph({"y": x * x + a * x})) == "2 multiply, 1 add"
 
 
 def test_keys_tell_graphs_apart() -> None:
@@ -57,7 +64,7 @@ def test_keys_tell_graphs_apart() -> None:
 
 
 def test_substitution() -> None:
-    graph = dyad().substituted({"a": 2.0, "b": x})
+    graph = dyad().substitute({"a": 2.0, "b": x})
     assert graph.variables == ("x",)
     expected = evaluate(dyad(), {"a": 2.0, "b": 0.3, "x": 0.3})
     assert evaluate(graph, {"x": 0.3}) == pytest.approx(expected, rel=0)
@@ -65,7 +72,7 @@ def test_substitution() -> None:
 
 def test_splitting_computes_the_same() -> None:
     graph = dyad()
-    table, rest = split(graph, ["x"], "part")
+    table, rest = split_graph(graph, ["x"], "part")
     assert set(table.variables) == {"x"}
     assert {node.operation for node in table.outputs.values()} == {"sin", "cos"}
     assert set(rest.variables) == {"a", "b", "part 0", "part 1"}
@@ -78,7 +85,7 @@ def test_splitting_computes_the_same() -> None:
 
 
 def test_outputs_that_are_alone_go_to_the_table() -> None:
-    table, rest = split(Graph({"one": m.sin(x), "two": a, "three": x}), ["x"], "part")
+    table, rest = split_graph(Graph({"one": m.sin(x), "two": a, "three": x}), ["x"], "part")
     assert rest.outputs == {"one": variable("part 0"), "two": a, "three": x}
     assert table.outputs == {"part 0": m.sin(x)}
 
@@ -104,14 +111,14 @@ def test_outputs_that_are_alone_go_to_the_table() -> None:
     ],
 )
 def test_expressions_as_text(node: object, text: str) -> None:
-    assert listing(Graph.of({"y": node})) == f"y = {text}"  # type: ignore[dict-item]
+    assert graph_listing(Graph.of({"y": node})) == f"y = {text}"  # type: ignore[dict-item]
 
 
 def test_the_listing_is_a_program() -> None:
     """Read line by line as text formulas, it gives the graph's numbers."""
     graph = dyad()
     values: dict[str, float] = {"a": 2.0, "b": 0.5, "x": 1.2}
-    lines = listing(graph).splitlines()
+    lines = graph_listing(graph).splitlines()
     for line in lines:
         name, _sign, text = line.partition(" = ")
         values[name] = compile_formula(text, tuple(values), "test")(np, **values) if text else math.nan
@@ -123,6 +130,6 @@ def test_long_lines_are_broken() -> None:
     node = x
     for k in range(60):
         node = node * variable(f"factor{k}") + 1.0
-    lines = listing(Graph({"y": node})).splitlines()
+    lines = graph_listing(Graph({"y": node})).splitlines()
     assert len(lines) > 5
     assert max(map(len, lines)) <= LONGEST + len("t99 =  * factor99 + 1")

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from centrode.geometry.meeting import meet_circles
-from centrode.geometry.plane import Circle
+from centrode.geometry.intersections import meet_circles
+from centrode.geometry.plane import PlaneCircle
 from centrode.numerics.rounding import ROUNDED, SAFETY, UNIT_ROUNDOFF, Rounded
 
 VALUE = st.floats(-100, 100).filter(lambda x: abs(x) > 1e-3)
@@ -83,7 +83,7 @@ def test_touching_circles_are_zero_within_the_bound(r: float, s: float, turn: fl
         found.append(x)
         return ROUNDED.sqrt(Rounded(np.abs(x.value), x.bound))
 
-    meet_circles(Circle((0.0, 0.0), r), Circle((x, y), s), root)
+    meet_circles(PlaneCircle((0.0, 0.0), r), PlaneCircle((x, y), s), root)
     assert abs(found[0].value) <= SAFETY * found[0].bound
     # (r + s)^2 - l^2 is known to a dozen roundings of (r + s)^2, times 4 r s
     assert found[0].bound <= 32 * UNIT_ROUNDOFF * (r + s) ** 2 * 4 * r * s + 1e-30

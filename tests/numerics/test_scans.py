@@ -191,12 +191,12 @@ def test_chunks_of_steps_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_executors_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert executors.chosen("arrays") == "arrays"
-    assert executors.chosen("auto") == ("machine code" if PRESENT else "arrays")
+    assert executors.choose_executor("arrays") == "arrays"
+    assert executors.choose_executor("auto") == ("machine code" if PRESENT else "arrays")
     monkeypatch.setattr(executors, "PRESENT", False)
-    assert executors.chosen("auto") == "arrays"
+    assert executors.choose_executor("auto") == "arrays"
     with pytest.raises(ValueError, match="no such executor"):
-        executors.chosen("abacus")
+        executors.choose_executor("abacus")
 
 
 @pytest.mark.parametrize("number", [np.float64, np.float32])

@@ -12,7 +12,7 @@ import pytest
 import centrode as ct
 from centrode.cams.followers.motion import FollowerMotion
 from centrode.laws import CURVES as LAWS
-from centrode.laws import Segment, SegmentedLaw
+from centrode.laws import LawSegment, SegmentedLaw
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Moving, Outline, Paragraph, Table
 from centrode.report.chapters import CHAPTERS
 from centrode.report.chapters.followers import forces_checks, lift_checks, profile_checks
@@ -89,7 +89,7 @@ def indexing() -> ReportStudy:
 @pytest.mark.parametrize("curve", list(LAWS))
 def test_printed_laws_are_the_laws(curve: str) -> None:
     """Every formula as it is printed, evaluated at 40 digits, against the law's jets and against its own function."""
-    law = SegmentedLaw((Segment(1.3, 0.7, curve),))
+    law = SegmentedLaw((LawSegment(1.3, 0.7, curve),))
     motion = FollowerMotion(law)
     before = 0.0
     for rule in CURVES[curve]:

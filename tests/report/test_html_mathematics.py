@@ -10,7 +10,7 @@ from xml.etree import ElementTree as Xml
 import pytest
 
 import centrode as ct
-from centrode.equations.spelling import Spelling
+from centrode.equations.spelling import FormulaSpelling
 from centrode.present.equations.page import Relation, System, sections
 from centrode.present.equations.typst import TypstSpelling
 from centrode.report.html.mathematics import formulas_of, fragments_of
@@ -41,7 +41,7 @@ def text_of_element(element: Xml.Element) -> str:
 def test_the_letters_are_those_of_the_text(name: str) -> None:
     found = ct.equations(ct.example(name))
     typeset = sections(found, TypstSpelling(), ())
-    plain = sections(found, Spelling(), ())
+    plain = sections(found, FormulaSpelling(), ())
     compared = 0
     for one, other in zip(typeset, plain, strict=True):
         for entry, same in zip(one.entries, other.entries, strict=True):

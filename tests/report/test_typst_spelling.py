@@ -11,7 +11,7 @@ import mpmath
 import pytest
 
 import centrode as ct
-from centrode.equations.spelling import Spelling
+from centrode.equations.spelling import FormulaSpelling
 from centrode.equations.symbols import Letter, Parts, Wave
 from centrode.locale import speaking
 from centrode.present.equations.page import Relation, Section, System, sections
@@ -31,7 +31,7 @@ EXAMPLES = [
 ]
 
 
-class Written(Spelling):
+class Written(FormulaSpelling):
     """Every formula as Python code, which Python itself evaluates: no reader of ours is the judge of a printer."""
 
     def letter(self, letter: Letter) -> str:

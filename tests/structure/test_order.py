@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from centrode.geometry.plane import Pose
+from centrode.geometry.plane import PlanePose
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.structure.constraints import Positions, constraints_of, unknowns_of
@@ -121,7 +121,7 @@ def test_jacobian_rows_are_the_slopes_of_the_residuals(parts: Parts, seed: int) 
         else:
             (x, y), (c, s) = at.poses[entity.name]
             rotor = (Jet((c, -s * own[2])), Jet((s, c * own[2])))
-            moving.poses[entity.name] = Pose((Jet((x, own[0])), Jet((y, own[1]))), rotor)
+            moving.poses[entity.name] = PlanePose((Jet((x, own[0])), Jet((y, own[1]))), rotor)
             moving.angles[entity.name] = Jet((math.atan2(s, c), own[2]))
     slopes = [
         r.derivative(1) if isinstance(r, Jet) else 0.0

@@ -50,7 +50,7 @@ def realised(description: ct.Mechanism) -> tuple[Dimensions, Positions]:
 
 def nudged(at: Positions, entity: Entity, column: int) -> Positions:
     """Positions in which one coordinate of one unknown is the variable of jets."""
-    new = at.copied()
+    new = at.copy()
     by = [Jet((0.0, 1.0)) if k == column else 0.0 for k in range(entity.unknowns)]
     if entity.kind == "point":
         new.points[entity.name] = moved_point(JETS, at.points[entity.name], by)

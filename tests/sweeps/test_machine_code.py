@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 
 import centrode as ct
-from centrode.kinematics.compiled.event_screening import EventScreening
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.preparation import ready
 from centrode.numerics import machine_code
 from centrode.quantities import QUANTITIES
 from centrode.structure.groups import Newton

@@ -13,6 +13,7 @@ from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
+from tools.moves.methods import agreed, attributes
 from tools.moves.scopes import Imported, Member, Occurrence, Scope
 from tools.moves.sources import SOURCE, Edit, Source, Unresolved, edited
 from tools.moves.table import PACKAGE, Table, dotted
@@ -105,8 +106,18 @@ class Moves:
             if new in self.modules and new not in self.parts[new] and new not in self.new_modules:
                 self.questions.append(f"{new} is there already and not in the table")
         for module, name in table.names:
-            if module in self.modules and name not in self.modules[module].names.module.bound:
+            if module not in self.modules:
+                self.notes.append(f"{module} (for {name}) is not there")
+            elif name not in self.modules[module].names.module.bound:
                 self.notes.append(f"{module} has no {name}")
+        for (module, name), new in table.names.items():
+            source = self.modules.get(module)
+            if source and name in source.definitions and module not in self.new_modules:
+                taken = new in source.names.module.bound and (module, new) not in table.names
+                if taken:
+                    self.questions.append(f"{module}: {new} (for {name}) is there already")
+        self.methods, notes = agreed(table.methods, self.modules)
+        self.notes += notes
         self._relevant = self._mention()
         self.plans = {
             path: self._plan(source) for path, source in sources.items() if self._is_touched(source)
@@ -130,18 +141,29 @@ class Moves:
         return self.new_modules.get(module) or self._in_moved_folder(module)
 
     def new_name(self, module: str, name: str) -> str:
-        """New name of a definition."""
-        return self.table.names.get((module, name), name)
+        """New name of a definition, or of a name that a module imports and passes on."""
+        holder = self.modules.get(module)
+        if (module, name) in self.table.names or holder is None or name in holder.definitions:
+            return self.table.names.get((module, name), name)
+        for imported in holder.names.imports:
+            if imported.local == imported.alias.name == name and imported.scope is holder.names.module:
+                target = self.target(holder, imported)
+                if target is not None and target.name is not None:
+                    return self.new_name(target.module, target.name)
+        return name
 
     def _mention(self) -> re.Pattern[str]:
         """What every file mentions that has anything to do with the moves."""
         rooms = {module.split(".")[1] for module in self.new_modules}
+        rooms |= {module.split(".")[1] for module, _name in self.table.names}
         classes = {name for _module, name in self.table.names if name[:1].isupper()}
         return re.compile(rf"\b(?:{'|'.join(map(re.escape, sorted(rooms | classes)))})\b")
 
     def _is_touched(self, source: Source) -> bool:
         code = source.is_python or (source.path.suffix == ".md" and PACKAGE in source.text)
-        return code and (source.module in self.new_modules or bool(self._relevant.search(source.text)))
+        named = any(re.search(rf"\b{method}\b", source.text) for method in self.methods)
+        ours = {*self.new_modules, *(module for module, _name in self.table.names)}
+        return code and (source.module in ours or named or bool(self._relevant.search(source.text)))
 
     def target(self, source: Source, imported: Imported) -> Target | None:
         """What an import means; None if it is not of the package."""
@@ -413,7 +435,17 @@ class Moves:
 
     def edits(self, plan: Plan) -> list[Edit]:
         """All changes of a source's text but those of whole import statements."""
-        return [*self._renames(plan), *self._members(plan), *self._prose(plan)]
+        methods = attributes(plan.source, self.methods, self._is_module)
+        return [*self._renames(plan), *self._members(plan), *methods, *self._prose(plan)]
+
+    def _is_module(self, source: Source, name: str) -> bool:
+        """Whether a plain name is that of an imported module."""
+        for imported in source.names.imports:
+            if imported.local == name:
+                target = self.target(source, imported)
+                if target is None or target.name is None:
+                    return True
+        return False
 
     def _shadowed(self, plan: Plan, occurrence: Occurrence, new: str, until: Scope | None) -> None:
         scope: Scope | None = occurrence.scope
@@ -528,6 +560,10 @@ class Moves:
         words = {
             name: new for (scope, name), new in plan.changes.items() if scope.kind == "module" and name != new
         }
+        for name, renaming in self.methods.items():
+            new_name = renaming.new(source)
+            if new_name and name not in source.names.module.bound:
+                words.setdefault(name, new_name)
         imports = [source.names.span(statement) for statement in plan.lines]
         for start, end, is_prose in source.prose():
             if any(a <= start < b for a, b in imports):

@@ -38,6 +38,7 @@ class Table:
     names : (old module, name) -> new name
         Of definitions; of an import, the name that it is bound to there.
     locals : (old module, function, name) -> new name
+    methods : (old module, class, method) -> new name
     texts : passages
     """
 
@@ -46,25 +47,35 @@ class Table:
     docstrings: Mapping[str, str] = field(default_factory=dict)
     names: Mapping[tuple[str, str], str] = field(default_factory=dict)
     locals: Mapping[tuple[str, str, str], str] = field(default_factory=dict)
+    methods: Mapping[tuple[str, str, str], str] = field(default_factory=dict)
     texts: tuple[Text, ...] = ()
 
 
 def read_table(path: Path) -> Table:
-    """A table from TOML; keys of names are "old/module:name", of locals "old/module:function:name"."""
+    """A table from TOML.
+
+    Keys of names are "old/module:name", of locals "old/module:function:name", of methods "old/module:Class.method".
+    """
     content = tomllib.loads(path.read_text(encoding="utf-8"))
     names: dict[tuple[str, str], str] = {}
     places: dict[tuple[str, str, str], str] = {}
+    methods: dict[tuple[str, str, str], str] = {}
     for key, new in content.get("names", {}).items():
         module, name = key.split(":")
         names[dotted(module), name] = new
     for key, new in content.get("locals", {}).items():
         module, function, name = key.split(":")
         places[dotted(module), function, name] = new
+    for key, new in content.get("methods", {}).items():
+        module, name = key.split(":")
+        owner, method = name.split(".")
+        methods[dotted(module), owner, method] = new
     return Table(
-        modules={new: tuple(old.split()) for new, old in content["modules"].items()},
+        modules={new: tuple(old.split()) for new, old in content.get("modules", {}).items()},
         folders=content.get("folders", {}),
         docstrings=content.get("docstrings", {}),
         names=names,
         locals=places,
+        methods=methods,
         texts=tuple(Text(**text) for text in content.get("texts", [])),
     )

@@ -10,7 +10,7 @@ import centrode as ct
 from centrode.cams.curvature_laws import ExponentialCurvature
 from centrode.cams.followers.motion import peaks_of
 from centrode.cams.path_series import series_path
-from centrode.laws import Segment, SegmentedLaw
+from centrode.laws import LawSegment, SegmentedLaw
 from tools.validation.rows import Column, Row, Source, column, printed
 
 UNITS = {"eta": 5e-7, "eta_d1": 5e-7, "eta_d2": 5e-7, "cos_gamma": 5e-7, "K_1_mm": 5e-7, "rho_mm": 5e-4}
@@ -70,7 +70,7 @@ def laws() -> Source:
     """Peak coefficients of motion laws."""
     rows = []
     for name, told in PEAKS.items():
-        found = peaks_of(SegmentedLaw((Segment(1.0, 1.0, name),))).coefficients
+        found = peaks_of(SegmentedLaw((LawSegment(1.0, 1.0, name),))).coefficients
         for order, (text, value) in enumerate(zip(told, found, strict=False)):
             digit = 10.0 ** -len(text.partition(".")[2])
             half = digit if (name, order) == CUT else 0.5 * digit

@@ -20,18 +20,29 @@ import xarray as xr
 
 from centrode.analysis.instant_centres.bodies import TurningBodies, pole_of, turning_bodies_of
 from centrode.analysis.rotatability.causes import least_of, transmission_at_ends, watched_dyads
-from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, course_of
+from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, monitored_function
 from centrode.errors import InputError
-from centrode.kinematics.motion import dataset_of, named
-from centrode.kinematics.path import SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import MotionOnPath
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.motion import dataset_of, vocabulary_variable
+from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import MotionOnPath
+from centrode.kinematics.solve import requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 from centrode.model.values import unit_vector
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Meet, Rail, Rod, Slot, Stop, Stroke, links_of, points_of
+from centrode.structure.groups import (
+    Aim,
+    CylinderCircle,
+    Group,
+    Meet,
+    Rail,
+    Rod,
+    Slot,
+    Stop,
+    links_of,
+    points_of,
+)
 
 # Transmission angles on the sphere: between the arcs from a dyad's inner joint to the centres of its two
 # circles.
@@ -133,7 +144,7 @@ def extreme_transmission_angles(ready: Ready, span: SampleGrid) -> dict[int, tup
         dyads = watched_dyads(stretch, guides=True)
         if not first <= last:
             return {group: (nan, nan) for _one, group in dyads}
-        course = course_of(stretch, [one for one, _group in dyads])
+        course = monitored_function(stretch, [one for one, _group in dyads])
         return {group: _extremes(course, k, group) for k, (_one, group) in enumerate(dyads)}
 
 
@@ -188,9 +199,9 @@ def transmission_angles(
     """
     prepared = ready(mechanism)
     span = (
-        asked_span(prepared, samples, start, stop)
+        requested_grid(prepared, samples, start, stop)
         if at is None
-        else span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+        else grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
     )
     data = dataset_of(solve(prepared, span))
     structure = prepared.structure
@@ -211,10 +222,14 @@ def transmission_angles(
     extremes = extreme_transmission_angles(prepared, span)
     least, greatest = np.array([extremes[number] for number in numbered]).T
     variables = {
-        "transmission_angle": named("transmission_angle", ("sample", "group"), angles),
-        "pressure_angle": named("pressure_angle", ("sample", "group"), np.abs(np.pi / 2 - angles)),
-        "least_transmission_angle": named("least_transmission_angle", ("group",), least),
-        "greatest_transmission_angle": named("greatest_transmission_angle", ("group",), greatest),
+        "transmission_angle": vocabulary_variable("transmission_angle", ("sample", "group"), angles),
+        "pressure_angle": vocabulary_variable(
+            "pressure_angle", ("sample", "group"), np.abs(np.pi / 2 - angles)
+        ),
+        "least_transmission_angle": vocabulary_variable("least_transmission_angle", ("group",), least),
+        "greatest_transmission_angle": vocabulary_variable(
+            "greatest_transmission_angle", ("group",), greatest
+        ),
         **{name: data[name] for name in ("status", "event_value", "event_kind")},
     }
     coords = {"group": list(found), **{name: data[name] for name in ("time", "drive_value")}}
@@ -225,7 +240,7 @@ def _angle(data: xr.Dataset, numbers: Dimensions, group: Group) -> Array | None:
     """Transmission angle of a group at every sample; None where it has none."""
     if isinstance(group, Aim) and group.contact is None:
         arm = place(data, group.target) - place(data, group.pivot)
-        return _acute(1j * arm, _heading(data, numbers, group.link, group.guide))
+        return _acute(1j * arm, _guide_directions(data, numbers, group.link, group.guide))
     if not isinstance(group, Meet) or any(isinstance(locus, Stop) for locus in group.loci):
         return None
     directions = list(_directions(data, numbers, group))
@@ -240,13 +255,13 @@ def _directions(data: xr.Dataset, numbers: Dimensions, group: Meet) -> Iterator[
     """Directions in which the loci let the group's vector move; of circles the arms towards their centres."""
     circles = group.circles == 2
     for locus in group.loci:
-        if isinstance(locus, (Rod, Stroke)):
+        if isinstance(locus, (Rod, CylinderCircle)):
             arm = place(data, locus.centre) - place(data, locus.point)
             yield arm if circles else 1j * arm
         elif isinstance(locus, Rail):
-            yield _heading(data, numbers, locus.on, locus.guide)
+            yield _guide_directions(data, numbers, locus.on, locus.guide)
         elif isinstance(locus, Slot) and group.carriage is not None:
-            yield _heading(data, numbers, group.carriage, locus.guide)
+            yield _guide_directions(data, numbers, group.carriage, locus.guide)
 
 
 def place(data: xr.Dataset, point: str) -> Lines:
@@ -255,7 +270,7 @@ def place(data: xr.Dataset, point: str) -> Lines:
     return np.asarray(xy[:, 0] + 1j * xy[:, 1])
 
 
-def _heading(data: xr.Dataset, numbers: Dimensions, link: str, guide: str) -> Lines:
+def _guide_directions(data: xr.Dataset, numbers: Dimensions, link: str, guide: str) -> Lines:
     """Directions of a guide at every sample."""
     turn = np.zeros(data.sizes["sample"]) if link == FRAME else data["angle"].sel(link=link).to_numpy()
     return np.asarray(complex(*numbers.direction[guide]) * np.exp(1j * turn))

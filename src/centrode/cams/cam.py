@@ -26,7 +26,7 @@ from centrode.cams.path_series import (
 )
 from centrode.cams.roller_path import RollerPath, SymmetricPath, angles_of
 from centrode.errors import Status
-from centrode.kinematics.motion import Variable, labels_of, named
+from centrode.kinematics.motion import Variable, labels_of, vocabulary_variable
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam, cam_text
 from centrode.model.follower_cam import PlateCam
@@ -72,11 +72,14 @@ def dataset_of_path(cam: Cam, path: RollerPath, phi: Array) -> xr.Dataset:
     """The labelled result of a path at angles of the carrier [rad]."""
     along = ("sample",)
     values = _values(path, phi)
-    data = {name: named(name, along, found) for name, found in values.items()}
+    data = {name: vocabulary_variable(name, along, found) for name, found in values.items()}
     centre = np.stack([values["path_radius"] * np.sin(phi), values["path_radius"] * np.cos(phi)], axis=-1)
-    data["roller_centre"] = named("roller_centre", ("sample", "axis"), centre)
+    data["roller_centre"] = vocabulary_variable("roller_centre", ("sample", "axis"), centre)
     data["status"] = status_of(path, phi)
-    coordinates = {"carrier_angle": named("carrier_angle", along, phi), "axis": labels_of(("x", "y"))}
+    coordinates = {
+        "carrier_angle": vocabulary_variable("carrier_angle", along, phi),
+        "axis": labels_of(("x", "y")),
+    }
     return xr.Dataset(data, coords=coordinates, attrs=_path_facts(cam, path))
 
 
@@ -108,7 +111,7 @@ def status_of(path: RollerPath, phi: Array) -> Variable:
     status = np.where(known, np.int8(Status.OK), np.int8(Status.OPEN)).astype(np.int8)
     if path.stall is not None:
         status[known & (np.abs(np.abs(path.pressure_angle(phi)) - math.pi / 2) == 0)] = Status.SINGULAR
-    dimensions, values, attributes = named("status", ("sample",), status)
+    dimensions, values, attributes = vocabulary_variable("status", ("sample",), status)
     attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
     attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
     return dimensions, values, attributes
@@ -199,10 +202,16 @@ def cam_routes(
         "routes_difference": radii[2] - radii[1],
     }
     across = {"path_radius": radii, "pressure_sine": sines, "pressure_sine_slope": slopes}
-    data = {name: named(name, ("route", "sample"), np.stack(found)) for name, found in across.items()}
-    data |= {name: named(name, ("sample",), found) for name, found in alone.items()}
+    data = {
+        name: vocabulary_variable(name, ("route", "sample"), np.stack(found))
+        for name, found in across.items()
+    }
+    data |= {name: vocabulary_variable(name, ("sample",), found) for name, found in alone.items()}
     data["status"] = status_of(SymmetricPath(routes.steps) if cam.curvature.symmetric else routes.steps, phi)
-    coordinates = {"carrier_angle": named("carrier_angle", ("sample",), phi), "route": labels_of(ROUTES)}
+    coordinates = {
+        "carrier_angle": vocabulary_variable("carrier_angle", ("sample",), phi),
+        "route": labels_of(ROUTES),
+    }
     return xr.Dataset(data, coords=coordinates, attrs=_comparison_facts(cam, routes, data))
 
 

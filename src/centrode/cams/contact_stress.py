@@ -159,7 +159,7 @@ def normal_load(contact: LineContact, pressure_angle: Array | float) -> Array:
     return np.asarray(contact.force / (contact.width * np.where(cosine > 0, cosine, np.nan)))
 
 
-def pressed(contact: LineContact, pressure_angle: Array | float, curvature: Array | float) -> Pressed:
+def contact_strip(contact: LineContact, pressure_angle: Array | float, curvature: Array | float) -> Pressed:
     """The strip of contact where the pressure angle [rad] and the curvature of the roller's path [1/m] are these."""
     bent = relative_curvature(curvature, contact.roller_radius, contact.outer)
     return line_contact(normal_load(contact, pressure_angle), bent, contact.modulus)
@@ -234,10 +234,10 @@ def stress_along(
         cam = -(1 / curvature + radius) if contact.outer else 1 / curvature - radius
     return Stressed(
         phi=phi,
-        strip=pressed(contact, gamma, curvature),
+        strip=contact_strip(contact, gamma, curvature),
         by_source=source_stress(contact, gamma, curvature),
         cam_radius=cam,
-        greatest=greatest_along(ends, lambda at: pressed(contact, *_state(path, at)).pressure),
+        greatest=greatest_along(ends, lambda at: contact_strip(contact, *_state(path, at)).pressure),
         greatest_by_source=greatest_along(ends, lambda at: source_stress(contact, *_state(path, at))),
     )
 

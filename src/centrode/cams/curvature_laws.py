@@ -244,7 +244,7 @@ class TextCurvature:
     signs: Array = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "formula", self._compiled())
+        object.__setattr__(self, "formula", self._formula())
         breaks = self._kinks()
         edges = np.array(
             [min(self.start, *breaks), *breaks, max(self.stop, *breaks)]
@@ -252,10 +252,10 @@ class TextCurvature:
             else [self.start, self.stop]
         )
         object.__setattr__(self, "breaks", breaks)
-        asked = self._asked(0.5 * (edges[:-1] + edges[1:]))
+        asked = self._condition_values(0.5 * (edges[:-1] + edges[1:]))
         object.__setattr__(self, "signs", np.sign(asked).T)
 
-    def _compiled(self) -> TextFormula:
+    def _formula(self) -> TextFormula:
         names = ("phi", *(name for name, _value in self.constants))
         return compile_formula(self.text, names, "[curvature] formula")
 
@@ -279,7 +279,7 @@ class TextCurvature:
         except ZeroDivisionError:
             return math.inf
 
-    def _asked(self, places: Array) -> Array:
+    def _condition_values(self, places: Array) -> Array:
         """Values (functions, n) whose signs are asked for."""
         watched = _Watched()
         with np.errstate(all="ignore"):
@@ -291,7 +291,7 @@ class TextCurvature:
     def _kinks(self) -> tuple[float, ...]:
         count = 3 + math.ceil((self.stop - self.start) / math.tau * NODES_OF_A_TURN)
         places = np.linspace(self.start, self.stop, count)
-        above = self._asked(places) >= 0
+        above = self._condition_values(places) >= 0
         functions, cells = np.nonzero(above[:, :-1] != above[:, 1:])
         if len(cells) > MOST_KINKS:
             what = _("the formula bends at more than {most} places").format(most=MOST_KINKS)
@@ -301,7 +301,7 @@ class TextCurvature:
         first, column = above[functions, cells], np.arange(len(cells))
 
         def before(phi: Array) -> NDArray[np.bool_]:
-            return np.asarray((self._asked(phi) >= 0)[functions, column] == first)
+            return np.asarray((self._condition_values(phi) >= 0)[functions, column] == first)
 
         _last, high = bisect(before, places[cells], places[cells + 1])
         rounding = 4 * np.finfo(np.float64).eps * (self.stop - self.start)

@@ -85,7 +85,7 @@ class IntegratedPath(StatePath):
         for leg in self.legs:
             here = (places >= leg.low) & (places <= leg.high)
             if here.any():
-                _angles, growth, gamma = _at(leg, places[here])
+                _angles, growth, gamma = _solution_at(leg, places[here])
                 found[:, here] = leg.scale * np.exp(growth), np.sin(gamma), np.cos(gamma)
         return tuple(found.reshape(3, *np.shape(phi)))
 
@@ -211,7 +211,7 @@ def polynomial(coefficients: Sequence[float], x: float) -> float:
     return total
 
 
-def _at(leg: IntegrationLeg, phi: Array) -> Array:
+def _solution_at(leg: IntegrationLeg, phi: Array) -> Array:
     """The solution (3, n) where the angle is phi, by Newton's method on the arc."""
     arc = np.interp(phi, leg.angles, leg.arcs)
     low, high = float(np.min(leg.arcs)), float(np.max(leg.arcs))

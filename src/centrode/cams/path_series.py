@@ -42,7 +42,7 @@ from centrode.cams.roller_path import (
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import MOST_TERMS
-from centrode.model.cam_files import AnyCam, curved
+from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.numerics.jets import Jet, square_root
 from centrode.numerics.search import newton_roots
 
@@ -595,7 +595,7 @@ def _march(
             steps.append(SeriesStep(place.phi, stall.phi, series))
             return steps, Ending(place, stall)
         steps.append(SeriesStep(place.phi, to, series))
-        place = _moved(series, place.phi, to)
+        place = _move_centre(series, place.phi, to)
         if to == end:
             if wrong is not None and stall is None:
                 raise refusal(law, wrong)
@@ -624,7 +624,7 @@ def _nearest(sense: int, reach: float, end: float, breaks: tuple[float, ...], st
     return sense * min(sense * place for place in (reach, end, *ahead))
 
 
-def _moved(series: tuple[Series, Series, Series], centre: float, to: float) -> StallState:
+def _move_centre(series: tuple[Series, Series, Series], centre: float, to: float) -> StallState:
     offset = to - centre
     values = []
     for coefficients in series:
@@ -642,7 +642,7 @@ def _moved(series: tuple[Series, Series, Series], centre: float, to: float) -> S
 
 def law_of(cam: AnyCam) -> CurvatureLaw:
     """The curvature law K(phi) [1/m] of a cam; InputError where its numbers make none."""
-    cam = curved(cam)
+    cam = require_curvature_cam(cam)
     given = cam.curvature
     try:
         if given.law == "constant":
@@ -663,7 +663,7 @@ def law_of(cam: AnyCam) -> CurvatureLaw:
 
 def half_path(cam: AnyCam, tolerance: float = TOLERANCE) -> ExpandedPath:
     """The path that the law itself gives: of a symmetric cam the half with phi >= 0."""
-    cam = curved(cam)
+    cam = require_curvature_cam(cam)
     start = cam.start
     return expanded_path(
         law_of(cam), start.radius, start.pressure_angle, cam.range.start, cam.range.stop, tolerance
@@ -678,6 +678,6 @@ def path_of(cam: AnyCam, tolerance: float = TOLERANCE) -> RollerPath:
     InputError
         A curvature that is not positive and finite where the path goes, its angle is told.
     """
-    cam = curved(cam)
+    cam = require_curvature_cam(cam)
     half = half_path(cam, tolerance)
     return SymmetricPath(half) if cam.curvature.symmetric else half

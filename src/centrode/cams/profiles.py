@@ -21,8 +21,8 @@ from centrode.cams.return_arc import (
     ClosedPath,
     Returned,
     breaks_of,
-    designed,
-    mirrored,
+    design_return,
+    mirror_arc,
     working_arc,
 )
 from centrode.cams.roller_path import Array, Frames, PolarCurve, RollerPath, frames, stalls_of
@@ -30,7 +30,7 @@ from centrode.cams.walking_wheel import Shoe
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.cam import Cam, Return
-from centrode.model.cam_files import AnyCam, curved
+from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.numerics.search import extremes, roots
 
 # Equidistants of a roller's path: the cam's profile one radius inside, the wall of a groove one radius
@@ -79,7 +79,7 @@ class Undercut:
     stop: float
 
 
-def signed(radius: float, side: Side) -> float:
+def signed_distance(radius: float, side: Side) -> float:
     """The distance along the outward normal: -radius inside, radius outside."""
     if not (math.isfinite(radius) and radius > 0):
         raise InputError("[roller] radius", _("it has to be positive and finite"), _("correct it"))
@@ -119,7 +119,7 @@ def undercut(
         Growing, exact to rounding; one that goes over the end of a closed path is told in one piece. A stretch
         narrower than a hundredth of a radian may be missed.
     """
-    distance = signed(radius, side)
+    distance = signed_distance(radius, side)
 
     def stretch(phi: Array) -> Array:
         return 1.0 + distance * frames(curve, phi).curvature
@@ -155,12 +155,12 @@ def greatest_roller(curve: PolarCurve, edges: Sequence[float], side: Side = "inn
     return 1.0 / found.greatest, found.at_greatest
 
 
-def fitting(curve: PolarCurve, edges: Sequence[float], radius: float, side: Side) -> None:
+def check_roller_fits(curve: PolarCurve, edges: Sequence[float], radius: float, side: Side) -> None:
     """Raise InputError where a roller is too large for the path's curvature on one side: for its hollows outside.
 
     The message gives the greatest radius that fits and where.
     """
-    signed(radius, side)
+    signed_distance(radius, side)
     most, at = greatest_roller(curve, edges, side)
     if radius < most:
         return
@@ -208,7 +208,7 @@ class ProfileBody:
 
     def profile(self, phi: Array, side: Side = "inner") -> Equidistant:
         """The profile inside the path, or the wall of a groove outside, at angles (n) [rad]."""
-        return equidistant(frames(self.closed, phi), signed(self.roller, side))
+        return equidistant(frames(self.closed, phi), signed_distance(self.roller, side))
 
     @cached_property
     def undercuts(self) -> list[Undercut]:
@@ -237,7 +237,7 @@ class ProfileBody:
 
     def fit_groove(self) -> None:
         """Raise InputError where the roller is larger than a hollow, which the outer wall would have to follow."""
-        fitting(self.closed, self.closed.edges, self.roller, "outer")
+        check_roller_fits(self.closed, self.closed.edges, self.roller, "outer")
 
     def _corner(self, number: int) -> Undercut | None:
         """The stretch about an outward corner of mirror images that the roller does not follow; None elsewhere.
@@ -249,7 +249,7 @@ class ProfileBody:
             return None
 
         def beyond(phi: Array) -> Array:
-            off = equidistant(frames(arc.curve, phi), signed(self.roller, "inner"))
+            off = equidistant(frames(arc.curve, phi), signed_distance(self.roller, "inner"))
             return np.asarray(off.polar_angle - joint.at)
 
         inner = roots(beyond, nodes_of(arc.edges))
@@ -281,7 +281,7 @@ def cam_body(cam: AnyCam) -> ProfileBody:
     MotionError
         The follower stalls on the working arc; no return arc within the bounds was found.
     """
-    return _body(curved(cam))
+    return _body(require_curvature_cam(cam))
 
 
 @functools.lru_cache(maxsize=16)
@@ -292,12 +292,12 @@ def _body(cam: Cam) -> ProfileBody:
     path, asked = path_of(cam), cam.return_arc or Return()
     if cam.return_arc is None and cam.mover is None:
         whole = path.stop - path.start >= math.tau * (1 - CLOSED)
-        closed = _whole_turn(path) if whole else ClosedPath((_reached(path, working_arc(path)),))
+        closed = _whole_turn(path) if whole else ClosedPath((_check_stalls(path, working_arc(path)),))
         return ProfileBody(closed, cam.roller.radius)
-    working = _reached(path, working_of(cam, path))
+    working = _check_stalls(path, working_of(cam, path))
     if asked.kind == "mirrored":
-        return ProfileBody(mirrored(working), cam.roller.radius)
-    found = designed(working, bounds_of(asked, cam.roller.radius, working))
+        return ProfileBody(mirror_arc(working), cam.roller.radius)
+    found = design_return(working, bounds_of(asked, cam.roller.radius, working))
     return ProfileBody(found.closed, cam.roller.radius, found)
 
 
@@ -335,7 +335,7 @@ def bounds_of(asked: Return, roller: float, working: Arc) -> ArcBounds:
     )
 
 
-def _reached(path: RollerPath, working: Arc) -> Arc:
+def _check_stalls(path: RollerPath, working: Arc) -> Arc:
     """The working arc; MotionError where it ends in a stall, at which the path's direction is that of the ray."""
     reached = [one for one in stalls_of(path) if one in (working.start, working.stop)]
     if not reached:
@@ -420,7 +420,7 @@ def cam_outlines(body: ProfileBody, samples: int, *, groove: bool = False) -> li
         found.append(CamOutline("path", phi, frame.place, frame.speed[:, None] * frame.tangent))
         sides: tuple[Side, ...] = ("inner", "outer") if groove else ("inner",)
         for side in sides:
-            off = equidistant(frame, signed(body.roller, side))
+            off = equidistant(frame, signed_distance(body.roller, side))
             name: Layer
             if side == "inner":
                 name = "profile-working" if arc.kind == "working" else "profile-return"
@@ -442,7 +442,7 @@ def _corner(body: ProfileBody, number: int, side: Side, samples: int) -> list[Ca
     frame = frames(arc.curve, np.array([arc.stop]))
     count = max(2 * LEAST_PIECE, round(samples * abs(joint.kink) / math.tau))
     turned = np.linspace(0.0, abs(joint.kink), count + 1)
-    sense, distance = -math.copysign(1.0, joint.kink), signed(body.roller, side)
+    sense, distance = -math.copysign(1.0, joint.kink), signed_distance(body.roller, side)
     normal = frame.normal_angle + sense * turned
     outwards = np.stack([np.sin(normal), np.cos(normal)], axis=-1)
     along = np.stack([np.cos(normal), -np.sin(normal)], axis=-1)

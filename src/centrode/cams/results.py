@@ -11,8 +11,8 @@ import xarray as xr
 
 from centrode.cams.cam import status_of
 from centrode.cams.contact_stress import Greatest, LineContact, Stressed, stress_along
+from centrode.cams.followers.base_circle import follower_cam
 from centrode.cams.followers.manufacture import follower_profile
-from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.parameter_choice.search import contact_of, working_arc
 from centrode.cams.path_series import path_of
 from centrode.cams.profiles import ProfileBody, cam_body
@@ -20,11 +20,11 @@ from centrode.cams.return_arc import ClosedPath
 from centrode.cams.roller_path import Array, angles_of, frames, stalls_of
 from centrode.cams.walking_wheel import Shoe, WheelMover, mover
 from centrode.errors import InputError
-from centrode.kinematics.motion import named
+from centrode.kinematics.motion import vocabulary_variable
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Cam
-from centrode.model.cam_files import AnyCam, curved
+from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.follower_cam import PlateCam
 
 DEFAULT_SAMPLES = 361
@@ -71,23 +71,25 @@ def profile_dataset(body: ProfileBody, samples: int, *, groove: bool = False) ->
     closed = body.closed
     phi = _angles(closed, samples)
     frame, inner = frames(closed, phi), body.profile(phi)
-    _places, arcs = closed.located(phi)
+    _places, arcs = closed.locate(phi)
     kinds = np.array([arc.kind for arc in closed.arcs])
     variables = {
-        "carrier_angle": named("carrier_angle", ("sample",), phi),
+        "carrier_angle": vocabulary_variable("carrier_angle", ("sample",), phi),
         "part": ("sample", kinds[arcs]),
-        "roller_centre": named("roller_centre", ("sample", "axis"), frame.place),
-        "path_radius": named("path_radius", ("sample",), frame.radius),
-        "profile": named("profile", ("sample", "axis"), inner.place),
-        "profile_radius": named("profile_radius", ("sample",), inner.polar_radius),
-        "profile_angle": named("profile_angle", ("sample",), inner.polar_angle),
-        "cam_pressure_angle": named("cam_pressure_angle", ("sample",), frame.pressure_angle),
-        "path_curvature": named("path_curvature", ("sample",), frame.curvature),
-        "profile_bend": named("profile_bend", ("sample",), inner.bend),
+        "roller_centre": vocabulary_variable("roller_centre", ("sample", "axis"), frame.place),
+        "path_radius": vocabulary_variable("path_radius", ("sample",), frame.radius),
+        "profile": vocabulary_variable("profile", ("sample", "axis"), inner.place),
+        "profile_radius": vocabulary_variable("profile_radius", ("sample",), inner.polar_radius),
+        "profile_angle": vocabulary_variable("profile_angle", ("sample",), inner.polar_angle),
+        "cam_pressure_angle": vocabulary_variable("cam_pressure_angle", ("sample",), frame.pressure_angle),
+        "path_curvature": vocabulary_variable("path_curvature", ("sample",), frame.curvature),
+        "profile_bend": vocabulary_variable("profile_bend", ("sample",), inner.bend),
     }
     if groove:
         body.fit_groove()
-        variables["groove"] = named("groove", ("sample", "axis"), body.profile(phi, "outer").place)
+        variables["groove"] = vocabulary_variable(
+            "groove", ("sample", "axis"), body.profile(phi, "outer").place
+        )
     return xr.Dataset(variables, coords={"axis": AXES}, attrs={"roller": body.roller})
 
 
@@ -137,8 +139,8 @@ def shoe_dataset(wheel: WheelMover, samples: int) -> xr.Dataset:
         "hub_travel": wheel.travel(phi),
         "hub_rate": wheel.rate(phi),
     }
-    variables = {name: named(name, ("sample",), values) for name, values in columns.items()}
-    variables["shoe_profile"] = named("shoe_profile", ("sample", "axis"), shoe.place(phi))
+    variables = {name: vocabulary_variable(name, ("sample",), values) for name, values in columns.items()}
+    variables["shoe_profile"] = vocabulary_variable("shoe_profile", ("sample", "axis"), shoe.place(phi))
     return xr.Dataset(variables, coords={"axis": AXES}, attrs={"hub_height": wheel.height})
 
 
@@ -152,7 +154,7 @@ def walking_wheel(cam: AnyCam) -> WheelMover:
     MotionError
         A shoe with a cusp; no return arc within the bounds.
     """
-    return wheel_of(curved(cam), cam_body(cam))
+    return wheel_of(require_curvature_cam(cam), cam_body(cam))
 
 
 def wheel_of(cam: Cam, body: ProfileBody) -> WheelMover:
@@ -201,7 +203,7 @@ def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
     InputError
         No contact, a curvature that no cam has; a strip wider than the roller, for which the formulas do not hold.
     """
-    cam = curved(cam)
+    cam = require_curvature_cam(cam)
     contact = contact_of(cam)
     if contact is None:
         what = _("the contact stress needs the force, the width and the materials")
@@ -235,9 +237,9 @@ def cam_contact(cam: AnyCam, samples: int | None = None) -> xr.Dataset:
     }
     if cam.contact is not None and cam.contact.admissible is not None:
         attributes["admissible_stress"] = cam.contact.admissible
-    data = {name: named(name, ("sample",), one) for name, one in values.items()}
+    data = {name: vocabulary_variable(name, ("sample",), one) for name, one in values.items()}
     data["status"] = status_of(path, phi)
-    coordinates = {"carrier_angle": named("carrier_angle", ("sample",), phi)}
+    coordinates = {"carrier_angle": vocabulary_variable("carrier_angle", ("sample",), phi)}
     return xr.Dataset(data, coords=coordinates, attrs=attributes)
 
 

@@ -115,7 +115,7 @@ class ClosedPath:
 
     def radius(self, phi: Array, order: int = 0) -> Array:
         """Polar radius and its derivatives by phi (order + 1, n) [m/rad^k]."""
-        places, arcs = self.located(phi)
+        places, arcs = self.locate(phi)
         found = np.full((order + 1, places.size), np.nan)
         for number, arc in enumerate(self.arcs):
             here = arcs == number
@@ -123,7 +123,7 @@ class ClosedPath:
                 found[:, here] = arc.curve.radius(places[here], order)
         return found
 
-    def located(self, phi: Array) -> tuple[Array, NDArray[np.intp]]:
+    def locate(self, phi: Array) -> tuple[Array, NDArray[np.intp]]:
         """Angles reduced to the turn from `start`, and the number of the arc of each."""
         given = np.atleast_1d(np.asarray(phi, dtype=np.float64))
         turns = np.floor((given - self.start) / math.tau)
@@ -207,7 +207,7 @@ def working_arc(path: RollerPath, legs: int | None = None, half: float | None = 
     return Arc("working", path, start, stop, breaks_of(path, start, stop))
 
 
-def mirrored(working: Arc) -> ClosedPath:
+def mirror_arc(working: Arc) -> ClosedPath:
     """The path that is closed by mirror images of the working arc, with a kink wherever gamma is not zero.
 
     Raises
@@ -665,7 +665,7 @@ class Returned:
     roughness: float
 
 
-def designed(working: Arc, bounds: ArcBounds | None = None, *, contact: int = 2) -> Returned:
+def design_return(working: Arc, bounds: ArcBounds | None = None, *, contact: int = 2) -> Returned:
     """Close a working arc by the smoothest return arc within bounds.
 
     Parameters
@@ -693,9 +693,9 @@ def designed(working: Arc, bounds: ArcBounds | None = None, *, contact: int = 2)
     _ends_keep(ends, bounds)
     found = ReturnCurve(ends)
     if not Margins.along(found, bounds).broken():
-        return _returned(working, found, 0.0)
-    weights, size = _searched(ends, bounds)
-    return _returned(working, ReturnCurve(ends, weights), size)
+        return _close_path(working, found, 0.0)
+    weights, size = _search_weights(ends, bounds)
+    return _close_path(working, ReturnCurve(ends, weights), size)
 
 
 def _ends(working: Arc, contact: int) -> Ends:
@@ -718,7 +718,7 @@ def _ends_keep(ends: Ends, bounds: ArcBounds) -> None:
             raise InputError("[return]", f"{what} {broken}", _("loosen the bound"))
 
 
-def _searched(ends: Ends, bounds: ArcBounds) -> tuple[tuple[float, ...], float]:
+def _search_weights(ends: Ends, bounds: ArcBounds) -> tuple[tuple[float, ...], float]:
     """Weights of additions that keep the bounds, with the least roughness; and that roughness."""
     scale = math.sqrt(ends.at_start[0] * ends.at_stop[0])
     # in these weights, roughness is the sum of squares
@@ -745,6 +745,6 @@ def _searched(ends: Ends, bounds: ArcBounds) -> tuple[tuple[float, ...], float]:
     )
 
 
-def _returned(working: Arc, curve: ReturnCurve, size: float) -> Returned:
+def _close_path(working: Arc, curve: ReturnCurve, size: float) -> Returned:
     closed = ClosedPath((working, Arc("return", curve, curve.ends.start, curve.ends.stop)))
     return Returned(curve, closed, sizes(curve), bends(curve), slants(curve), len(curve.weights), size)

@@ -255,19 +255,19 @@ class SymmetricPath:
         return self.half.stall
 
     def radius(self, phi: Array, order: int = 0) -> Array:
-        return _signed(self.half.radius(np.abs(phi), order), phi, 0)
+        return _apply_signs(self.half.radius(np.abs(phi), order), phi, 0)
 
     def sine(self, phi: Array, order: int = 0) -> Array:
-        return _signed(self.half.sine(np.abs(phi), order), phi, 1)
+        return _apply_signs(self.half.sine(np.abs(phi), order), phi, 1)
 
     def pressure_angle(self, phi: Array) -> Array:
         return np.where(np.asarray(phi) < 0, -1.0, 1.0) * self.half.pressure_angle(np.abs(phi))
 
     def curvature(self, phi: Array, order: int = 0) -> Array:
-        return _signed(self.half.curvature(np.abs(phi), order), phi, 0)
+        return _apply_signs(self.half.curvature(np.abs(phi), order), phi, 0)
 
 
-def _signed(found: Array, phi: Array, parity: int) -> Array:
+def _apply_signs(found: Array, phi: Array, parity: int) -> Array:
     signs = (-1.0) ** (np.arange(len(found)) + parity)
     return np.where(np.asarray(phi) < 0, signs[:, None] * found, found)
 
@@ -326,11 +326,11 @@ def frames(curve: PolarCurve, phi: Array) -> Frames:
     phi = np.asarray(phi, dtype=np.float64)
     with np.errstate(invalid="ignore", divide="ignore"):
         rho = radius_jet(curve, phi, 3)
-        slope, value = rho.slope(), rho.lowered()
+        slope, value = rho.slope(), rho.lower_order()
         gamma = JETS.atan2(slope, value)
         speed = JETS.sqrt(slope * slope + value * value)
         turning = -gamma.slope() + 1.0
-        curvature = turning / speed.lowered()
+        curvature = turning / speed.lower_order()
     psi = phi - gamma.value
     sine, cosine = np.sin(psi), np.cos(psi)
     return Frames(

@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeAlias
 from centrode.dynamics.state import Centre, Place, Radial, State
 from centrode.dynamics.wrenches import Vector, Wrench, couple, on_link, on_point
 from centrode.errors import InputError
-from centrode.geometry.plane import turned
+from centrode.geometry.plane import rotate_vector
 from centrode.geometry.sphere import cross, unit, unit_vector
 from centrode.locale import _
 from centrode.model.loads import Load
@@ -74,7 +74,7 @@ class Slide:
         guide = state.mechanism.guide(self.guide)
         if not state.on_sphere:
             (x, y), (cosine, sine) = guide.unit, place_of(state.rotor(guide.on))
-            return turned((x, y), (cosine, sine))
+            return rotate_vector((x, y), (cosine, sine))
         spot = guide.pole.at if isinstance(guide.pole, Placed) else guide.pole
         assert spot is not None
         pole = (
@@ -103,7 +103,7 @@ class Distance:
         return _apart(state, self.first, self.second, self._length(state).value)
 
     def _length(self, state: State) -> Jet:
-        length: Jet = state.m.sqrt(_squared(state, self.first, self.second))
+        length: Jet = state.m.sqrt(_squared_distance(state, self.first, self.second))
         return length
 
 
@@ -124,10 +124,10 @@ class HalfSquare:
         return _apart(state, self.first, self.second, 1.0)
 
     def _half(self, state: State) -> Jet:
-        return _squared(state, self.first, self.second) * 0.5
+        return _squared_distance(state, self.first, self.second) * 0.5
 
 
-def _squared(state: State, first: str, second: str) -> Jet:
+def _squared_distance(state: State, first: str, second: str) -> Jet:
     """Squared straight distance of two points [m^2], on the sphere too."""
     parts = [(v - u) * (v - u) for u, v in zip(state.point(first), state.point(second), strict=True)]
     return sum(parts[1:], parts[0])
@@ -147,7 +147,7 @@ class Component:
 
     def slope(self, state: State) -> Jet:
         pairs = zip(self._direction(state), self._place(state), strict=True)
-        parts = [u.lowered() * x.slope() for u, x in pairs]
+        parts = [u.lower_order() * x.slope() for u, x in pairs]
         return sum(parts[1:], parts[0])
 
     def pulls(self, state: State) -> tuple[Wrench, ...]:
@@ -208,7 +208,7 @@ class Spin:
         return self.sense * state.angle(self.joint).value
 
     def slope(self, state: State) -> Jet:
-        along = [x.lowered() for x in self._axis(state)]
+        along = [x.lower_order() for x in self._axis(state)]
         pairs = zip(state.spin(self.link), state.spin(self.base), along, strict=True)
         parts = [(own - other) * axis for own, other, axis in pairs]
         return sum(parts[1:], parts[0])

@@ -28,9 +28,9 @@ def jumps_of(loads: Sequence[AppliedLoad], at: StateAt, nodes: Array) -> Array:
     They are found where they belong to a change of sign between two nodes, or to two changes that the tangents at
     the nodes foretell.
     """
-    turning = list(dict.fromkeys(c for effort in _efforts(loads) for c in effort.switches))
+    turning = list(dict.fromkeys(c for effort in _load_terms(loads) for c in effort.switches))
     kinked: dict[Coordinate, set[float]] = {}
-    for effort in _efforts(loads):
+    for effort in _load_terms(loads):
         if effort.amount.levels:
             kinked.setdefault(effort.coordinate, set()).update(effort.amount.levels)
     if not (turning or kinked) or len(nodes) < 2:
@@ -44,13 +44,13 @@ def jumps_of(loads: Sequence[AppliedLoad], at: StateAt, nodes: Array) -> Array:
     return _distinct(np.sort(np.concatenate(places)))
 
 
-def _efforts(loads: Sequence[AppliedLoad]) -> Iterator[LoadTerm]:
+def _load_terms(loads: Sequence[AppliedLoad]) -> Iterator[LoadTerm]:
     return (effort for load in loads for effort in load.efforts)
 
 
 def _turning_points(coordinate: Coordinate, at: StateAt, nodes: Array, state: State) -> Iterator[Array]:
     """Places at which a coordinate turns round."""
-    function = _turning(coordinate)
+    function = _slope_with_derivative(coordinate)
     value, slope = (np.broadcast_to(x, (1, len(nodes)))[0] for x in function(state))
     if _stands_still(value, state.scale):
         return
@@ -83,7 +83,7 @@ def _passings(coordinate: Coordinate, levels: Array, at: StateAt, nodes: Array, 
     return np.append(newton_roots(function, nodes[cells], nodes[cells + 1]), nodes[np.isin(value, levels)])
 
 
-def _turning(coordinate: Coordinate) -> WithSlope:
+def _slope_with_derivative(coordinate: Coordinate) -> WithSlope:
     def function(state: State) -> tuple[Array, Array]:
         slope = coordinate.slope(state)
         return slope.value, slope.derivative(1)

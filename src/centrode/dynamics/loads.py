@@ -317,15 +317,15 @@ class LoadTerm:
     def _sense(self, state: State, speed: Number) -> Number:
         if state.m is not JETS:
             return state.m.base.sign(speed)
-        return np.sign(_going(self.coordinate, state))
+        return np.sign(_sign_of_speed(self.coordinate, state))
 
 
 def grows(coordinate: Coordinate, state: State) -> Number:
     """Where a coordinate grows in time; where it turns, `state.side` decides."""
-    return _going(coordinate, state) >= 0.0
+    return _sign_of_speed(coordinate, state) >= 0.0
 
 
-def _going(coordinate: Coordinate, state: State) -> Number:
+def _sign_of_speed(coordinate: Coordinate, state: State) -> Number:
     """A number with the sign of a coordinate's speed; where it turns that on `state.side`, zero at the place itself."""
     slope = coordinate.slope(state)
     speed, bend = slope.value * state.rate, slope.derivative(1) * state.rate
@@ -398,7 +398,7 @@ def loads_of(
     loads = mechanism.loads if described is None else described
     labels = _labels(loads, mechanism, masses)
     found = [
-        AppliedLoad(label, tuple(_efforts(mechanism, load, masses, where, given, m)), where)
+        AppliedLoad(label, tuple(_terms_of_load(mechanism, load, masses, where, given, m)), where)
         for label, load in zip(labels, loads, strict=False)
         for where in [f"[[loads]] {label}"]
     ]
@@ -406,12 +406,12 @@ def loads_of(
         AppliedLoad(
             label, (_weight(mechanism, mass, mass.mass * _strength(mechanism)),), f"[links.{mass.link}]"
         )
-        for label, mass in zip(labels[len(loads) :], _weighing(mechanism, masses), strict=True)
+        for label, mass in zip(labels[len(loads) :], _masses_with_weight(mechanism, masses), strict=True)
     ]
     return (*found, *weights)
 
 
-def _weighing(mechanism: Mechanism, masses: Iterable[Mass]) -> list[Mass]:
+def _masses_with_weight(mechanism: Mechanism, masses: Iterable[Mass]) -> list[Mass]:
     """Links that gravity acts on and whose weight the description does not give itself."""
     if not mechanism.gravity or not _strength(mechanism):
         return []
@@ -421,7 +421,7 @@ def _weighing(mechanism: Mechanism, masses: Iterable[Mass]) -> list[Mass]:
 
 def _labels(loads: Sequence[Load], mechanism: Mechanism, masses: Iterable[Mass]) -> list[str]:
     names = [load.label for load in loads]
-    names += [f"weight {mass.link}" for mass in _weighing(mechanism, masses)]
+    names += [f"weight {mass.link}" for mass in _masses_with_weight(mechanism, masses)]
     found: list[str] = []
     for name in names:
         number, label = 1, name
@@ -432,7 +432,7 @@ def _labels(loads: Sequence[Load], mechanism: Mechanism, masses: Iterable[Mass])
     return found
 
 
-def _efforts(
+def _terms_of_load(
     mechanism: Mechanism,
     load: Load,
     masses: Sequence[Mass],

@@ -16,23 +16,23 @@ from centrode.dynamics.load_discontinuities import jumps_of
 from centrode.dynamics.loads import AppliedLoad, LoadDiagram, MassesAndLoads
 from centrode.dynamics.masses import coordinates_of as speeds_of
 from centrode.dynamics.masses import share, shares
-from centrode.dynamics.state import About, Moving, State, getters_of
+from centrode.dynamics.state import About, DriveMotion, State, getters_of
 from centrode.errors import InputError
-from centrode.kinematics.compiled.trace import Untraceable
+from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.kinematics.motion import (
     Variable,
     attributes_of,
     coordinates_of,
     judgements_of,
     labels_of,
-    named,
+    vocabulary_variable,
 )
-from centrode.kinematics.path import span_at
+from centrode.kinematics.path import grid_at
 from centrode.kinematics.plan_evaluation import Event
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import MotionOnPath
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import MotionOnPath
 from centrode.kinematics.several_inputs.coefficients import Partials, partials
-from centrode.kinematics.solve import GREATEST_RESULT, Solved, asked_span, solve
+from centrode.kinematics.solve import GREATEST_RESULT, Solved, requested_grid, solve
 from centrode.locale import _, mark
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
@@ -130,7 +130,7 @@ class Reducer:
         Raises InputError for a load without a value, or that needs a rate or a time which nothing tells.
         """
         values = np.atleast_1d(np.asarray(values, dtype=np.float64))
-        return reduced(self.burden, *self._state(values, self.moving(values, rate, time), side))
+        return reduce_state(self.burden, *self._state(values, self.moving(values, rate, time), side))
 
     def jumps(self, first: float, last: float, loads: Sequence[AppliedLoad] | None = None) -> Array:
         """Values of the drive, in increasing order, at which loads jump or have a kink, between two values.
@@ -162,7 +162,7 @@ class Reducer:
 
     def moving(
         self, values: Array, rate: npt.ArrayLike | None = None, time: npt.ArrayLike | None = None
-    ) -> Moving:
+    ) -> DriveMotion:
         """How the drive passes values, as `at` takes it."""
         path = self.ready.kinematics.path
         speed = self.default_rate if rate is None else np.asarray(rate, dtype=np.float64)
@@ -173,13 +173,13 @@ class Reducer:
             speed = path.forward
         with np.errstate(all="ignore"):
             elapsed = (values - path.driven[0].start) / speed if time is None else time
-        return Moving(
+        return DriveMotion(
             np.broadcast_to(np.asarray(elapsed, dtype=np.float64), values.shape),
             values,
             np.broadcast_to(np.asarray(speed, dtype=np.float64), values.shape),
         )
 
-    def state(self, values: Array, moving: Moving, side: int = 0) -> tuple[State, npt.NDArray[np.int8]]:
+    def state(self, values: Array, moving: DriveMotion, side: int = 0) -> tuple[State, npt.NDArray[np.int8]]:
         """Positions with their derivatives at values of the drive, and their statuses (n)."""
         return self._state(values, moving, side)
 
@@ -201,20 +201,20 @@ class Reducer:
             self._places = places
         return places
 
-    def _state(self, values: Array, moving: Moving, side: int) -> tuple[State, npt.NDArray[np.int8]]:
+    def _state(self, values: Array, moving: DriveMotion, side: int) -> tuple[State, npt.NDArray[np.int8]]:
         samples = self._along(values).at(values)
         path = self.ready.kinematics.path
         state = State.of_samples(self.ready.mechanism, samples, moving, path.scale, side)
         return state, samples.status[0]
 
 
-def _sense_only(reducer: Reducer, values: Array) -> Moving:
+def _sense_only(reducer: Reducer, values: Array) -> DriveMotion:
     """Any motion in the sense of the drive: jumps do not depend on how fast it is."""
     ones = np.ones(values.shape)
-    return Moving(0.0 * ones, values, reducer.ready.kinematics.path.forward * ones)
+    return DriveMotion(0.0 * ones, values, reducer.ready.kinematics.path.forward * ones)
 
 
-def reduced(burden: MassesAndLoads, state: State, status: npt.NDArray[np.int8]) -> Reduced:
+def reduce_state(burden: MassesAndLoads, state: State, status: npt.NDArray[np.int8]) -> Reduced:
     """A state of one mechanism reduced; InputError for a load without a finite value."""
     count = len(state.parameter)
     inertia, slope = shares(state, burden.masses, (1, count))
@@ -254,11 +254,17 @@ def reduced_to_several(solved: Solved, burden: MassesAndLoads) -> xr.Dataset:
     forces = _forces(directions, solved, burden)
     units = solved.ready.parameter.units
     variables = {
-        "inertia_matrix": _mixed("inertia_matrix", ("drive", "drive_2"), matrix.sum(axis=1), units),
-        "inertia_matrix_part": _mixed("inertia_matrix_part", ("link", "drive", "drive_2"), matrix, units),
-        "christoffel": _mixed("christoffel", ("drive", "drive_2", "drive_3"), christoffel, units),
-        "generalised_force": _mixed("generalised_force", ("drive",), forces.sum(axis=1), units),
-        "generalised_force_part": _mixed("generalised_force_part", ("load", "drive"), forces, units),
+        "inertia_matrix": _variable_of_units(
+            "inertia_matrix", ("drive", "drive_2"), matrix.sum(axis=1), units
+        ),
+        "inertia_matrix_part": _variable_of_units(
+            "inertia_matrix_part", ("link", "drive", "drive_2"), matrix, units
+        ),
+        "christoffel": _variable_of_units("christoffel", ("drive", "drive_2", "drive_3"), christoffel, units),
+        "generalised_force": _variable_of_units("generalised_force", ("drive",), forces.sum(axis=1), units),
+        "generalised_force_part": _variable_of_units(
+            "generalised_force_part", ("load", "drive"), forces, units
+        ),
         "status": judgements_of(found.solved, ())["status"],
     }
     known = coordinates_of(solved)
@@ -304,7 +310,7 @@ class _Directions:
     @classmethod
     def of(cls, found: Partials, solved: Solved) -> _Directions:
         """States of all directions of a motion."""
-        moving = Moving(solved.span.time, solved.span.parameter, solved.span.rate)
+        moving = DriveMotion(solved.span.time, solved.span.parameter, solved.span.rate)
         along = {}
         for pair, one in found.along.items():
             # directions carry derivatives of angles only, the angles themselves are those of the motion
@@ -339,7 +345,7 @@ def _inertia(directions: _Directions, burden: MassesAndLoads) -> tuple[Array, Ar
 
 def _forces(directions: _Directions, solved: Solved, burden: MassesAndLoads) -> Array:
     """Generalised forces by load (n, loads, i): how great loads are the motion says, along what the directions."""
-    state = State.of(solved, Moving(solved.span.time, solved.span.parameter, solved.span.rate))
+    state = State.of(solved, DriveMotion(solved.span.time, solved.span.parameter, solved.span.rate))
     known = state.exists
     forces = np.empty((len(burden.loads), len(directions.units), directions.shape[-1]))
     for number, load in enumerate(burden.loads):
@@ -353,9 +359,9 @@ def _forces(directions: _Directions, solved: Solved, burden: MassesAndLoads) -> 
     return np.moveaxis(forces, -1, 0)
 
 
-def _mixed(name: str, dimensions: Sequence[str], values: Array, units: Sequence[str]) -> Variable:
+def _variable_of_units(name: str, dimensions: Sequence[str], values: Array, units: Sequence[str]) -> Variable:
     """A variable with one unit, or with one for each combination of drives in the order of the array."""
-    variable = named(name, ("sample", *dimensions), values)
+    variable = vocabulary_variable(name, ("sample", *dimensions), values)
     drives = sum(dimension.startswith("drive") for dimension in dimensions)
     head = "N" if "force" in name else "kg"
     least = 1 if head == "N" else 2
@@ -403,9 +409,9 @@ def reduce(
     prepared = ready(mechanism)
     burden = MassesAndLoads.of(mechanism)
     if at is None:
-        span = asked_span(prepared, samples, start, stop)
+        span = requested_grid(prepared, samples, start, stop)
     else:
-        span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
     return reduction_of(solve(prepared, span), burden)
 
 
@@ -415,13 +421,15 @@ def reduction_of(solved: Solved, burden: MassesAndLoads | None = None) -> xr.Dat
     if solved.ready.kinematics.path.by_time:
         return reduced_to_several(solved, burden)
     reducer = Reducer(solved.ready, burden)
-    moving = _moving(solved, reducer)
-    found = reduced(burden, State.of(solved, moving), solved.status[0])
+    moving = _motion_of_loads(solved, reducer)
+    found = reduce_state(burden, State.of(solved, moving), solved.status[0])
     first, last = np.min(solved.span.parameter), np.max(solved.span.parameter)
     variables = _variables(found, solved.ready.parameter.units[0])
     unit = solved.ready.parameter.units[0]
-    variables["drive_rate"] = named("drive_rate", ("sample",), moving.rate.copy(), unit)
-    variables["jumps"] = named("jumps", ("jump",), reducer.jumps(float(first), float(last)), unit)
+    variables["drive_rate"] = vocabulary_variable("drive_rate", ("sample",), moving.rate.copy(), unit)
+    variables["jumps"] = vocabulary_variable(
+        "jumps", ("jump",), reducer.jumps(float(first), float(last)), unit
+    )
     variables["status"] = judgements_of(solved, ())["status"]
     coordinates = {
         name: values for name, values in coordinates_of(solved).items() if name in ("time", "drive")
@@ -438,25 +446,31 @@ def _by_drive(solved: Solved) -> bool:
     return ready.mechanism.machine is None or not ready.parameter.is_uniform
 
 
-def _moving(solved: Solved, reducer: Reducer) -> Moving:
+def _motion_of_loads(solved: Solved, reducer: Reducer) -> DriveMotion:
     """The speed that loads see: of a drive of constant speed the machine's, if there is one; else the drive's own."""
     span = solved.span
     if _by_drive(solved):
-        return Moving(span.time, span.parameter, span.rate)
+        return DriveMotion(span.time, span.parameter, span.rate)
     return reducer.moving(span.parameter)
 
 
 def _variables(found: Reduced, unit: str) -> dict[str, Variable]:
     by_link, by_load = ("sample", "link"), ("sample", "load")
     return {
-        "reduced_inertia": named("reduced_inertia", ("sample",), found.inertia, unit),
-        "reduced_inertia_slope": named("reduced_inertia_slope", ("sample",), found.inertia_slope, unit),
-        "reduced_moment": named("reduced_moment", ("sample",), found.moment, unit),
-        "reduced_inertia_part": named("reduced_inertia_part", by_link, found.inertia_parts.T, unit),
-        "reduced_inertia_slope_part": named(
+        "reduced_inertia": vocabulary_variable("reduced_inertia", ("sample",), found.inertia, unit),
+        "reduced_inertia_slope": vocabulary_variable(
+            "reduced_inertia_slope", ("sample",), found.inertia_slope, unit
+        ),
+        "reduced_moment": vocabulary_variable("reduced_moment", ("sample",), found.moment, unit),
+        "reduced_inertia_part": vocabulary_variable(
+            "reduced_inertia_part", by_link, found.inertia_parts.T, unit
+        ),
+        "reduced_inertia_slope_part": vocabulary_variable(
             "reduced_inertia_slope_part", by_link, found.inertia_slope_parts.T, unit
         ),
-        "reduced_moment_part": named("reduced_moment_part", by_load, found.moment_parts.T, unit),
+        "reduced_moment_part": vocabulary_variable(
+            "reduced_moment_part", by_load, found.moment_parts.T, unit
+        ),
     }
 
 
@@ -505,15 +519,15 @@ def reduced_number(name: str, solved: Solved, values: Values) -> AnyArray:
     return np.asarray(np.broadcast_to(total, solved.status.shape) + known)
 
 
-def _batch_moving(solved: Solved, burden: MassesAndLoads) -> Moving:
+def _batch_moving(solved: Solved, burden: MassesAndLoads) -> DriveMotion:
     """The speed that loads see, as `reduction_of` has it."""
     span, ready = solved.span, solved.ready
     if ready.mechanism.machine is None or not ready.parameter.is_uniform:
-        return Moving(span.time, span.parameter, span.rate)
+        return DriveMotion(span.time, span.parameter, span.rate)
     speed = Reducer(ready, burden).default_rate
     assert speed is not None
     start = ready.kinematics.path.driven[0].start
-    return Moving(
+    return DriveMotion(
         ready.parameter.times(span.parameter, start, speed),
         span.parameter,
         speed * np.ones(len(span.parameter)),
@@ -523,11 +537,11 @@ def _batch_moving(solved: Solved, burden: MassesAndLoads) -> Moving:
 def _state_of_nodes(solved: Solved, burden: MassesAndLoads) -> State:
     """The state at the one sample of a traced motion."""
     boxes = _batch_moving(solved, burden)
-    moving = Moving(*(np.asarray(x).ravel()[0] for x in (boxes.time, boxes.parameter, boxes.rate)))
+    moving = DriveMotion(*(np.asarray(x).ravel()[0] for x in (boxes.time, boxes.parameter, boxes.rate)))
     return state_of_nodes(solved, burden, moving)
 
 
-def state_of_nodes(solved: Solved, burden: MassesAndLoads, moving: Moving) -> State:
+def state_of_nodes(solved: Solved, burden: MassesAndLoads, moving: DriveMotion) -> State:
     """The same with time, parameter and rate as they are given."""
     if any(isinstance(effort.amount, LoadDiagram) for load in burden.loads for effort in load.efforts):
         raise Untraceable(mark("indicator diagrams"))

@@ -9,10 +9,10 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.geometry.sphere import Attitude, carried, cross, dot, unit_vector
+from centrode.geometry.sphere import Attitude, cross, dot, unit_vector, vector_in_frame
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import PlanLayout
-from centrode.kinematics.sampling import Samples
+from centrode.kinematics.samples import Samples
 from centrode.kinematics.solve import Solved
 from centrode.model.links import Link
 from centrode.model.mechanism import FRAME, Mechanism
@@ -164,7 +164,7 @@ class State:
 
     @classmethod
     def of_samples(
-        cls, mechanism: Mechanism, samples: Samples, moving: Moving, scale: float, side: int = 0
+        cls, mechanism: Mechanism, samples: Samples, moving: DriveMotion, scale: float, side: int = 0
     ) -> State:
         """The state that columns of samples hold."""
         layout, columns = samples.layout, samples.columns
@@ -178,7 +178,7 @@ class State:
         return cls(mechanism, layout, moving.time, moving.parameter, moving.rate, side, scale, getters)
 
     @classmethod
-    def of(cls, solved: Solved, moving: Moving, side: int = 0) -> State:
+    def of(cls, solved: Solved, moving: DriveMotion, side: int = 0) -> State:
         """The state of a motion."""
         mechanism = solved.ready.mechanism
         getters = getters_of(solved, lambda array: array)
@@ -208,7 +208,7 @@ class State:
         if place is None:
             axes = self.layout.axes
             first, unit = axes * self.layout.points.index(name), length_unit(self.mechanism)
-            place = tuple(_scaled(_jet(self.columns["point"](first + k)), unit) for k in range(axes))
+            place = tuple(_scale_jet(_jet(self.columns["point"](first + k)), unit) for k in range(axes))
             self.known[f"point {name}"] = place
         assert isinstance(place, tuple)
         return place
@@ -227,7 +227,7 @@ class State:
         """On the sphere: a direction of a link's own axes, or of the frame's, as it stands in the frame."""
         if link == FRAME:
             return tuple(_constant(float(x)) for x in direction)
-        x, y, z = carried(self.attitude(link), direction)
+        x, y, z = vector_in_frame(self.attitude(link), direction)
         return x, y, z
 
     def spin(self, link: str) -> Place:
@@ -238,7 +238,7 @@ class State:
         if found is None:
             # half the sum of a x a' over the axes
             turns = [
-                cross(tuple(x.lowered() for x in axis), tuple(x.slope() for x in axis))
+                cross(tuple(x.lower_order() for x in axis), tuple(x.slope() for x in axis))
                 for axis in self.attitude(link)
             ]
             found = tuple((a + b + c) * 0.5 for a, b, c in zip(*turns, strict=True))
@@ -248,7 +248,7 @@ class State:
 
     def turned_about(self, link: str, direction: Vector3) -> Jet:
         """On the sphere: the turning of a link about one of its own directions; it has derivatives, but no value."""
-        axis = tuple(x.lowered() for x in self.heading(link, direction))
+        axis = tuple(x.lower_order() for x in self.heading(link, direction))
         along = dot(self.spin(link), axis)  # type: ignore[arg-type]
         return Jet((0.0, along.coefficients[0], along.coefficients[1] * 0.5))
 
@@ -260,7 +260,7 @@ class State:
 
     def slide(self, guide: str) -> Jet:
         """Displacement along a guide [m]."""
-        return _scaled(self._jet("slide", guide, self.layout.guides), length_unit(self.mechanism))
+        return _scale_jet(self._jet("slide", guide, self.layout.guides), length_unit(self.mechanism))
 
     def rotor(self, link: str) -> Place:
         """Cosine and sine of a link's angle."""
@@ -293,7 +293,7 @@ class State:
 
 
 @dataclass(frozen=True)
-class Moving:
+class DriveMotion:
     """How the path is run through at samples: time [s], parameter, and its derivative by time, each (n)."""
 
     time: Array
@@ -324,7 +324,7 @@ def length_unit(mechanism: Mechanism) -> float:
     return mechanism.sphere_radius if mechanism.space == "sphere" else 1.0
 
 
-def _scaled(jet: Jet, unit: float) -> Jet:
+def _scale_jet(jet: Jet, unit: float) -> Jet:
     return jet if unit == 1.0 else jet * unit
 
 

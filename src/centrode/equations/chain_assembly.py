@@ -14,7 +14,7 @@ from centrode.equations.plane_chains import Chains, shorten
 from centrode.equations.symbol_table import SymbolTable
 from centrode.equations.symbols import BEARING, LENGTH, RATIO, ZERO, Angle, Letter, Sum, SumTerm
 from centrode.errors import InputError
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.structure.constraints import FRAME, GearRatio, NoSlip
 from centrode.structure.gearing import Round, Straight
@@ -43,7 +43,7 @@ def mesh(board: SymbolTable, waiting: list[Meshing], draft: Draft) -> None:
                 draft.conditions.append(_gear(board, meshing))
         elif _stands(board, meshing):
             waiting.remove(meshing)
-            draft.conditions.append(_rolling(board, meshing, draft))
+            draft.conditions.append(_rolling_condition(board, meshing, draft))
 
 
 def _stands(board: SymbolTable, wheel: NoSlip) -> bool:
@@ -57,7 +57,7 @@ def _gear(board: SymbolTable, gear: GearRatio) -> Condition:
     return _angular(board, f"gear {gear.gear}", left)
 
 
-def _rolling(board: SymbolTable, wheel: NoSlip, draft: Draft) -> Condition:
+def _rolling_condition(board: SymbolTable, wheel: NoSlip, draft: Draft) -> Condition:
     turn, base = (_variable(board, board.angles[link]) for link in (wheel.link, wheel.on))
     track = board.numbers.gearing.track[wheel.rolling]
     if isinstance(track, Straight):
@@ -65,12 +65,12 @@ def _rolling(board: SymbolTable, wheel: NoSlip, draft: Draft) -> Condition:
             LENGTH + 800_000, f"r_{wheel.link}", "radius", (wheel.link,),
             float(board.numbers.gearing.radius[wheel.rolling]), "m",
         )  # fmt: skip
-        way = _way(board, wheel, track).divided(SumTerm(((radius, 1),)))
+        way = _way(board, wheel, track).divide(SumTerm(((radius, 1),)))
         return _angular(board, f"rolling {wheel.rolling}", turn - base + way)
     spin = Sum.letter(
         _factor(board, "k", "spin", wheel.rolling, float(board.numbers.gearing.spin(wheel.rolling)))
     )
-    bearing = _variable(board, _bearing(board, wheel, track, draft))
+    bearing = _variable(board, _centre_direction(board, wheel, track, draft))
     left = turn - spin * bearing + (spin - Sum.number(1)) * base
     return _angular(board, f"rolling {wheel.rolling}", left)
 
@@ -82,10 +82,10 @@ def _way(board: SymbolTable, wheel: NoSlip, track: Straight) -> Sum:
     at = board.points[wheel.centre]
     if wheel.on != FRAME:
         at = at.plus(board.points[next(iter(board.local(wheel.on)))], -1)
-    return _moving(board, at.along(board.angles[wheel.on].plus(turn)))
+    return _moving_terms(board, at.along(board.angles[wheel.on].plus(turn)))
 
 
-def _bearing(board: SymbolTable, wheel: NoSlip, track: Round, draft: Draft) -> Angle:
+def _centre_direction(board: SymbolTable, wheel: NoSlip, track: Round, draft: Draft) -> Angle:
     """Direction from the circle's centre to that of the wheel: of an arm between them, else a letter of its own."""
     centre = (float(track.centre[0]), float(track.centre[1]))
     hub = next((p for p, at in board.local(wheel.on).items() if at == centre), None)
@@ -126,11 +126,11 @@ def _variable(board: SymbolTable, angle: Angle) -> Sum:
     total = ZERO
     for letter, count in angle.parts:
         if letter in board.alphabet.rates:
-            total += Sum.letter(letter).scaled(count)
+            total += Sum.letter(letter).scale(count)
     return total
 
 
-def _moving(board: SymbolTable, total: Sum) -> Sum:
+def _moving_terms(board: SymbolTable, total: Sum) -> Sum:
     """A sum without its constant terms."""
     moving = board.alphabet.rates.keys()
     return Sum({term: x for term, x in total.terms.items() if Sum({term: x}).letters & moving})
@@ -144,7 +144,7 @@ def _factor(board: SymbolTable, letter: str, kind: str, name: str, value: float)
     )
 
 
-def laid(ready: Ready) -> tuple[SymbolTable, tuple[Draft, ...]]:
+def assemble_chains(ready: Ready) -> tuple[SymbolTable, tuple[Draft, ...]]:
     """All chains of a planar mechanism, and the groups that have unknowns.
 
     Raises InputError where constraints and unknowns do not match.

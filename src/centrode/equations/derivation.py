@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from centrode.equations.chain_assembly import laid
+from centrode.equations.chain_assembly import assemble_chains
 from centrode.equations.linear import (
     Draft,
     GroupEquations,
@@ -22,7 +22,7 @@ from centrode.equations.sphere_chains import SphereBoard, SpherePlace, laid_on_s
 from centrode.equations.symbol_table import Lettering, SymbolTable
 from centrode.equations.symbols import ZERO, Letter, Meaning, Sum
 from centrode.errors import InputError
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import assur_groups, roman
@@ -60,7 +60,7 @@ class Given:
 
     def put(self, total: Sum) -> Sum:
         """A sum with what is given put in."""
-        return total.replaced(self.values).renamed(self.names)
+        return total.replace_letters(self.values).rename_letters(self.names)
 
 
 def given_of(board: Lettering) -> Given:
@@ -140,7 +140,7 @@ def velocity_of(
     def short(formula: SymbolFormula | None) -> SymbolFormula | None:
         if formula is None or not formula.total.letters & closed.keys():
             return formula if formula is None or formula.single else None
-        found = formula_of(formula.total.replaced(closed))
+        found = formula_of(formula.total.replace_letters(closed))
         return found if found.single else None
 
     return PointVelocity(point, place, x, y, z, along, short(x), short(y), short(z), short(along))
@@ -239,7 +239,7 @@ def equations(mechanism: Mechanism) -> Equations:
 
 def equations_of(made: Ready) -> Equations:
     """The equations of a mechanism made ready."""
-    board, drafts = laid(made) if made.mechanism.space == "plane" else laid_on_sphere(made)
+    board, drafts = assemble_chains(made) if made.mechanism.space == "plane" else laid_on_sphere(made)
     given = given_of(board)
     closed: dict[Letter, Sum] = {}
     deltas = [
@@ -274,7 +274,7 @@ def _rates(board: Lettering, draft: Draft, given: Given) -> LinearSystem:
 def _seconds(board: Lettering, draft: Draft, given: Given, closed: Mapping[Letter, Sum]) -> LinearSystem:
     zeros = {letter: total for letter, total in closed.items() if not total}
     return system_of(
-        [given.put(one.rate(board.moves_twice, 2)).replaced(zeros) for one in draft.conditions],
+        [given.put(one.rate(board.moves_twice, 2)).replace_letters(zeros) for one in draft.conditions],
         [one.second for one in draft.unknowns],
         [one.pair for one in draft.conditions],
     )
@@ -289,7 +289,7 @@ def _group(
 ) -> GroupEquations:
     velocities = _solution(_rates(board, draft, given), delta)
     seconds = _solution(_seconds(board, draft, given, closed), delta)
-    short = _closed(velocities, closed)
+    short = _substitute_rates(velocities, closed)
     closed.update(
         (letter, one.total) for letter, one in zip(velocities.letters, short, strict=True) if one is not None
     )
@@ -309,14 +309,18 @@ def _group(
     )
 
 
-def _closed(solution: GroupSolution, closed: Mapping[Letter, Sum]) -> tuple[SymbolFormula | None, ...]:
+def _substitute_rates(
+    solution: GroupSolution, closed: Mapping[Letter, Sum]
+) -> tuple[SymbolFormula | None, ...]:
     """Rates with those of earlier groups put in, where one product comes out."""
     if solution.formulas is None or solution.lettered:
         return (None,) * len(solution.letters)
     found = []
     for formula in solution.formulas:
         put_in = (
-            formula_of(formula.total.replaced(closed)) if formula.total.letters & closed.keys() else formula
+            formula_of(formula.total.replace_letters(closed))
+            if formula.total.letters & closed.keys()
+            else formula
         )
         found.append(put_in if put_in.single else None)
     return tuple(found)

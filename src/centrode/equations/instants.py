@@ -227,7 +227,7 @@ def _solve(solution: GroupSolution, values: dict[Letter, float]) -> SolvedSystem
     right = np.array([_value(entry, values) for entry in system.right], dtype=np.float64)
     with np.errstate(all="ignore"):  # a position that does not exist has no determinant
         determinant = float(np.linalg.det(matrix))
-        numerators = np.array([_replaced(matrix, right, column) for column in range(len(right))])
+        numerators = np.array([_cramer_determinant(matrix, right, column) for column in range(len(right))])
     condition = _condition(matrix)
     regular = condition < 1 / np.finfo(float).eps
     found: Array = np.full(len(right), np.nan)
@@ -243,7 +243,7 @@ def _value(total: Sum, values: Mapping[Letter, float]) -> float:
         return float(total.value(np, values.__getitem__))
 
 
-def _replaced(matrix: Array, right: Array, column: int) -> float:
+def _cramer_determinant(matrix: Array, right: Array, column: int) -> float:
     other = matrix.copy()
     other[:, column] = right
     return float(np.linalg.det(other))

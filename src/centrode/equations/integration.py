@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.equations.chain_assembly import laid
+from centrode.equations.chain_assembly import assemble_chains
 from centrode.equations.linear import LinearSystem, Place, Unknown, system_of
 from centrode.equations.symbols import Letter, Sum
 from centrode.errors import InputError, Status
@@ -23,14 +23,14 @@ from centrode.kinematics.motion import (
     dataset_of,
     judgements_of,
     labels_of,
-    named,
+    vocabulary_variable,
 )
 from centrode.kinematics.path import DrivenBy
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.search import bisect
@@ -87,7 +87,7 @@ class CauchyEquations(Protocol):
 
 
 @dataclass(frozen=True)
-class Trajectory:
+class CauchySolution:
     """States at the times asked for, NaN where the integration does not get.
 
     Attributes
@@ -108,13 +108,13 @@ class Trajectory:
     steps: int
 
 
-def fixed_steps(equations: CauchyEquations, times: Array) -> Trajectory:
+def fixed_steps(equations: CauchyEquations, times: Array) -> CauchySolution:
     """Classical fourth-order Runge-Kutta, one step from each time to the next.
 
     An adaptive integration goes before it and tells where the determinant is zero; rows behind that are left out,
     and so are those after a row with another sign of the determinant or with a drift of more than `LOST`.
     """
-    judge = _followed(equations, times, FINE)
+    judge = _adaptive_states(equations, times, FINE)
     state = np.full((len(times), len(equations.initial)), np.nan)
     state[0] = equations.initial
     with np.errstate(all="ignore"):
@@ -126,13 +126,13 @@ def fixed_steps(equations: CauchyEquations, times: Array) -> Trajectory:
         beyond |= np.arange(len(times)) >= lost
     state[beyond] = np.nan
     when = None if lost is None else float(times[lost])
-    return Trajectory(state, _rates(equations, times, state), judge.stop, when, len(times) - 1)
+    return CauchySolution(state, _rates(equations, times, state), judge.stop, when, len(times) - 1)
 
 
-def adaptive_steps(equations: CauchyEquations, times: Array, tolerance: float) -> Trajectory:
+def adaptive_steps(equations: CauchyEquations, times: Array, tolerance: float) -> CauchySolution:
     """Dormand and Prince's method of eighth order with error control; rows come from its dense output."""
-    found = _followed(equations, times, tolerance)
-    return Trajectory(found.state, _rates(equations, times, found.state), found.stop, None, found.steps)
+    found = _adaptive_states(equations, times, tolerance)
+    return CauchySolution(found.state, _rates(equations, times, found.state), found.stop, None, found.steps)
 
 
 def determinant(equations: CauchyEquations, time: Any, state: Array) -> Array:
@@ -162,7 +162,7 @@ class _Followed:
     steps: int
 
 
-def _followed(equations: CauchyEquations, times: Array, tolerance: float) -> _Followed:
+def _adaptive_states(equations: CauchyEquations, times: Array, tolerance: float) -> _Followed:
     """States at the times by adaptive steps, as far as the determinant keeps its sign.
 
     Raises InputError where too many steps would be needed.
@@ -188,7 +188,7 @@ def _followed(equations: CauchyEquations, times: Array, tolerance: float) -> _Fo
                 return _Followed(state, _pole(equations, first, initial, solver), steps)
             course = solver.dense_output()
             crosses = sign * determinant(equations, solver.t, solver.y) < 0
-            stop = _crossing(equations, course) if crosses else None
+            stop = _singular_time(equations, course) if crosses else None
             _fill(state, times, course, course.t if stop is None else stop)
             if stop is not None or solver.status == "finished":
                 return _Followed(state, stop, steps)
@@ -216,7 +216,7 @@ def _pole(equations: CauchyEquations, first: float, initial: Array, solver: Any)
     return float(solver.t) + (left if abs(left) <= NEAR_POLE * abs(solver.t_bound - first) else 0.0)
 
 
-def _crossing(equations: CauchyEquations, course: Any) -> float:
+def _singular_time(equations: CauchyEquations, course: Any) -> float:
     """Where the determinant changes its sign within a step, by bisection: it may be anything but smooth there."""
     low, high = np.array([course.t_old]), np.array([course.t])
     sign = np.sign(determinant(equations, float(low[0]), course(low[0])))
@@ -303,7 +303,7 @@ class CauchyForm:
                 [[self._number(entry, values, shape) for entry in row] for row in system.matrix]
             )
             right = np.array([self._number(entry, values, shape) for entry in system.right])
-            solved = _solved(np.moveaxis(matrix, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1))
+            solved = _solve_systems(np.moveaxis(matrix, (0, 1), (-2, -1)), np.moveaxis(right, 0, -1))
             for i, letter in enumerate(system.unknowns):
                 values[letter] = solved[..., i]
                 found.append(solved[..., i])
@@ -343,7 +343,7 @@ class CauchyForm:
         return np.broadcast_to(total.value(np, values.__getitem__), shape).astype(np.float64)
 
 
-def _solved(matrix: Array, right: Array) -> Array:
+def _solve_systems(matrix: Array, right: Array) -> Array:
     """Solutions of many systems; NaN where one is singular."""
     with np.errstate(all="ignore"):
         try:
@@ -351,7 +351,7 @@ def _solved(matrix: Array, right: Array) -> Array:
         except np.linalg.LinAlgError:
             if matrix.ndim == 2:
                 return np.full(right.shape, np.nan)
-            flat = [_solved(a, b) for a, b in zip(matrix, right, strict=True)]
+            flat = [_solve_systems(a, b) for a, b in zip(matrix, right, strict=True)]
             return np.stack(flat)
 
 
@@ -371,7 +371,7 @@ def form_of(made: Ready) -> CauchyForm:
             _("the normal form is integrated in the plane, not on the sphere"),
             _("compute the motion: centrode run; equations in symbols: centrode equations"),
         )
-    board, drafts = laid(made)
+    board, drafts = assemble_chains(made)
     letters = board.alphabet
     systems = tuple(
         system_of(
@@ -410,7 +410,7 @@ STRIDE = 0.01
 
 
 @dataclass(frozen=True)
-class IntegratedCourse:
+class IntegratedMotion:
     """Rows of an integrated motion.
 
     `angles` and `spins` (n, links), `points` and `velocities` (n, points, 2), `slides` and `slips` (n, guides);
@@ -425,11 +425,13 @@ class IntegratedCourse:
     slips: Array
 
 
-def course_of(prepared: Ready, closed: xr.Dataset, form: CauchyForm, found: Trajectory) -> IntegratedCourse:
+def motion_of_solution(
+    prepared: Ready, closed: xr.Dataset, form: CauchyForm, found: CauchySolution
+) -> IntegratedMotion:
     """Everything a state tells; names and their order are those of the motion in closed form."""
     times = closed["time"].to_numpy()
     angles, spins = (
-        _turning(prepared.mechanism, form, columns, closed[name].to_numpy())
+        _link_angles(prepared.mechanism, form, columns, closed[name].to_numpy())
         for name, columns in (("angle", found.state), ("angular_velocity", found.rates))
     )
     names = [str(name) for name in closed["point"].to_numpy()]
@@ -439,7 +441,7 @@ def course_of(prepared: Ready, closed: xr.Dataset, form: CauchyForm, found: Traj
     if reached.any():
         points[reached] = places(times[reached], found.state[reached])
         rates = found.rates[reached]
-        step = STRIDE / _pace(prepared, form, rates)
+        step = STRIDE / _time_scale(prepared, form, rates)
         velocities[reached] = _speeds(places, times[reached], found.state[reached], rates, step)
     seen = _Seen(prepared.mechanism, prepared.kinematics.numbers, names, angles, spins, points, velocities)
     slides, slips = np.full((2, len(times), len(prepared.mechanism.guides)), np.nan)
@@ -449,10 +451,10 @@ def course_of(prepared: Ready, closed: xr.Dataset, form: CauchyForm, found: Traj
             slides[:, column], slips[:, column] = found.state[:, which], found.rates[:, which]
         else:
             slides[:, column], slips[:, column] = seen.along(guide.id, guide.point)
-    return IntegratedCourse(angles, spins, points, velocities, slides, slips)
+    return IntegratedMotion(angles, spins, points, velocities, slides, slips)
 
 
-def _turning(mechanism: Mechanism, form: CauchyForm, columns: Array, closed: Array) -> Array:
+def _link_angles(mechanism: Mechanism, form: CauchyForm, columns: Array, closed: Array) -> Array:
     """Angles of all links, or their rates.
 
     What is no unknown turns against another body as its drive says, or not at all: that difference is taken from the
@@ -499,7 +501,7 @@ def _places(form: CauchyForm, names: list[str], numbers: Dimensions) -> Places:
     return places
 
 
-def _pace(prepared: Ready, form: CauchyForm, rates: Array) -> Array:
+def _time_scale(prepared: Ready, form: CauchyForm, rates: Array) -> Array:
     """How fast the mechanism moves at rows of rates [rad/s, and parts of the greatest length]: (n,).
 
     A law of time may rest and yet turn within a second, so that with one a second is the longest time.
@@ -542,10 +544,10 @@ class _Seen:
             return (at - through) @ direction, velocity @ direction
         link = self.mechanism.link_names.index(body)
         turn, spin = self.angles[:, link], self.spins[:, link]
-        axis, across = _turned(turn, direction), _turned(turn, np.array([-direction[1], direction[0]]))
+        axis, across = _rotate(turn, direction), _rotate(turn, np.array([-direction[1], direction[0]]))
         pole, local = next(iter(self.numbers.local[body].items()))
         start, start_velocity = self._point(pole)
-        arm = _turned(turn, through - np.array(local))
+        arm = _rotate(turn, through - np.array(local))
         away = at - start - arm
         away_velocity = velocity - start_velocity - spin[:, None] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
         slide = np.sum(away * axis, axis=1)
@@ -556,7 +558,7 @@ class _Seen:
         return self.points[:, column], self.velocities[:, column]
 
 
-def _turned(angles: Array, vector: Array) -> Array:
+def _rotate(angles: Array, vector: Array) -> Array:
     """A vector turned by angles: (n, 2)."""
     cosine, sine = np.cos(angles), np.sin(angles)
     return np.stack([cosine * vector[0] - sine * vector[1], sine * vector[0] + cosine * vector[1]], axis=1)
@@ -604,7 +606,7 @@ def integrate(
     prepared = ready(mechanism)
     form = form_of(prepared)
     start = prepared.kinematics.path.initial if prepared.parameter.is_uniform else 0.0
-    solved = solve(prepared, asked_span(prepared, steps + 1, start, stop))
+    solved = solve(prepared, requested_grid(prepared, steps + 1, start, stop))
     scaled = Scaled(form, float(prepared.kinematics.numbers.scale))
     times = solved.span.time
     if method == "rk4":
@@ -619,14 +621,14 @@ def integrate(
 
 def _check(method: object, steps: object, tolerance: object) -> None:
     if method not in METHODS:
-        what = _("there is no method {name}").format(name=shown(method))
+        what = _("there is no method {name}").format(name=value_text(method))
         raise InputError("method", what, nearest(str(method), METHODS))
     if isinstance(steps, bool) or not isinstance(steps, int) or not 1 <= steps <= MOST_STEPS:
-        what = _("{steps} steps were asked for").format(steps=shown(steps))
+        what = _("{steps} steps were asked for").format(steps=value_text(steps))
         raise InputError("steps", what, _("ask for 1 to {most}").format(most=MOST_STEPS))
     low, high = TOLERANCES
     if isinstance(tolerance, bool) or not isinstance(tolerance, int | float) or not low <= tolerance <= high:
-        what = _("{value} is no tolerance").format(value=shown(tolerance))
+        what = _("{value} is no tolerance").format(value=value_text(tolerance))
         raise InputError("tolerance", what, _("ask for {low:g} to {high:g}").format(low=low, high=high))
 
 
@@ -665,13 +667,13 @@ def _dataset(
     solved: Solved,
     form: CauchyForm,
     scaled: Scaled,
-    found: Trajectory,
+    found: CauchySolution,
     told: Mapping[str, Any],
 ) -> xr.Dataset:
     closed = dataset_of(solved)
     times = solved.span.time
     status = _status(found, times)
-    course = course_of(prepared, closed, form, found)
+    course = motion_of_solution(prepared, closed, form, found)
     drift = np.full((len(status), len(form.constraint_names)), np.nan)
     rows = status == Status.OK
     drift[rows] = scaled.constraints(times[rows], found.state[rows])
@@ -679,15 +681,15 @@ def _dataset(
     apart = np.linalg.norm(course.points - closed["position"].to_numpy(), axis=-1)
     judged = judgements_of(solved, ())["status"]
     variables = {
-        "angle": named("angle", ("sample", "link"), course.angles),
-        "angular_velocity": named("angular_velocity", ("sample", "link"), course.spins),
-        "position": named("position", ("sample", "point", "axis"), course.points),
-        "velocity": named("velocity", ("sample", "point", "axis"), course.velocities),
-        "slide": named("slide", ("sample", "guide"), course.slides),
-        "slide_velocity": named("slide_velocity", ("sample", "guide"), course.slips),
-        "drift": named("drift", ("sample", "constraint"), drift),
-        "angle_difference": named("angle_difference", ("sample", "link"), off),
-        "position_difference": named("position_difference", ("sample", "point"), apart),
+        "angle": vocabulary_variable("angle", ("sample", "link"), course.angles),
+        "angular_velocity": vocabulary_variable("angular_velocity", ("sample", "link"), course.spins),
+        "position": vocabulary_variable("position", ("sample", "point", "axis"), course.points),
+        "velocity": vocabulary_variable("velocity", ("sample", "point", "axis"), course.velocities),
+        "slide": vocabulary_variable("slide", ("sample", "guide"), course.slides),
+        "slide_velocity": vocabulary_variable("slide_velocity", ("sample", "guide"), course.slips),
+        "drift": vocabulary_variable("drift", ("sample", "constraint"), drift),
+        "angle_difference": vocabulary_variable("angle_difference", ("sample", "link"), off),
+        "position_difference": vocabulary_variable("position_difference", ("sample", "point"), apart),
         "status": (judged[0], status, judged[2]),
         **{name: closed[name] for name in ("event_value", "event_kind", "event_group")},
     }
@@ -709,7 +711,7 @@ def _or_nan(time: float | None) -> float:
     return float("nan") if time is None else time
 
 
-def _status(found: Trajectory, times: Array) -> npt.NDArray[np.int8]:
+def _status(found: CauchySolution, times: Array) -> npt.NDArray[np.int8]:
     """Ok where there is a state; behind a stop open, from a row that is lost on unconverged."""
     status = np.where(np.isfinite(found.state).all(axis=1), Status.OK, Status.OPEN).astype(np.int8)
     forward = np.sign(times[-1] - times[0])

@@ -10,7 +10,7 @@ from itertools import combinations
 from typing import Any, NamedTuple, TypeAlias
 
 from centrode.equations.spelling import SymbolFormula, formula_of
-from centrode.equations.symbols import ZERO, Angle, Letter, Sum, SumTerm, expression, matrix, merged
+from centrode.equations.symbols import ZERO, Angle, Letter, Sum, SumTerm, expression, matrix, merge_waves
 
 Row: TypeAlias = tuple[Sum, ...]
 
@@ -61,9 +61,9 @@ class LinearSystem:
         if under is None or numerators is None or not under.number:
             return None
         if not under.single:
-            return tuple(formula_of(one.total.divided(SumTerm(((name, 1),)))) for one in numerators)
+            return tuple(formula_of(one.total.divide(SumTerm(((name, 1),)))) for one in numerators)
         factor = 1 / under_number(under)
-        return tuple(formula_of(one.total.divided(under.product).scaled(factor)) for one in numerators)
+        return tuple(formula_of(one.total.divide(under.product).scale(factor)) for one in numerators)
 
 
 def under_number(formula: SymbolFormula) -> Fraction:
@@ -80,11 +80,11 @@ def system_of(
     """
     matrix, right = [], []
     for equation in residual_rates:
-        row = tuple(merged(equation.slope(x)) for x in unknowns)
+        row = tuple(merge_waves(equation.slope(x)) for x in unknowns)
         rest = equation
         for x, entry in zip(unknowns, row, strict=True):
             rest = rest - entry * Sum.letter(x)
-        rest = -merged(rest)
+        rest = -merge_waves(rest)
         first = next((entry for entry in row if entry), Sum({}))
         if all(number < 0 for number in first.terms.values()) and first:
             row, rest = tuple(-entry for entry in row), -rest
@@ -110,7 +110,7 @@ def _minor(
         return Sum.number(1)
     if len(rows) == 2:
         (a, b), (i, j) = rows, columns
-        return merged(matrix[a][i] * matrix[b][j] - matrix[a][j] * matrix[b][i])
+        return merge_waves(matrix[a][i] * matrix[b][j] - matrix[a][j] * matrix[b][i])
     for line in rows:
         filled = [column for column in columns if matrix[line][column]]
         if len(filled) <= 1:
@@ -147,7 +147,7 @@ def _along(
             tuple(c for c in columns if c not in chosen),
         )
         shift = sum(rows.index(r) for r in lines) + sum(columns.index(c) for c in chosen)
-        total += (small * rest).scaled(-1 if shift % 2 else 1)
+        total += (small * rest).scale(-1 if shift % 2 else 1)
     return total
 
 
@@ -162,11 +162,11 @@ class Place(NamedTuple):
 
     def plus(self, other: Place, factor: int = 1) -> Place:
         """The vector and `factor` times the other."""
-        return Place(self.x + other.x.scaled(factor), self.y + other.y.scaled(factor))
+        return Place(self.x + other.x.scale(factor), self.y + other.y.scale(factor))
 
     def along(self, angle: Angle) -> Sum:
         """Component in a direction."""
-        return merged(Sum.wave("cos", angle) * self.x + Sum.wave("sin", angle) * self.y)
+        return merge_waves(Sum.wave("cos", angle) * self.x + Sum.wave("sin", angle) * self.y)
 
     def across(self, angle: Angle) -> Sum:
         """Component to the left of a direction."""

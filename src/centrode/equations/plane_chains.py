@@ -158,7 +158,7 @@ def give_angles(board: SymbolTable, ties: list[Tie], draft: Draft, links: Sequen
         base, link = _base(tie), tie.link
         if link in board.angles:
             base, link = link, base
-        board.angles[link] = _tied(board, tie, link, draft)
+        board.angles[link] = _angle_of_tie(board, tie, link, draft)
         waiting.remove(link)
 
 
@@ -171,7 +171,7 @@ def _reaches(board: SymbolTable, tie: Tie, waiting: Sequence[str]) -> bool:
     return any(one in waiting and other in board.angles for one, other in (ends, ends[::-1]))
 
 
-def _tied(board: SymbolTable, tie: Tie, link: str, draft: Draft) -> Angle:
+def _angle_of_tie(board: SymbolTable, tie: Tie, link: str, draft: Draft) -> Angle:
     base = _base(tie)
     if isinstance(tie, AngleDrive):
         if base == FRAME:
@@ -352,7 +352,10 @@ def shorten(board: SymbolTable) -> None:
 
 def _ways(board: SymbolTable) -> dict[str, tuple[str, str] | None]:
     """The last link of the shortest chain to a point and where it begins; None where the chain is as it was."""
-    cost = {name: _moving(board, at.x) + _moving(board, at.y) for name, at in board.points.items()}
+    cost = {
+        name: _count_moving_terms(board, at.x) + _count_moving_terms(board, at.y)
+        for name, at in board.points.items()
+    }
     ways: dict[str, tuple[str, str] | None] = dict.fromkeys(cost)
     links = [(link, list(board.local(link))) for link in board.order if link in board.placed]
     waiting = [(far, name) for name, far in cost.items()]
@@ -369,6 +372,6 @@ def _ways(board: SymbolTable) -> dict[str, tuple[str, str] | None]:
     return ways
 
 
-def _moving(board: SymbolTable, total: Sum) -> int:
+def _count_moving_terms(board: SymbolTable, total: Sum) -> int:
     """Number of terms that move."""
     return sum(bool(Sum({term: 1}).letters & board.alphabet.rates.keys()) for term in total.terms)

@@ -11,7 +11,7 @@ from functools import cached_property
 from math import gcd, lcm
 from typing import Any, Protocol
 
-from centrode.equations.symbols import Coefficient, Letter, Parts, Sum, SumTerm, Wave, expression, merged
+from centrode.equations.symbols import Coefficient, Letter, Parts, Sum, SumTerm, Wave, expression, merge_waves
 
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "epsilon": "ε", "theta": "θ", "kappa": "κ", "rho": "ρ",
@@ -51,7 +51,7 @@ def parts_of(name: str) -> tuple[str, str, str]:
     return base, ", ".join(part for part in (number, below) if part), dots
 
 
-class Spelling:
+class FormulaSpelling:
     """How the parts of a formula are written; other spellings change what they have to."""
 
     minus = "-"
@@ -138,7 +138,7 @@ def order_of(term: SumTerm) -> tuple[object, ...]:
     return (bool(waves), [parts for parts, _kind in waves], term.letters, waves)
 
 
-def ordered(total: Sum) -> list[SumTerm]:
+def order_terms(total: Sum) -> list[SumTerm]:
     """Terms in the order in which they are written; those without angles begin with a positive one."""
     order = sorted(total.terms, key=order_of)
     if not any(term.waves for term in order):
@@ -146,10 +146,10 @@ def ordered(total: Sum) -> list[SumTerm]:
     return order
 
 
-def spelled_sum(total: Sum, spelling: Spelling) -> str:
+def spelled_sum(total: Sum, spelling: FormulaSpelling) -> str:
     """A sum, each term a product or a fraction."""
     text = ""
-    for term in ordered(total):
+    for term in order_terms(total):
         number = total.terms[term]
         sign = ("- " if number < 0 else "+ ") if text else ("-" if number < 0 else "")
         text += (" " if text else "") + sign.replace("-", spelling.minus)
@@ -157,8 +157,8 @@ def spelled_sum(total: Sum, spelling: Spelling) -> str:
     return text or spelling.number(0)
 
 
-def spelled(
-    formula: Factored, spelling: Spelling, differences_first: bool = False, turned: bool = False
+def spell_formula(
+    formula: Factored, spelling: FormulaSpelling, differences_first: bool = False, turned: bool = False
 ) -> str:
     """A formula.
 
@@ -188,7 +188,7 @@ def _turnable(formula: Factored) -> Wave | None:
 class _Product:
     """Writes products; the wave `turned` with the opposite sign of its angle."""
 
-    spelling: Spelling
+    spelling: FormulaSpelling
     differences_first: bool = False
     turned: Wave | None = None
 
@@ -274,18 +274,18 @@ class SymbolFormula:
             else expression(Sum({}))
         )
 
-    def renamed(self, names: Mapping[Letter, Letter]) -> SymbolFormula:
+    def rename_letters(self, names: Mapping[Letter, Letter]) -> SymbolFormula:
         """The same with letters written otherwise."""
-        return formula_of(self.total.renamed(names))
+        return formula_of(self.total.rename_letters(names))
 
     def __str__(self) -> str:
-        return spelled(self, Spelling())
+        return spell_formula(self, FormulaSpelling())
 
 
 def formula_of(total: Sum) -> SymbolFormula:
     """The textbook form of a sum: over a common denominator, pairs of waves taken together, factors in front."""
     whole, shared = _apart(total)
-    taken, again = _apart(merged(whole))
+    taken, again = _apart(merge_waves(whole))
     number, rest = _number(taken)
     return SymbolFormula(number, shared.times(again), rest)
 
@@ -301,7 +301,7 @@ def _apart(total: Sum) -> tuple[Sum, SumTerm]:
         tuple(sorted(_least(letters).items())),
         tuple(sorted(_least(waves).items())),
     )
-    return total.divided(shared), shared
+    return total.divide(shared), shared
 
 
 def _least(powers: list[dict[Any, int]]) -> dict[Any, int]:
@@ -316,8 +316,8 @@ def _number(total: Sum) -> tuple[Coefficient, Sum]:
         return 0, Sum.number(1)
     numbers = [Fraction(x) for x in total.terms.values()]
     size = Fraction(gcd(*(x.numerator for x in numbers)), lcm(*(x.denominator for x in numbers)))
-    first = ordered(total)[0]
+    first = order_terms(total)[0]
     number: Coefficient = size if total.terms[first] > 0 else -size
     if number.denominator == 1:
         number = int(number)
-    return number, total.scaled(1 / Fraction(number))
+    return number, total.scale(1 / Fraction(number))

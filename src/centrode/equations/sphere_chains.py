@@ -15,9 +15,19 @@ import numpy.typing as npt
 
 from centrode.equations.linear import Condition, Draft
 from centrode.equations.symbol_table import Lettering
-from centrode.equations.symbols import BEARING, ROUNDING, SIMPLE, TURN, ZERO, Angle, Sum, merged, quarters_of
+from centrode.equations.symbols import (
+    BEARING,
+    ROUNDING,
+    SIMPLE,
+    TURN,
+    ZERO,
+    Angle,
+    Sum,
+    merge_waves,
+    quarters_of,
+)
 from centrode.errors import InputError
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.model.values import makes_arc, unit_vector
 from centrode.structure.constraints import FRAME
@@ -36,7 +46,7 @@ class SpherePlace(NamedTuple):
 
     def dot(self, other: SpherePlace) -> Sum:
         """Cosine of the arc to another place."""
-        return merged(self.x * other.x + self.y * other.y + self.z * other.z)
+        return merge_waves(self.x * other.x + self.y * other.y + self.z * other.z)
 
 
 class Axes(NamedTuple):
@@ -51,29 +61,31 @@ class Axes(NamedTuple):
         cosine, sine = Sum.wave("cos", angle), Sum.wave("sin", angle)
         return Axes(
             self.at,
-            _mixed(cosine, self.along, sine, self.left),
-            _mixed(-sine, self.along, cosine, self.left),
+            _combine_places(cosine, self.along, sine, self.left),
+            _combine_places(-sine, self.along, cosine, self.left),
         )
 
-    def moved(self, arc: Angle) -> Axes:
+    def move(self, arc: Angle) -> Axes:
         """Moved on along the arc."""
         cosine, sine = Sum.wave("cos", arc), Sum.wave("sin", arc)
         return Axes(
-            _mixed(cosine, self.at, sine, self.along), _mixed(-sine, self.at, cosine, self.along), self.left
+            _combine_places(cosine, self.at, sine, self.along),
+            _combine_places(-sine, self.at, cosine, self.along),
+            self.left,
         )
 
     def leaning(self, angle: Angle, side: int) -> Axes:
         """Directed to where it came from, then turned to the side by a right angle less `angle`."""
-        cosine, sine = Sum.wave("cos", angle).scaled(side), Sum.wave("sin", angle)
+        cosine, sine = Sum.wave("cos", angle).scale(side), Sum.wave("sin", angle)
         return Axes(
             self.at,
-            _mixed(-sine, self.along, cosine, self.left),
-            _mixed(-cosine, self.along, -sine, self.left),
+            _combine_places(-sine, self.along, cosine, self.left),
+            _combine_places(-cosine, self.along, -sine, self.left),
         )
 
 
-def _mixed(a: Sum, one: SpherePlace, b: Sum, other: SpherePlace) -> SpherePlace:
-    return SpherePlace(*(merged(a * x + b * y) for x, y in zip(one, other, strict=True)))
+def _combine_places(a: Sum, one: SpherePlace, b: Sum, other: SpherePlace) -> SpherePlace:
+    return SpherePlace(*(merge_waves(a * x + b * y) for x, y in zip(one, other, strict=True)))
 
 
 NOUGHT, UNIT = ZERO, Sum.number(1)
@@ -237,7 +249,7 @@ class SphereBoard(Lettering):
             return self.axes[body]
         arc = self.arc(body, first, point)
         corner = self.between(first, second, point, (inside[first], inside[second], inside[point]))
-        return self.axes[body].turned(corner).moved(arc)
+        return self.axes[body].turned(corner).move(arc)
 
     def towards(self, body: str, pivot: str, end: str | None) -> tuple[Axes, str]:
         """Axes in a point of a placed body along the arc to another of its points, and the name of that one.
@@ -290,7 +302,7 @@ def laid_on_sphere(ready: Ready) -> tuple[SphereBoard, tuple[Draft, ...]]:
     board = SphereBoard(ready, _pivots(ready))
     groups: list[Draft] = []
     for number, group in enumerate(ready.structure.groups):
-        groups += _laid(board, group, number)
+        groups += _assemble_group(board, group, number)
     return board, tuple(groups)
 
 
@@ -310,7 +322,7 @@ def _pivots(ready: Ready) -> list[str]:
     return fixed or list(ready.kinematics.numbers.frame)[:1]
 
 
-def _laid(board: SphereBoard, group: Group, number: int) -> list[Draft]:
+def _assemble_group(board: SphereBoard, group: Group, number: int) -> list[Draft]:
     if isinstance(group, TurnedLink) and isinstance(group.turning, Turning) and group.turning.drive:
         _drive(board, group.link, group.turning)
         return []
@@ -341,12 +353,12 @@ def _dyad(board: SphereBoard, group: Meet, number: int) -> list[Draft]:
     held = board.arc(rod.link, rod.centre, point)
     value = _angle(carrier.at, carrier.towards, board.at(point))
     if carrier.link is not None:
-        value = _started(board, carrier.link, value)
+        value = _initial_angle(board, carrier.link, value)
         turn = board.turn(carrier.link, (carrier.centre, carrier.end, value), draft, None)
     else:
         turn = board.bearing(carrier.guide or "", (carrier.centre, carrier.end, value), draft)
     out = carrier.axes.turned(turn)
-    there = out.moved(carrier.arc)
+    there = out.move(carrier.arc)
     if carrier.link is not None:
         board.place(carrier.link, carrier.centre, point, out)
     board.points[point] = there.at
@@ -354,12 +366,12 @@ def _dyad(board: SphereBoard, group: Meet, number: int) -> list[Draft]:
     far = board.points[rod.centre]
     left = Sum.wave("cos", held)
     draft.conditions.append(Condition(f"cos {rod.centre}{point}", left, left, far.dot(there.at)))
-    leaning, angle, side = _leaning(board, carrier, rod, point, held)
+    leaning, angle, side = _leaning_angle(board, carrier, rod, point, held)
     board.place(rod.link, point, rod.centre, there.leaning(angle, side))
     return [draft, leaning]
 
 
-def _leaning(
+def _leaning_angle(
     board: SphereBoard, carrier: Carrier, rod: Rod, point: str, held: Angle
 ) -> tuple[Draft, Angle, int]:
     """The angle of the holding link to the path of the point, by the law of cosines; and the side it is on."""
@@ -412,7 +424,7 @@ def _angle(pivot: Vector, start: Vector, end: Vector) -> float:
     return float(np.arctan2(pivot @ np.cross(first, second), first @ second))
 
 
-def _started(board: SphereBoard, link: str, value: float) -> float:
+def _initial_angle(board: SphereBoard, link: str, value: float) -> float:
     """The angle with the turns that the motion gives it."""
     known = board.ready.assembled.angles.get(link)
     if known is None:

@@ -18,10 +18,10 @@ from centrode.equations.symbols import (
     Letter,
     Sum,
     Vector,
-    joined,
+    join_points,
 )
 from centrode.geometry.plane import along
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.structure.constraints import FRAME, Contact, DisplacementDrive, DistanceDrive, PointOnGuide
 from centrode.structure.gearing import Straight
 
@@ -169,7 +169,7 @@ class SymbolTable(Lettering):
         self.placed: set[str] = {FRAME}
         self.guides = lines_of(ready)
         for name, at in self.numbers.frame.items():
-            self.points[name] = self.full[name] = self._fixed(name, (float(at[0]), float(at[1])))
+            self.points[name] = self.full[name] = self._fixed_place(name, (float(at[0]), float(at[1])))
 
     # numbers of the initial position
 
@@ -227,7 +227,9 @@ class SymbolTable(Lettering):
         """Length and direction of a cylinder, or of the radius to a rolling wheel's centre."""
         first = self.at(rod.first) if isinstance(rod.first, str) else self.world(*rod.first)
         way = self.at(rod.second) - first
-        index = rod.name if rod.drive is None else joined(*self.mechanism.drive(rod.drive).distance or ())
+        index = (
+            rod.name if rod.drive is None else join_points(*self.mechanism.drive(rod.drive).distance or ())
+        )
         rank = BEARING + len(self.alphabet.meanings)
         letter = self.alphabet.moving(
             rank,
@@ -260,7 +262,7 @@ class SymbolTable(Lettering):
         (ax, ay), (bx, by) = local[first], local[second]
         number = self.order[link]
         main = names[:2] == [first, second]
-        index = joined(first, second)
+        index = join_points(first, second)
         size = self.alphabet.size(
             LENGTH + number, f"l{number}" if main else f"l_{index}", "length", (link, first, second),
             math.hypot(bx - ax, by - ay),
@@ -279,17 +281,17 @@ class SymbolTable(Lettering):
             if at == local:
                 return places[name]
         if body == FRAME:
-            return self._fixed(label, local)
+            return self._fixed_place(label, local)
         first = next(iter(own))
         x, y = local[0] - own[first][0], local[1] - own[first][1]
-        index = joined(first, label)
+        index = join_points(first, label)
         size = self.alphabet.size(
             LENGTH + self.order[body], f"l_{index}", "length", (body, first, label), math.hypot(x, y)
         )
         turn = self.alphabet.angle(f"alpha_{index}", "angle in link", (body, first, label), (x, y))
         return places[first].plus(polar(size, self.angles[body].plus(turn)))
 
-    def _fixed(self, label: str, at: Vector) -> Place:
+    def _fixed_place(self, label: str, at: Vector) -> Place:
         return Place(
             *(
                 self.alphabet.size(PLACE, f"{axis}_{label}", "coordinate", (label, axis), value)

@@ -101,11 +101,12 @@ class SumTerm(NamedTuple):
     def times(self, other: SumTerm, power: int = 1) -> SumTerm:
         """The product with `power` of another term."""
         return SumTerm(
-            _multiplied(self.letters, other.letters, power), _multiplied(self.waves, other.waves, power)
+            _multiply_terms(self.letters, other.letters, power),
+            _multiply_terms(self.waves, other.waves, power),
         )
 
 
-def _multiplied(one: tuple[Any, ...], other: tuple[Any, ...], power: int) -> tuple[Any, ...]:
+def _multiply_terms(one: tuple[Any, ...], other: tuple[Any, ...], power: int) -> tuple[Any, ...]:
     if not other:
         return one
     total = dict(one)
@@ -124,7 +125,7 @@ class Sum:
     terms: Mapping[SumTerm, Coefficient]
 
     @classmethod
-    def collected(cls, terms: Iterable[tuple[SumTerm, Coefficient]]) -> Sum:
+    def collect(cls, terms: Iterable[tuple[SumTerm, Coefficient]]) -> Sum:
         """The sum of terms, equal ones taken together."""
         total: dict[SumTerm, Coefficient] = {}
         for term, number in terms:
@@ -151,24 +152,24 @@ class Sum:
         return bool(self.terms)
 
     def __add__(self, other: Sum) -> Sum:
-        return Sum.collected([*self.terms.items(), *other.terms.items()])
+        return Sum.collect([*self.terms.items(), *other.terms.items()])
 
     def __sub__(self, other: Sum) -> Sum:
         return self + -other
 
     def __neg__(self) -> Sum:
-        return self.scaled(-1)
+        return self.scale(-1)
 
     def __mul__(self, other: Sum) -> Sum:
-        return Sum.collected(
+        return Sum.collect(
             (one.times(two), a * b) for one, a in self.terms.items() for two, b in other.terms.items()
         )
 
-    def scaled(self, number: Coefficient) -> Sum:
+    def scale(self, number: Coefficient) -> Sum:
         """Every term times a number."""
         return Sum({term: value * number for term, value in self.terms.items()} if number else {})
 
-    def divided(self, term: SumTerm) -> Sum:
+    def divide(self, term: SumTerm) -> Sum:
         """Every term over a product."""
         return Sum({own.times(term, -1): number for own, number in self.terms.items()})
 
@@ -194,7 +195,7 @@ class Sum:
                     sign = 1 if one.kind == "sin" else -1
                     changed = SumTerm((), ((one.partner, 1),)).times(SumTerm((), ((one, 1),)), -1)
                     found.append((term.times(changed), number * exponent * count * sign))
-        return Sum.collected(found)
+        return Sum.collect(found)
 
     def rate(self, rates: Mapping[Letter, Sum]) -> Sum:
         """Derivative by time, the rates of those letters that move being given."""
@@ -203,7 +204,7 @@ class Sum:
             total += self.slope(letter) * rates[letter]
         return total
 
-    def replaced(self, values: Mapping[Letter, Sum]) -> Sum:
+    def replace_letters(self, values: Mapping[Letter, Sum]) -> Sum:
         """The sum with letters outside of angles replaced; they have positive exponents."""
         total = Sum({})
         for term, number in self.terms.items():
@@ -215,13 +216,13 @@ class Sum:
             total += part
         return total
 
-    def renamed(self, names: Mapping[Letter, Letter]) -> Sum:
+    def rename_letters(self, names: Mapping[Letter, Letter]) -> Sum:
         """The sum with letters written otherwise, also in angles; the new ones have the ranks of the old."""
 
         def other(one: Wave) -> Wave:
             return Wave(tuple((names.get(letter, letter), count) for letter, count in one.parts), one.kind)
 
-        return Sum.collected(
+        return Sum.collect(
             (
                 SumTerm(
                     tuple(sorted((names.get(x, x), power) for x, power in term.letters)),
@@ -265,7 +266,7 @@ ZERO = Sum({})
 # brings them to the form of the textbooks.
 
 
-def merged(total: Sum) -> Sum:
+def merge_waves(total: Sum) -> Sum:
     """The sum with every pair of terms taken together that makes one wave of two."""
     terms = dict(total.terms)
     waiting = sorted(terms, key=_order, reverse=True)
@@ -312,10 +313,10 @@ def _together(one: Wave, other: Wave, same: bool) -> Sum:
     if one.kind == other.kind:  # cos a cos b + sin a sin b, or sin a sin b + cos a cos b
         if same:
             return Sum.wave("cos", a.plus(b, -1))
-        return Sum.wave("cos", a.plus(b)).scaled(1 if one.kind == "cos" else -1)
+        return Sum.wave("cos", a.plus(b)).scale(1 if one.kind == "cos" else -1)
     if same:
         return Sum.wave("sin", a.plus(b))
-    return Sum.wave("sin", a.plus(b, -1)).scaled(1 if one.kind == "sin" else -1)
+    return Sum.wave("sin", a.plus(b, -1)).scale(1 if one.kind == "sin" else -1)
 
 
 def _pairs(term: SumTerm) -> Iterator[tuple[Wave, Wave]]:
@@ -444,7 +445,7 @@ def quarters_of(direction: Vector) -> int | None:
     return None
 
 
-def joined(first: str, second: str) -> str:
+def join_points(first: str, second: str) -> str:
     """Two points as an index: AP, or A1-P where that could be read otherwise."""
     plain = SIMPLE.fullmatch(first) and SIMPLE.fullmatch(second)
     return f"{first}{second}" if plain else f"{first}-{second}"

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from math import hypot, inf
 
 from centrode.geometry import plane
-from centrode.geometry.meeting import meet_circle_and_line, meet_circles
+from centrode.geometry.intersections import meet_circle_and_line, meet_circles
 from centrode.geometry.plane import (
     AT_REST,
-    Circle,
     Line,
-    Pose,
+    PlaneCircle,
+    PlanePose,
     Vector,
     along,
     cross,
@@ -20,9 +20,9 @@ from centrode.geometry.plane import (
     meet_lines,
     pose_with_point,
     reversed_rotor,
+    rotate_vector,
     rotor_of,
     subtract,
-    turned,
 )
 from centrode.geometry.space import Namespace, Number, Reference, Root, Row, Rows, Space
 
@@ -40,26 +40,28 @@ class Plane:
     lacks: frozenset[str] = frozenset()
     at_rest = AT_REST
 
-    def place(self, m: Namespace, pose: Pose, local: Vector) -> Vector:
+    def place(self, m: Namespace, pose: PlanePose, local: Vector) -> Vector:
         return plane.place(pose, local)
 
-    def attitude(self, pose: Pose) -> Vector:
+    def attitude(self, pose: PlanePose) -> Vector:
         return pose.rotor
 
-    def pose_of(self, m: Namespace, attitude: Sequence[Number], local: Vector, at: Vector) -> Pose:
+    def pose_of(self, m: Namespace, attitude: Sequence[Number], local: Vector, at: Vector) -> PlanePose:
         cosine, sine = attitude
-        return Pose(subtract(at, turned(local, (cosine, sine))), (cosine, sine))
+        return PlanePose(subtract(at, rotate_vector(local, (cosine, sine))), (cosine, sine))
 
     def stretch(self, attitude: Sequence[Number]) -> list[Number]:
         cosine, sine = attitude
         return [cosine * cosine + sine * sine - 1.0]
 
-    def rotor(self, m: Namespace, pose: Pose, points: Sequence[Vector], towards: Sequence[Vector]) -> Vector:
+    def rotor(
+        self, m: Namespace, pose: PlanePose, points: Sequence[Vector], towards: Sequence[Vector]
+    ) -> Vector:
         return pose.rotor
 
     def pose_by_two_points(
         self, m: Namespace, first: Vector, second: Vector, at_first: Vector, at_second: Vector
-    ) -> Pose:
+    ) -> PlanePose:
         return plane.pose_by_two_points(first, second, at_first, at_second)
 
     def pose_at_angle(
@@ -69,44 +71,46 @@ class Plane:
         points: Sequence[Vector],
         at: Sequence[Vector | None],
         towards: Sequence[Vector],
-    ) -> Pose | None:
+    ) -> PlanePose | None:
         for local, place in zip(points, at, strict=True):
             if place is not None:
                 return pose_with_point(local, place, rotor_of(m, angle))
         return None
 
     def turned_pose(
-        self, m: Namespace, base: Pose, rotor: Vector, pivot: Vector, at: Vector, reference: Reference
-    ) -> Pose:
-        return pose_with_point(pivot, at, turned(base.rotor, rotor))
+        self, m: Namespace, base: PlanePose, rotor: Vector, pivot: Vector, at: Vector, reference: Reference
+    ) -> PlanePose:
+        return pose_with_point(pivot, at, rotate_vector(base.rotor, rotor))
 
-    def aim(self, m: Namespace, pivot: Vector, at: Vector, curve: Curve, target: Vector, root: Root) -> Pose:
+    def aim(
+        self, m: Namespace, pivot: Vector, at: Vector, curve: Curve, target: Vector, root: Root
+    ) -> PlanePose:
         through, direction = curve
         return plane.aim(pivot, at, through, direction, target, root)
 
-    def circle(self, m: Namespace, centre: Vector, first: Vector, second: Vector) -> Circle:
+    def circle(self, m: Namespace, centre: Vector, first: Vector, second: Vector) -> PlaneCircle:
         # the sign of a two-point link's length depends on which end is known; circles do not feel it
-        return Circle(centre, length_of(m, subtract(second, first)))
+        return PlaneCircle(centre, length_of(m, subtract(second, first)))
 
-    def rail(self, m: Namespace, pose: Pose, curve: Curve) -> Line:
+    def rail(self, m: Namespace, pose: PlanePose, curve: Curve) -> Line:
         return Line(*_line(pose, curve))
 
-    def stop(self, m: Namespace, pose: Pose, curve: Curve, displacement: Number) -> Line:
+    def stop(self, m: Namespace, pose: PlanePose, curve: Curve, displacement: Number) -> Line:
         through, direction = _line(pose, curve)
         return Line(along(through, direction, displacement), (-direction[1], direction[0]))
 
-    def meet(self, one: Circle | Line, other: Circle | Line, root: Root, divisor: Root) -> Vector:
+    def meet(self, one: PlaneCircle | Line, other: PlaneCircle | Line, root: Root, divisor: Root) -> Vector:
         if isinstance(one, Line):
             assert isinstance(other, Line)  # circles stand first
             return meet_lines(one.through, one.direction, other.through, other.direction, divisor)
-        if isinstance(other, Circle):
+        if isinstance(other, PlaneCircle):
             return meet_circles(one, other, root)
         return meet_circle_and_line(one, other, root)
 
     def lack(
-        self, m: Namespace, one: Circle | Line, other: Circle | Line
+        self, m: Namespace, one: PlaneCircle | Line, other: PlaneCircle | Line
     ) -> tuple[float, float, float, float]:
-        assert isinstance(one, Circle)  # two lines always meet, or never
+        assert isinstance(one, PlaneCircle)  # two lines always meet, or never
         if isinstance(other, Line):
             offset = cross(other.direction, subtract(one.centre, other.through))
             return float(abs(offset) - abs(one.radius)), -inf, -inf, -inf
@@ -128,65 +132,69 @@ class Plane:
     def period(self, m: Namespace, curve: Curve) -> None:
         return None
 
-    def slide(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Number:
+    def slide(self, m: Namespace, point: Vector, pose: PlanePose, curve: Curve) -> Number:
         through, direction = _line(pose, curve)
         return dot(direction, subtract(point, through))
 
-    def in_link(self, m: Namespace, point: Vector, pose: Pose, local: Vector) -> list[Number]:
+    def in_link(self, m: Namespace, point: Vector, pose: PlanePose, local: Vector) -> list[Number]:
         return list(subtract(point, plane.place(pose, local)))
 
-    def in_link_rows(self, m: Namespace, point: Vector, pose: Pose, local: Vector) -> list[Rows]:
-        arm = turned(local, pose.rotor)
+    def in_link_rows(self, m: Namespace, point: Vector, pose: PlanePose, local: Vector) -> list[Rows]:
+        arm = rotate_vector(local, pose.rotor)
         return [((1.0, 0.0), (-1.0, 0.0, arm[1])), ((0.0, 1.0), (0.0, -1.0, -arm[0]))]
 
-    def apart(self, m: Namespace, point: Vector, pose: Pose, local: Vector) -> list[Number]:
+    def apart(self, m: Namespace, point: Vector, pose: PlanePose, local: Vector) -> list[Number]:
         return self.in_link(m, point, pose, local)
 
-    def on_guide(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Number:
+    def on_guide(self, m: Namespace, point: Vector, pose: PlanePose, curve: Curve) -> Number:
         through, direction = _line(pose, curve)
         return cross(direction, subtract(point, through))
 
-    def on_guide_row(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Rows:
-        direction, arm = turned(curve[1], pose.rotor), subtract(point, pose.origin)
+    def on_guide_row(self, m: Namespace, point: Vector, pose: PlanePose, curve: Curve) -> Rows:
+        direction, arm = rotate_vector(curve[1], pose.rotor), subtract(point, pose.origin)
         return (-direction[1], direction[0]), (direction[1], -direction[0], -dot(direction, arm))
 
-    def turn(self, m: Namespace, pose: Pose, base: Pose, rotor: Vector, reference: Reference) -> Number:
-        cosine, sine = turned(pose.rotor, reversed_rotor(turned(base.rotor, rotor)))
+    def turn(
+        self, m: Namespace, pose: PlanePose, base: PlanePose, rotor: Vector, reference: Reference
+    ) -> Number:
+        cosine, sine = rotate_vector(pose.rotor, reversed_rotor(rotate_vector(base.rotor, rotor)))
         return m.atan2(sine, cosine)
 
-    def turn_row(self, m: Namespace, pose: Pose, base: Pose, reference: Reference) -> Rows:
+    def turn_row(self, m: Namespace, pose: PlanePose, base: PlanePose, reference: Reference) -> Rows:
         return (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 
-    def slid(self, m: Namespace, point: Vector, pose: Pose, curve: Curve, displacement: Number) -> Number:
+    def slid(
+        self, m: Namespace, point: Vector, pose: PlanePose, curve: Curve, displacement: Number
+    ) -> Number:
         return self.slide(m, point, pose, curve) - displacement
 
-    def slid_row(self, m: Namespace, point: Vector, pose: Pose, curve: Curve) -> Rows:
-        direction, arm = turned(curve[1], pose.rotor), subtract(point, pose.origin)
+    def slid_row(self, m: Namespace, point: Vector, pose: PlanePose, curve: Curve) -> Rows:
+        direction, arm = rotate_vector(curve[1], pose.rotor), subtract(point, pose.origin)
         return direction, (-direction[0], -direction[1], cross(direction, arm))
 
     def moved_point(self, m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
         return plane.moved_point(m, point, by)
 
-    def moved_pose(self, m: Namespace, pose: Pose, by: Sequence[Number]) -> Pose:
+    def moved_pose(self, m: Namespace, pose: PlanePose, by: Sequence[Number]) -> PlanePose:
         return plane.moved_pose(m, pose, by)
 
     def shifts(self, m: Namespace, at: Vector, scale: Number) -> Sequence[Row]:
         return (scale, 0.0, 0.0), (0.0, scale, 0.0), (0.0, 0.0, 1.0)
 
-    def spin(self, pose: Pose, at: Vector) -> Row:
+    def spin(self, pose: PlanePose, at: Vector) -> Row:
         x, y = subtract(pose.origin, at)
         return -y, x, 1.0
 
-    def righted(self, m: Namespace, pose: Pose) -> Pose:
+    def normalise(self, m: Namespace, pose: PlanePose) -> PlanePose:
         cosine, sine = pose.rotor
         length = m.sqrt(cosine * cosine + sine * sine)
-        return Pose(pose.origin, (cosine / length, sine / length))
+        return PlanePose(pose.origin, (cosine / length, sine / length))
 
 
-def _line(pose: Pose, curve: Curve) -> Curve:
+def _line(pose: PlanePose, curve: Curve) -> Curve:
     """Point and direction of a guide's line as it lies now."""
     through, direction = curve
-    return plane.place(pose, through), turned(direction, pose.rotor)
+    return plane.place(pose, through), rotate_vector(direction, pose.rotor)
 
 
 PLANE: Space = Plane()

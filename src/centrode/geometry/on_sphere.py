@@ -7,7 +7,7 @@ from math import atan2, tau
 from typing import NamedTuple
 
 from centrode.geometry import sphere
-from centrode.geometry.meeting import meet_circles_on_sphere
+from centrode.geometry.intersections import meet_circles_on_sphere
 from centrode.geometry.space import Namespace, Number, Reference, Root, Row, Rows, Space
 from centrode.geometry.sphere import (
     AT_REST,
@@ -18,20 +18,20 @@ from centrode.geometry.sphere import (
     add,
     attitude_on,
     basis,
-    carried,
-    combined,
     dot,
+    linear_combination,
     subtract,
     tangent,
     tangent_inside,
     times,
     unit_vector,
+    vector_in_frame,
 )
 
 Curve = tuple[Coordinates, tuple[Number]]
 
 
-class Circle(NamedTuple):
+class SphereCircle(NamedTuple):
     """Locus of an unknown place: a circle about a centre, given by half its arc."""
 
     centre: Vector
@@ -50,7 +50,7 @@ class Sphere:
     at_rest = AT_REST
 
     def place(self, m: Namespace, pose: Attitude, local: Coordinates) -> Vector:
-        return carried(pose, unit_vector(m, local))
+        return vector_in_frame(pose, unit_vector(m, local))
 
     def attitude(self, pose: Attitude) -> tuple[Number, ...]:
         return (*pose.x, *pose.y, *pose.z)
@@ -72,7 +72,7 @@ class Sphere:
         first, second = points[:2]
         pivot, along = self.place(m, pose, first), tangent_inside(m, first, second)
         zero = tangent(pivot, towards[0])
-        cosine, sine = sphere.components(carried(pose, along), zero, pivot)
+        cosine, sine = sphere.components(vector_in_frame(pose, along), zero, pivot)
         # the arm's length is a dimension: a link that does not fit has no unit rotor, as in the plane
         factor = 1.0 / (sphere.length(m, along) * sphere.length(m, zero))
         return cosine * factor, sine * factor
@@ -95,7 +95,7 @@ class Sphere:
         first, second = points[:2]
         along = tangent_inside(m, first, second)
         zero = sphere.unit(m, tangent(at[0], towards[0]))
-        arm = sphere.turned(m, at[0], zero, (m.cos(angle), m.sin(angle)))
+        arm = sphere.rotate_tangent(m, at[0], zero, (m.cos(angle), m.sin(angle)))
         return attitude_on(unit_vector(m, first), along, at[0], arm, sphere.length(m, along))
 
     def turned_pose(
@@ -107,10 +107,10 @@ class Sphere:
         at: Vector,
         reference: Reference,
     ) -> Attitude:
-        first, second, base_first, base_second = sphere.given(reference)
+        first, second, base_first, base_second = sphere.require_reference(reference)
         # the arm of the reference is a dimension: so a link that does not fit is stretched, and tells
         length = sphere.length(m, tangent_inside(m, base_first, base_second))
-        towards = sphere.turned(m, at, tangent(at, self.place(m, base, base_second)), rotor)
+        towards = sphere.rotate_tangent(m, at, tangent(at, self.place(m, base, base_second)), rotor)
         along = tangent_inside(m, first, second)
         return attitude_on(unit_vector(m, first), along, at, towards, length * sphere.length(m, along))
 
@@ -122,25 +122,25 @@ class Sphere:
         at_pole = meet_circles_on_sphere(at, around_pivot, target, sphere.half(m, radius), root)
         return sphere.attitude_by_two_points(m, pivot, pole, at, at_pole)
 
-    def circle(self, m: Namespace, centre: Vector, first: Coordinates, second: Coordinates) -> Circle:
-        return Circle(centre, sphere.half_arc(m, first, second))
+    def circle(self, m: Namespace, centre: Vector, first: Coordinates, second: Coordinates) -> SphereCircle:
+        return SphereCircle(centre, sphere.half_arc(m, first, second))
 
-    def rail(self, m: Namespace, pose: Attitude, curve: Curve) -> Circle:
+    def rail(self, m: Namespace, pose: Attitude, curve: Curve) -> SphereCircle:
         pole, (radius,) = curve
-        return Circle(self.place(m, pose, pole), sphere.half(m, radius))
+        return SphereCircle(self.place(m, pose, pole), sphere.half(m, radius))
 
-    def stop(self, m: Namespace, pose: Attitude, curve: Curve, displacement: Number) -> Circle:
+    def stop(self, m: Namespace, pose: Attitude, curve: Curve, displacement: Number) -> SphereCircle:
         pole, (radius,) = curve
         inside = sphere.place_on_circle(m, pole, radius, displacement / m.sin(radius))
-        return Circle(carried(pose, inside), (0.0, 1.0))
+        return SphereCircle(vector_in_frame(pose, inside), (0.0, 1.0))
 
-    def meet(self, one: Circle, other: Circle, root: Root, divisor: Root) -> Vector:
+    def meet(self, one: SphereCircle, other: SphereCircle, root: Root, divisor: Root) -> Vector:
         for locus in (one, other):
             if sphere.is_literal(locus.half[0], 0.0):
                 return locus.centre  # a stop is a place already
         return meet_circles_on_sphere(one.centre, one.half, other.centre, other.half, root)
 
-    def lack(self, m: Namespace, one: Circle, other: Circle) -> tuple[float, float, float, float]:
+    def lack(self, m: Namespace, one: SphereCircle, other: SphereCircle) -> tuple[float, float, float, float]:
         apart = float(self.distance(m, one.centre, other.centre))
         first, second = (2.0 * atan2(abs(float(half[0])), float(half[1])) for half in (one.half, other.half))
         around = first + second + apart - tau
@@ -186,7 +186,7 @@ class Sphere:
         return m.atan2(sine * rotor[0] - cosine * rotor[1], cosine * rotor[0] + sine * rotor[1])
 
     def turn_row(self, m: Namespace, pose: Attitude, base: Attitude, reference: Reference) -> Rows:
-        slope = sphere.turning(*sphere.arms(m, pose, base, reference))
+        slope = sphere.angle_gradient(*sphere.arms(m, pose, base, reference))
         return slope, times(-1.0, slope)
 
     def slid(self, m: Namespace, point: Vector, pose: Attitude, curve: Curve, displacement: Number) -> Number:
@@ -206,12 +206,12 @@ class Sphere:
 
     def moved_point(self, m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
         first, second = basis(m, point)
-        moved = add(point, combined((by[0], first), (by[1], second)))
+        moved = add(point, linear_combination((by[0], first), (by[1], second)))
         return times(1.0 / m.sqrt(dot(moved, moved)), moved)
 
     def moved_pose(self, m: Namespace, pose: Attitude, by: Sequence[Number]) -> Attitude:
         half = (0.5 * by[0], 0.5 * by[1], 0.5 * by[2])
-        x, y, z = (sphere.rotated(axis, half) for axis in pose)
+        x, y, z = (sphere.rotate_by_cayley(axis, half) for axis in pose)
         return Attitude(x, y, z)
 
     def shifts(self, m: Namespace, at: Vector, scale: Number) -> Sequence[Row]:
@@ -221,7 +221,7 @@ class Sphere:
     def spin(self, pose: Attitude, at: Vector) -> Row:
         return at
 
-    def righted(self, m: Namespace, pose: Attitude) -> Attitude:
+    def normalise(self, m: Namespace, pose: Attitude) -> Attitude:
         x = times(1.0 / m.sqrt(dot(pose.x, pose.x)), pose.x)
         across = subtract(pose.y, times(dot(x, pose.y), x))
         y = times(1.0 / m.sqrt(dot(across, across)), across)

@@ -1,6 +1,6 @@
 """Vectors, poses and meeting points in the plane, as formulas over any algebra.
 
-A vector is a pair of numbers; a rotor is a unit vector (cos, sin) and turns another vector by `turned`. A
+A vector is a pair of numbers; a rotor is a unit vector (cos, sin) and turns another vector by `rotate_vector`. A
 pose is the origin of a link's axes and their rotor. Where a formula has two answers it takes `root`, a
 function that gives the signed square root of the radicand: the sign is the branch.
 """
@@ -16,14 +16,14 @@ Vector: TypeAlias = tuple[Number, Number]
 Root: TypeAlias = Callable[[Number], Number]
 
 
-class Pose(NamedTuple):
+class PlanePose(NamedTuple):
     """Where a link is: origin of its axes and their rotor."""
 
     origin: Vector
     rotor: Vector
 
 
-class Circle(NamedTuple):
+class PlaneCircle(NamedTuple):
     """Locus of an unknown vector: a circle."""
 
     centre: Vector
@@ -37,7 +37,7 @@ class Line(NamedTuple):
     direction: Vector
 
 
-AT_REST = Pose((0.0, 0.0), (1.0, 0.0))
+AT_REST = PlanePose((0.0, 0.0), (1.0, 0.0))
 """Pose of the frame."""
 
 
@@ -71,7 +71,7 @@ def cross(a: Vector, b: Vector) -> Number:
     return a[0] * b[1] - a[1] * b[0]
 
 
-def turned(a: Vector, rotor: Vector) -> Vector:
+def rotate_vector(a: Vector, rotor: Vector) -> Vector:
     """Vector a turned by a rotor; of two rotors, the rotor of the summed angle."""
     if is_literal_zero(a[1]):
         # a link's first axis, and its origin: most vectors that are turned
@@ -94,23 +94,23 @@ def along(origin: Vector, direction: Vector, distance: Number) -> Vector:
     return origin[0] + distance * direction[0], origin[1] + distance * direction[1]
 
 
-def place(pose: Pose, local: Vector) -> Vector:
+def place(pose: PlanePose, local: Vector) -> Vector:
     """Point of a link at its local coordinates."""
-    return pose.origin if is_origin(local) else add(pose.origin, turned(local, pose.rotor))
+    return pose.origin if is_origin(local) else add(pose.origin, rotate_vector(local, pose.rotor))
 
 
-def pose_with_point(local: Vector, at: Vector, rotor: Vector) -> Pose:
+def pose_with_point(local: Vector, at: Vector, rotor: Vector) -> PlanePose:
     """Pose of a link that has the given rotor and its local point at a place."""
-    return Pose(at if is_origin(local) else subtract(at, turned(local, rotor)), rotor)
+    return PlanePose(at if is_origin(local) else subtract(at, rotate_vector(local, rotor)), rotor)
 
 
-def pose_by_two_points(first: Vector, second: Vector, at_first: Vector, at_second: Vector) -> Pose:
+def pose_by_two_points(first: Vector, second: Vector, at_first: Vector, at_second: Vector) -> PlanePose:
     """Pose of a link from the places of two of its points.
 
     The rotor is a unit vector as far as the places keep the link's own distance; the residual of a motion
     contains the second point, so a distance that does not fit shows.
     """
-    rotor = turned(_inverse(subtract(second, first)), subtract(at_second, at_first))
+    rotor = rotate_vector(_inverse(subtract(second, first)), subtract(at_second, at_first))
     return pose_with_point(first, at_first, rotor)
 
 
@@ -130,12 +130,12 @@ def moved_point(m: Namespace, point: Vector, by: Sequence[Number]) -> Vector:
     return add(point, (by[0], by[1]))
 
 
-def moved_pose(m: Namespace, pose: Pose, by: Sequence[Number]) -> Pose:
+def moved_pose(m: Namespace, pose: PlanePose, by: Sequence[Number]) -> PlanePose:
     """A pose with its origin moved by two coordinates and turned about it by an angle [rad]."""
-    return Pose(add(pose.origin, (by[0], by[1])), turned(pose.rotor, rotor_of(m, by[2])))
+    return PlanePose(add(pose.origin, (by[0], by[1])), rotate_vector(pose.rotor, rotor_of(m, by[2])))
 
 
-def radicand_of_circles(one: Circle, other: Circle) -> Number:
+def radicand_of_circles(one: PlaneCircle, other: PlaneCircle) -> Number:
     """Number whose root tells where two circles meet.
 
     It is 16 times the squared area of the triangle, kept factored (Heron), so that it changes sign exactly where
@@ -147,7 +147,7 @@ def radicand_of_circles(one: Circle, other: Circle) -> Number:
     return (total * total - squared) * (squared - difference * difference)
 
 
-def circles_meet(one: Circle, other: Circle, root: Number) -> Vector:
+def circles_meet(one: PlaneCircle, other: PlaneCircle, root: Number) -> Vector:
     """Point where two circles meet, to the left of the way from centre to centre for a positive root."""
     line = subtract(other.centre, one.centre)
     half = 0.5 / dot(line, line)
@@ -159,13 +159,13 @@ def circles_meet(one: Circle, other: Circle, root: Number) -> Vector:
     )
 
 
-def radicand_of_circle_and_line(one: Circle, other: Line) -> Number:
+def radicand_of_circle_and_line(one: PlaneCircle, other: Line) -> Number:
     """Number whose root is the way from the foot of the centre: (r - n)(r + n), n the distance of the centre."""
     distance = cross(other.direction, subtract(one.centre, other.through))
     return (one.radius - distance) * (one.radius + distance)
 
 
-def circle_meets_line(one: Circle, other: Line, root: Number) -> Vector:
+def circle_meets_line(one: PlaneCircle, other: Line, root: Number) -> Vector:
     """Point where a circle meets a line, ahead of the foot of its centre for a positive root."""
     foot = dot(other.direction, subtract(one.centre, other.through))
     return along(other.through, other.direction, foot + root)
@@ -179,7 +179,9 @@ def meet_lines(
     return along(through_1, direction_1, cross(subtract(through_2, through_1), direction_2) / sine)
 
 
-def aim(pivot: Vector, at: Vector, through: Vector, direction: Vector, target: Vector, root: Root) -> Pose:
+def aim(
+    pivot: Vector, at: Vector, through: Vector, direction: Vector, target: Vector, root: Root
+) -> PlanePose:
     """Pose of a link with its pivot at a place, whose line passes through a target.
 
     `pivot`, `through` and `direction` are in the link's axes. A positive root has the target ahead of the
@@ -190,8 +192,8 @@ def aim(pivot: Vector, at: Vector, through: Vector, direction: Vector, target: V
     to_target = subtract(target, at)
     squared = dot(to_target, to_target)
     half = root(squared - offset * offset)
-    line = turned(to_target, (half / squared, -offset / squared))
-    return pose_with_point(pivot, at, turned(line, reversed_rotor(direction)))
+    line = rotate_vector(to_target, (half / squared, -offset / squared))
+    return pose_with_point(pivot, at, rotate_vector(line, reversed_rotor(direction)))
 
 
 def length_of(m: Namespace, a: Vector) -> Number:

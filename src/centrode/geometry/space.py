@@ -199,5 +199,5 @@ class Space(Protocol):
     def spin(self, pose: Pose, at: Place) -> Row:
         """Coordinates of a link's turn by 1 rad about a place."""
 
-    def righted(self, m: Namespace, pose: Pose) -> Pose:
+    def normalise(self, m: Namespace, pose: Pose) -> Pose:
         """A pose that keeps the link's own distances, from one that nearly does."""

@@ -62,7 +62,7 @@ def cross(a: Vector, b: Vector) -> Vector:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def combined(*terms: tuple[Number, Vector]) -> Vector:
+def linear_combination(*terms: tuple[Number, Vector]) -> Vector:
     """Sum of vectors times factors; factors that are plainly zero or one cost nothing."""
     total: Vector | None = None
     for factor, vector in terms:
@@ -93,9 +93,9 @@ def meridian(m: Namespace, at: Coordinates) -> tuple[Vector, Vector]:
     return (-lower * cosine, -lower * sine, m.cos(latitude)), (sine, -cosine, 0.0)
 
 
-def carried(attitude: Attitude, inside: Vector) -> Vector:
+def vector_in_frame(attitude: Attitude, inside: Vector) -> Vector:
     """Vector of a link's own axes, as it stands in the frame."""
-    return combined(*zip(inside, attitude, strict=True))
+    return linear_combination(*zip(inside, attitude, strict=True))
 
 
 def tangent(a: Vector, b: Vector) -> Vector:
@@ -144,7 +144,7 @@ def attitude_on(inside: Vector, along: Vector, at: Vector, towards: Vector, squa
     left_inside = (0.0, -along[2], along[1]) if is_literal(inside[0], 1.0) else cross(inside, along)
 
     def axis(k: int) -> Vector:
-        return combined(
+        return linear_combination(
             (inside[k], at), (_ratio(along[k], squared), towards), (_ratio(left_inside[k], squared), left)
         )
 
@@ -168,9 +168,9 @@ def attitude_by_two_points(
     return attitude_on(unit_vector(m, first), along, at_first, towards, dot(along, along))
 
 
-def turned(m: Namespace, at: Vector, towards: Vector, rotor: tuple[Number, Number]) -> Vector:
+def rotate_tangent(m: Namespace, at: Vector, towards: Vector, rotor: tuple[Number, Number]) -> Vector:
     """Tangent at a place turned by a rotor (cos, sin), counter-clockwise seen from outside."""
-    return combined((rotor[0], towards), (rotor[1], cross(at, towards)))
+    return linear_combination((rotor[0], towards), (rotor[1], cross(at, towards)))
 
 
 def radicand_of_circles(centre_1: Vector, half_1: HalfArc, centre_2: Vector, half_2: HalfArc) -> Number:
@@ -195,7 +195,7 @@ def circles_meet(
     factor = 1.0 / squared
     ahead = 2.0 * (total * difference + h - lowered * h) * factor
     left = root * factor
-    return combined(
+    return linear_combination(
         (1.0 + (2.0 * h * ahead - lowered), centre_1), (ahead, line), (left, cross(centre_1, line))
     )
 
@@ -213,7 +213,7 @@ def place_on_circle(m: Namespace, pole: Coordinates, radius: Number, angle: Numb
     """Place on a circle about a pole at an angle from the north, counter-clockwise seen from outside."""
     north, west = meridian(m, pole)
     sine = m.sin(radius)
-    return combined(
+    return linear_combination(
         (m.cos(radius), unit_vector(m, pole)), (sine * m.cos(angle), north), (sine * m.sin(angle), west)
     )
 
@@ -230,7 +230,7 @@ def basis(m: Namespace, at: Vector) -> tuple[Vector, Vector]:
     return (1.0 + side * x * x * a, side * b, -side * x), (b, side + y * y * a, -y)
 
 
-def rotated(vector: Vector, half: Vector) -> Vector:
+def rotate_by_cayley(vector: Vector, half: Vector) -> Vector:
     """A vector turned by Cayley's rotation: about `half`, by twice the arc tangent of its length."""
     once = cross(half, vector)
     return add(vector, times(2.0 / (1.0 + dot(half, half)), add(once, cross(half, once))))
@@ -248,15 +248,15 @@ FAINT = 1e-30
 
 def arms(m: Namespace, pose: Attitude, base: Attitude, reference: Reference) -> tuple[Vector, Vector, Vector]:
     """The link's own tangent, that of the reference arc, and the place of that arc's first point."""
-    first, second, base_first, base_second = given(reference)
+    first, second, base_first, base_second = require_reference(reference)
     return (
-        carried(pose, tangent_inside(m, first, second)),
-        carried(base, tangent_inside(m, base_first, base_second)),
-        carried(base, unit_vector(m, base_first)),
+        vector_in_frame(pose, tangent_inside(m, first, second)),
+        vector_in_frame(base, tangent_inside(m, base_first, base_second)),
+        vector_in_frame(base, unit_vector(m, base_first)),
     )
 
 
-def given(reference: Reference) -> tuple[Coordinates, ...]:
+def require_reference(reference: Reference) -> tuple[Coordinates, ...]:
     """The reference of an angle, without which there is none on the sphere."""
     if reference is None:
         raise ValueError("an angle on the sphere is measured from a reference arc")
@@ -283,7 +283,7 @@ def components(arm: Vector, zero: Vector, axis: Vector) -> tuple[Number, Number]
     return dot(arm, zero), dot(arm, cross(axis, zero))
 
 
-def turning(arm: Vector, zero: Vector, axis: Vector) -> Vector:
+def angle_gradient(arm: Vector, zero: Vector, axis: Vector) -> Vector:
     """Gradient of that angle by the rotation of the arm."""
     left = cross(axis, zero)
     cosine, sine = dot(arm, zero), dot(arm, left)
@@ -295,7 +295,7 @@ def chart(m: Namespace, pose: Attitude, local: Coordinates) -> tuple[Vector, Vec
     """Place of a link's point and two unit vectors square to it that are fixed in the link."""
     inside = unit_vector(m, local)
     first, second = basis(m, inside)
-    return carried(pose, inside), carried(pose, first), carried(pose, second)
+    return vector_in_frame(pose, inside), vector_in_frame(pose, first), vector_in_frame(pose, second)
 
 
 def nearness(point: Vector, at: Vector) -> Number:
@@ -322,7 +322,7 @@ def azimuth(
     m: Namespace, point: Vector, pose: Attitude, pole: Coordinates
 ) -> tuple[Number, Number, Vector, Vector]:
     """How far a point is to the north and to the west of a pole that a link carries, and both directions."""
-    north, west = (carried(pose, axis) for axis in meridian(m, pole))
+    north, west = (vector_in_frame(pose, axis) for axis in meridian(m, pole))
     return dot(point, north), dot(point, west), north, west
 
 

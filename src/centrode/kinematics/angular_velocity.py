@@ -99,7 +99,7 @@ def node_turns(
 ) -> NodeTurns:
     """Turns of an angle on a mesh of so many nodes; `initial` [rad] is its value near the node `start`."""
     cosine, sine = (_on_mesh(x, nodes) for x in rotor)
-    cosine, sine = _bridged(cosine, sine, start)
+    cosine, sine = _fill_gaps(cosine, sine, start)
     below = _below(sine)
     turns = np.zeros(cosine.shape, dtype=np.int32)
     steps = _turns_between(cosine[:, :-1], below[:, :-1], cosine[:, 1:], below[:, 1:])
@@ -132,7 +132,7 @@ def _on_mesh(x: object, nodes: int) -> Array:
     return np.broadcast_to(values, (values.shape[0], nodes))
 
 
-def _bridged(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
+def _fill_gaps(cosine: Array, sine: Array, start: int) -> tuple[Array, Array]:
     """The same rotors with gaps filled by the last known one on the way from the start, in both directions."""
     cosine, sine = np.broadcast_arrays(cosine, sine)
     if np.isfinite(cosine.sum() + sine.sum()):

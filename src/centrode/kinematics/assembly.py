@@ -27,10 +27,10 @@ from centrode.kinematics.assembly_mode import (
     side_choice,
     stated_side,
     turned_apart,
-    undetermined,
+    undetermined_error,
 )
 from centrode.kinematics.dyads import equation_at, solve_group, turn_link
-from centrode.kinematics.higher_class.starting import bound_higher, guesses, start_higher
+from centrode.kinematics.higher_class.initial_states import bound_higher, guesses, start_higher
 from centrode.kinematics.higher_class.system import GroupSystem
 from centrode.kinematics.plan_evaluation import Kinematics, SideChoices
 from centrode.locale import _
@@ -100,7 +100,7 @@ def phases_before(
     link = group.link if isinstance(group, TurnedLink) else group.carriage
     if link is not None and group.turning is not None and not isinstance(group.turning, Turning):
         meshing = group.turning.gear if isinstance(group.turning, Meshed) else group.turning.rolling
-        trial = at.copied()
+        trial = at.copy()
         trial.angles[link] = stated_angle(kinematics, link)
         found[identity_of(meshing)] = float(phase_of(meshing, ARRAYS, kinematics.numbers, trial))
     if isinstance(group, Meet):
@@ -175,25 +175,28 @@ def _turn_at_start(
     kinematics: Kinematics, group: Meet, rolling: NoSlip, at: Positions, choices: SideChoices
 ) -> float:
     """Angle of a wheel against its track in the initial position, where its centre is at the line's own point."""
-    trial = at.copied()
+    trial = at.copy()
     link = group.carriage
     if link is not None and group.turning is not None:
-        rotor = turn_link(group.turning, link, ARRAYS, kinematics.numbers, trial, choices.continued)
+        rotor = turn_link(group.turning, link, ARRAYS, kinematics.numbers, trial, choices.continue_angle)
         if link not in trial.angles:
-            trial.angles[link] = choices.continued(link, np.arctan2(rotor[1], rotor[0]))
+            trial.angles[link] = choices.continue_angle(link, np.arctan2(rotor[1], rotor[0]))
     return float(trial.angles[rolling.link] - trial.angles[rolling.on])
 
 
 def _of_train(kinematics: Kinematics, group: Train, at: Positions, choices: SideChoices) -> dict[str, float]:
     """Constants of a train's equations: each lets one link of its own stand at its initial angle."""
-    bearing = {equation: meshing for equation in group.equations if (meshing := _meshing(equation))}
+    bearing = {equation: meshing for equation in group.equations if (meshing := _mesh_of(equation))}
     blank = with_phases(kinematics, {identity_of(meshing): 0.0 for meshing in bearing.values()})
     rows = {
-        equation: equation_at(equation, ARRAYS, blank.numbers, at, choices.continued)
+        equation: equation_at(equation, ARRAYS, blank.numbers, at, choices.continue_angle)
         for equation in group.equations
     }
     owner = match(
-        {e: _preferred(kinematics, e, rows[e][0], group) for e in sorted(rows, key=lambda e: e in bearing)}
+        {
+            e: _links_by_preference(kinematics, e, rows[e][0], group)
+            for e in sorted(rows, key=lambda e: e in bearing)
+        }
     )
     matrix, right = np.zeros((len(rows), len(rows))), np.zeros(len(rows))
     for k, (link, equation) in enumerate(owner.items()):
@@ -225,13 +228,13 @@ def _of_train(kinematics: Kinematics, group: Train, at: Positions, choices: Side
     }
 
 
-def _meshing(equation: AngleEquation) -> Meshing | None:
+def _mesh_of(equation: AngleEquation) -> Meshing | None:
     if isinstance(equation, AngleGiven):
         return None
     return equation.rolling if isinstance(equation, Arm) else equation
 
 
-def _preferred(
+def _links_by_preference(
     kinematics: Kinematics, equation: AngleEquation, factors: Mapping[str, Number], group: Train
 ) -> list[str]:
     """Links whose initial angle an equation may rest on: those that state one, then the second wheel first."""
@@ -295,7 +298,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
                 else:
                     solve_group(group, ARRAYS, kinematics.numbers, at, SideChoices(starting, i))
             except ZeroDivisionError:  # plain floats do not become infinite as arrays do
-                raise undetermined(group) from None
+                raise undetermined_error(group) from None
             _check_finite(group, at)
             decided = group.signed and stated_side(kinematics, group) is not None
             _check_angles(kinematics, group, at, ROUGH if decided else ANGLE_TOLERANCE)
@@ -312,7 +315,7 @@ def assemble(kinematics: Kinematics) -> Assembled:
 
 def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded: Positions) -> Kinematics:
     """Solve a group of higher class; its wheels mesh as they stand then."""
-    known = at.copied()
+    known = at.copy()
     standing = standing_links(kinematics, group, at)
     start_higher(kinematics.structure.mechanism, kinematics.numbers, standing, at)
     kinematics = with_phases(kinematics, phases_in(kinematics, group, at))
@@ -323,7 +326,7 @@ def _start_higher(kinematics: Kinematics, group: Newton, at: Positions, bounded:
 def _bound(kinematics: Kinematics, group: Group, bounded: Positions) -> float:
     """Rounding error of a group's radicand, from positions with bounds known before it."""
     bounding = Bounding(kinematics, group, 1.0)
-    solve_group(group, ROUNDED, kinematics.numbers, bounded.copied(), SideChoices(bounding, 0))
+    solve_group(group, ROUNDED, kinematics.numbers, bounded.copy(), SideChoices(bounding, 0))
     return bounding.bound
 
 
@@ -350,7 +353,7 @@ def _solve_signed(kinematics: Kinematics, group: Group, at: Positions, bound: fl
 
 
 def _option(kinematics: Kinematics, group: Group, at: Positions, sign: float, bound: float) -> Positions:
-    trial = at.copied()
+    trial = at.copy()
     solve_group(
         group, ARRAYS, kinematics.numbers, trial, SideChoices(OneSide(kinematics, group, at, sign, bound), 0)
     )
@@ -406,7 +409,7 @@ def _check_finite(group: Group, at: Positions) -> None:
     values = [x for p in points_of(group) for x in at.points[p]]
     values += [x for link in links_of(group) for vector in at.poses[link] for x in vector]
     if not all(np.isfinite(float(x)) for x in values):
-        raise undetermined(group)
+        raise undetermined_error(group)
 
 
 def _angles(kinematics: Kinematics, at: Positions) -> dict[str, float]:

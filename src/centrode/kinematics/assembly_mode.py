@@ -26,13 +26,13 @@ from centrode.structure.dimensions import Dimensions
 from centrode.structure.gearing import Straight
 from centrode.structure.groups import (
     Aim,
+    CylinderCircle,
     Group,
     Locus,
     Meet,
     Newton,
     Rail,
     Rod,
-    Stroke,
     Touch,
     TwoPointLink,
     links_of,
@@ -229,7 +229,7 @@ def circle_name(locus: Locus) -> str:
     """What draws the circle of a locus; nothing for a line."""
     if isinstance(locus, Rod):
         return _("link {link}").format(link=locus.link)
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return _("cylinder {drive}").format(drive=locus.drive)
     if isinstance(locus, Touch) and locus.letter == "R":
         return _("wheel {wheel}").format(wheel=locus.contact.rolling)
@@ -252,7 +252,7 @@ class Starting(EvaluationPolicy):
     def __init__(self, kinematics: Kinematics) -> None:
         self.links = kinematics.structure.mechanism.links
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         near = self.links[key].angle if key in self.links else None
         value = float(angle.value if isinstance(angle, Rounded) else angle)
         return angle if near is None else angle + tau * np.round((near - value) / tau)
@@ -274,7 +274,7 @@ class Bounding(Starting):
     def divisor(self, group: int, divisor: Number) -> Number:
         sine = Rounded.of(divisor)
         if abs(sine.value) <= SAFETY * sine.bound:
-            raise undetermined(self.solved)
+            raise undetermined_error(self.solved)
         return sine
 
 
@@ -303,7 +303,7 @@ class OneSide(Starting):
         return self.sign * np.sqrt(max(radicand, 0.0))
 
 
-def undetermined(group: Group) -> InputError:
+def undetermined_error(group: Group) -> InputError:
     """The refusal of a group whose initial position its formulas do not determine."""
     return InputError(
         name_of(group),

@@ -75,13 +75,13 @@ class CellPieces:
         wide = (np.broadcast_to(x, centre.shape) for x in (half, value, nodes, nodes))
         return cls(lane, centre, *wide)
 
-    def taken(self, which: npt.NDArray[np.intp] | Mask) -> CellPieces:
+    def take(self, which: npt.NDArray[np.intp] | Mask) -> CellPieces:
         """Some of the cells."""
         return CellPieces(*(getattr(self, each.name)[which] for each in fields(self)))
 
-    def sorted(self) -> CellPieces:
+    def sort_by_path(self) -> CellPieces:
         """The cells of every mechanism in the order of the path."""
-        return self.taken(np.lexsort((self.centre, self.lane)))
+        return self.take(np.lexsort((self.centre, self.lane)))
 
     @classmethod
     def joined(cls, *parts: CellPieces) -> CellPieces:
@@ -100,7 +100,7 @@ def towards(lane: Lanes, low: Array, high: Array, place: Array) -> CellPieces:
     return CellPieces.of(lane[worth], centre[worth], half[worth])
 
 
-def divided(pieces: CellPieces, guard: Guard, unit: float) -> CellPieces:
+def divide_cells(pieces: CellPieces, guard: Guard, unit: float) -> CellPieces:
     """Cells until each is known, or so short that it is one place; those where the guard has no value are left out."""
     found: list[CellPieces] = []
     rest = pieces
@@ -112,8 +112,8 @@ def divided(pieces: CellPieces, guard: Guard, unit: float) -> CellPieces:
         # where the law of a drive changes its formula at a change point there are no derivatives
         done = known | ~np.isfinite(slope) | (rest.half <= unit * _finest(rest.lane, there & ~known))
         every = CellPieces(rest.lane, rest.centre, rest.half, value, known, rest.nodes)
-        found.append(every.taken(there & done))
-        rest = parts_of(every.taken(there & ~done))
+        found.append(every.take(there & done))
+        rest = parts_of(every.take(there & ~done))
     return CellPieces.joined(*found) if found else pieces
 
 
@@ -154,7 +154,7 @@ def without_sign(pieces: CellPieces, slack: float) -> tuple[Lanes, Array, Array,
     return pieces.lane[first], pieces.centre[first], pieces.centre[last], np.sign(pieces.value[first])
 
 
-def unsettled(pieces: CellPieces, slack: float) -> tuple[Lanes, Array, Array, Array]:
+def unsettled_stretches(pieces: CellPieces, slack: float) -> tuple[Lanes, Array, Array, Array]:
     """Lanes and stretches between neighbours of the same sign of which one is not known, and the sign."""
     first, last = _neighbours(pieces, slack)
     doubtful = (last == first + 1) & ~(pieces.known[first] & pieces.known[last])

@@ -15,9 +15,9 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.kinematics.higher_class.curve_continuation import CurveTracks, trace
 from centrode.kinematics.higher_class.evaluation import ConvergedPlaces, close, follow, starts
 from centrode.kinematics.higher_class.system import Surroundings
-from centrode.kinematics.higher_class.tracing import CurveTracks, trace
 from centrode.kinematics.plan_evaluation import Branches, EvaluationPolicy, Kinematics
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet
@@ -165,7 +165,7 @@ def coefficients(number: Number, windows: int) -> Array:
     return np.asarray(np.fft.hfft(on_circle, NODES) / NODES)
 
 
-def mended(
+def apply_series(
     old: Number,
     series: Array,
     bound: Array,
@@ -185,25 +185,27 @@ def mended(
         bare_at = tuple(part[bare] for part in index)
         if isinstance(old, Jet):
             there = np.full(len(bare_at[0]), np.nan)
-            old = Jet([old.value, *(_put(c, shape, bare_at, there) for c in old.coefficients[1:])])
+            old = Jet([old.value, *(_put_entries(c, shape, bare_at, there) for c in old.coefficients[1:])])
         index, chosen, along = tuple(part[~bare] for part in index), chosen[~bare], along[~bare]
-    known = _summed(series[chosen], (along - windows.centre[chosen]) / windows.radius[chosen], order)
+    known = _sum_series(series[chosen], (along - windows.centre[chosen]) / windows.radius[chosen], order)
     scale = 1.0 / windows.radius[chosen]
     if isinstance(old, Jet):
         return Jet(
             [
-                _put(c, shape, index, x * scale**k)
+                _put_entries(c, shape, index, x * scale**k)
                 for k, (c, x) in enumerate(zip(old.coefficients, known, strict=True))
             ]
         )
     if isinstance(old, Rounded):
         value = known[0]
         error = bound[chosen] + UNIT_ROUNDOFF * np.abs(value)
-        return Rounded(_put(old.value, shape, index, value), _put(old.bound, shape, index, error))
-    return _put(old, shape, index, known[0])
+        return Rounded(
+            _put_entries(old.value, shape, index, value), _put_entries(old.bound, shape, index, error)
+        )
+    return _put_entries(old, shape, index, known[0])
 
 
-def _summed(series: Array, x: Array, order: int) -> list[Array]:
+def _sum_series(series: Array, x: Array, order: int) -> list[Array]:
     """Taylor coefficients up to an order of power series (n, TERMS) at places (n,), by Horner's rule.
 
     The terms are added one by one: a matrix product rounds differently for different numbers of samples.
@@ -216,7 +218,7 @@ def _summed(series: Array, x: Array, order: int) -> list[Array]:
     return found
 
 
-def _put(old: Number, shape: tuple[int, ...], index: Index, values: Array) -> Array:
+def _put_entries(old: Number, shape: tuple[int, ...], index: Index, values: Array) -> Array:
     whole = np.array(
         np.broadcast_to(old, shape), dtype=np.result_type(np.asarray(old).dtype, values.dtype, np.float64)
     )
@@ -304,7 +306,7 @@ class BranchedPlan:
             return []
         along, series = parameter.reshape(-1)[index[-1]], self._series[group]
         smooth = [
-            mended(old, known, bound, windows, shape, index, chosen, along)
+            apply_series(old, known, bound, windows, shape, index, chosen, along)
             for old, known, bound in zip(
                 numbers_of(self.kinematics, group, at), series.numbers, series.bounds, strict=True
             )
@@ -393,7 +395,7 @@ class BranchedPlan:
         """Coefficients of what a group gives on circles, and on which of these it could be followed."""
         lanes = np.repeat(windows.lane, len(HALF_CIRCLE))
         parameter = (windows.centre[:, None] + windows.radius[:, None] * HALF_CIRCLE).reshape(-1)
-        kinematics, hooks = self.kinematics.taken(lanes), Circling(self, parameter, lanes, group)
+        kinematics, hooks = self.kinematics.take(lanes), Circling(self, parameter, lanes, group)
         with np.errstate(all="ignore"):
             at = kinematics.frame(ARRAYS, parameter)
             kinematics.advance(at, range(group + 1), ARRAYS, hooks)
@@ -404,7 +406,7 @@ class BranchedPlan:
         """Rounding errors of what a group gives on circles: those at the two real values of each (windows,)."""
         lanes = np.repeat(windows.lane, 2)
         ends = (windows.centre[:, None] + windows.radius[:, None] * np.array([1.0, -1.0])).reshape(-1)
-        kinematics = self.kinematics.taken(lanes)
+        kinematics = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):
             at = kinematics.frame(ROUNDED, Rounded.of(ends))
             kinematics.advance(at, range(group + 1), ROUNDED, Unmended(self, ROUNDED, ends, lanes, group))
@@ -432,10 +434,10 @@ class Smooth(EvaluationPolicy):
     def judge(self, group: int, judged: ConvergedPlaces) -> None:
         """Look at where a group of higher class is not what it should be."""
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         # not counted yet: the group itself is still being searched, and nothing behind it is asked for
         turns = self.continuation.branches.turns.get(key)
-        return angle if turns is None else turns.continued(angle, self.parameter, self.lanes)
+        return angle if turns is None else turns.continue_angle(angle, self.parameter, self.lanes)
 
     def after(self, group: int, at: Positions) -> None:
         self.continuation.mend(group, at, self.parameter, self.lanes)
@@ -479,11 +481,11 @@ class Circling(Unmended):
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         self.continuation.follow(group, at, self.parameter, self.which, len(HALF_CIRCLE))
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         along, parameter = self._by_circles(angle), self._by_circles(self.parameter).real
         turns = self.continuation.branches.turns[key]
         first, last = (
-            turns.continued(along[:, k].real, parameter[:, k], self.which[:: len(HALF_CIRCLE)])
+            turns.continue_angle(along[:, k].real, parameter[:, k], self.which[:: len(HALF_CIRCLE)])
             for k in (0, -1)
         )
         steps = np.round(-np.diff(along.real, axis=1) / TURN)

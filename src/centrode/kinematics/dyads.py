@@ -10,18 +10,18 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol, TypeAlias
 
 from centrode.geometry.plane import (
-    Circle,
     Line,
-    Pose,
+    PlaneCircle,
+    PlanePose,
     Vector,
     add,
     along,
     place,
     pose_with_point,
     reversed_rotor,
+    rotate_vector,
     rotor_of,
     subtract,
-    turned,
 )
 from centrode.geometry.space import Curve, Root
 from centrode.geometry.space import Pose as AnyPose
@@ -33,6 +33,7 @@ from centrode.structure.groups import (
     AngleEquation,
     AngleGiven,
     Arm,
+    CylinderCircle,
     Following,
     Group,
     Locus,
@@ -46,7 +47,6 @@ from centrode.structure.groups import (
     Rolloff,
     Slot,
     Stop,
-    Stroke,
     Touch,
     Train,
     TurnedLink,
@@ -94,7 +94,7 @@ def rolled_turn(
     return phase + gearing.spin(rolling.rolling) * bearing
 
 
-def followed(
+def follow_contact(
     turning: Meshed | Rolled,
     link: str,
     m: Namespace,
@@ -108,7 +108,7 @@ def followed(
         return rotor_of(m, angle), angle
     on = turning.rolling.on
     turn = rolled_turn(turning.rolling, m, numbers, at, continued)
-    rotor = turned(at.poses[on].rotor, rotor_of(m, turn))
+    rotor = rotate_vector(at.poses[on].rotor, rotor_of(m, turn))
     return rotor, at.angles[on] + turn if on in at.angles else None
 
 
@@ -116,7 +116,7 @@ def touched_circle(locus: Touch, numbers: Dimensions, at: Positions, rotor: Vect
     """Centre of the circle on which a wheel's centre is, or the carriage's origin where the track is carried."""
     centre = numbers.gearing.track[locus.contact.rolling].centre  # type: ignore[union-attr]
     if locus.carried and rotor is not None:
-        return subtract(at.points[locus.point], turned(centre, rotor))
+        return subtract(at.points[locus.point], rotate_vector(centre, rotor))
     return place(at.poses[locus.contact.on], centre)
 
 
@@ -124,9 +124,11 @@ def touched_line(locus: Touch, numbers: Dimensions, at: Positions, rotor: Vector
     """Line on which a wheel's centre is, a radius to the left of the track; or the carriage's origin."""
     through, direction = beside_track(locus.contact.rolling, numbers)
     if locus.carried and rotor is not None:
-        return subtract(at.points[locus.point], turned(through, rotor)), turned(direction, rotor)
+        return subtract(at.points[locus.point], rotate_vector(through, rotor)), rotate_vector(
+            direction, rotor
+        )
     pose = at.poses[locus.contact.on]
-    return place(pose, through), turned(direction, pose.rotor)
+    return place(pose, through), rotate_vector(direction, pose.rotor)
 
 
 def beside_track(rolling: str, numbers: Dimensions) -> PointAndDirection:
@@ -147,9 +149,9 @@ def rolloff_line(
     assert isinstance(track, Straight)
     foot, (x, y) = along(track.through, track.direction, slide), track.direction
     if locus.carried and rotor is not None:
-        return subtract(at.points[locus.point], turned(foot, rotor)), turned((-y, x), rotor)
+        return subtract(at.points[locus.point], rotate_vector(foot, rotor)), rotate_vector((-y, x), rotor)
     pose = at.poses[locus.rolling.on]
-    return place(pose, foot), turned((-y, x), pose.rotor)
+    return place(pose, foot), rotate_vector((-y, x), pose.rotor)
 
 
 def solve_train(group: Train, m: Namespace, numbers: Dimensions, at: Positions, continued: Continued) -> None:
@@ -224,7 +226,7 @@ def equation_at(
         spin = gearing.spin(rolling.rolling)
         right = gearing.phase[rolling.rolling] + spin * arm_angle(equation, m, numbers)
         return {rolling.link: 1.0, rolling.on: spin - 1.0, equation.link: -spin}, right
-    given = _given(equation, m, numbers, at)
+    given = _given_angle(equation, m, numbers, at)
     if numbers.reference(equation.link) is not None:  # on the sphere the angle is that between the two
         return {equation.link: 1.0}, given
     return {equation.link: 1.0, equation.relative_to: -1.0}, given
@@ -237,7 +239,7 @@ def arm_angle(arm: Arm, m: Namespace, numbers: Dimensions) -> Number:
     return m.atan2(y, x)
 
 
-def _given(equation: AngleGiven, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
+def _given_angle(equation: AngleGiven, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
     if equation.drive is not None:
         return at.drives[equation.drive]
     rotor = numbers.turn[equation.guide or ""]
@@ -266,7 +268,7 @@ def turn_link(
     if isinstance(turning, Turning):
         add_angle(turning, link, numbers, at)
         return turning_rotor(turning, link, m, numbers, at)
-    rotor, angle = followed(turning, link, m, numbers, at, continued)
+    rotor, angle = follow_contact(turning, link, m, numbers, at, continued)
     if angle is not None:
         at.angles[link] = angle
     return rotor
@@ -289,8 +291,8 @@ def turning_rotor(turning: Turning, link: str, m: Namespace, numbers: Dimensions
     """Rotor of a link whose angle a drive or a guide gives against a body that is known, in the plane."""
     difference = difference_of(turning, m, numbers, at)
     if link == turning.link:
-        return turned(at.poses[turning.relative_to].rotor, difference)
-    return turned(at.poses[turning.link].rotor, reversed_rotor(difference))
+        return rotate_vector(at.poses[turning.relative_to].rotor, difference)
+    return rotate_vector(at.poses[turning.link].rotor, reversed_rotor(difference))
 
 
 class Choices(Protocol):
@@ -302,7 +304,7 @@ class Choices(Protocol):
     def divisor(self, divisor: Number) -> Number:
         """A number that is divided by, as it is: its zero is a place the group cannot pass."""
 
-    def continued(self, key: str, angle: Number) -> Number:
+    def continue_angle(self, key: str, angle: Number) -> Number:
         """An angle in (-pi, pi] with the turns that its path has made; `key` names it."""
 
     def higher(self, m: Namespace, at: Positions) -> None:
@@ -323,7 +325,7 @@ def solve_group(group: Group, m: Namespace, numbers: Dimensions, at: Positions, 
     elif isinstance(group, Meet):
         _meet(group, m, numbers, at, choices)
     elif isinstance(group, Train):
-        solve_train(group, m, numbers, at, choices.continued)
+        solve_train(group, m, numbers, at, choices.continue_angle)
     elif isinstance(group, Newton):
         choices.higher(m, at)
 
@@ -333,7 +335,7 @@ def _turned_link(
 ) -> AnyPose:
     turning = group.turning
     if not isinstance(turning, Turning):
-        rotor = turn_link(turning, group.link, m, numbers, at, choices.continued)
+        rotor = turn_link(turning, group.link, m, numbers, at, choices.continue_angle)
         return pose_at(group.link, group.pivot, rotor, m, numbers, at)
     add_angle(turning, group.link, numbers, at)
     rotor, reference = difference_of(turning, m, numbers, at), numbers.reference(turning.link)
@@ -362,7 +364,7 @@ def aim_curve(group: Aim, numbers: Dimensions) -> Curve:
     through, direction = numbers.through[group.guide], numbers.direction[group.guide]
     inside = numbers.local[group.block]
     shift = subtract(inside[group.target], inside[group.sliding])
-    return add(through, turned(shift, numbers.turn[group.guide])), direction
+    return add(through, rotate_vector(shift, numbers.turn[group.guide])), direction
 
 
 def _aim(group: Aim, m: Namespace, numbers: Dimensions, at: Positions, root: Root) -> None:
@@ -371,7 +373,7 @@ def _aim(group: Aim, m: Namespace, numbers: Dimensions, at: Positions, root: Roo
     pose = numbers.space.aim(m, local, pivot, curve, target, root)
     at.poses[group.link] = pose
     if group.block is not None and group.sliding is not None:
-        rotor = turned(pose.rotor, numbers.turn[group.guide])
+        rotor = rotate_vector(pose.rotor, numbers.turn[group.guide])
         block = pose_with_point(numbers.local[group.block][group.target], at.points[group.target], rotor)
         at.poses[group.block] = block
         at.points[group.sliding] = place(block, numbers.local[group.block][group.sliding])
@@ -382,10 +384,10 @@ def _carriage_rotor(
 ) -> Vector | None:
     if group.carriage is None or group.turning is None:
         return None
-    rotor = turn_link(group.turning, group.carriage, m, numbers, at, choices.continued)
+    rotor = turn_link(group.turning, group.carriage, m, numbers, at, choices.continue_angle)
     rolls = [locus.rolling for locus in group.loci if isinstance(locus, Rolloff)]
     if group.carriage not in at.angles and any(group.carriage in (r.link, r.on) for r in rolls):
-        at.angles[group.carriage] = choices.continued(group.carriage, m.atan2(rotor[1], rotor[0]))
+        at.angles[group.carriage] = choices.continue_angle(group.carriage, m.atan2(rotor[1], rotor[0]))
     return rotor
 
 
@@ -394,7 +396,7 @@ def _arms(group: Meet, numbers: Dimensions, rotor: Vector | None) -> dict[str, V
     if group.carriage is None or rotor is None:
         return {point: (0.0, 0.0) for point in group.points}
     local = numbers.local[group.carriage]
-    return {point: turned(local[point], rotor) for point in group.points}
+    return {point: rotate_vector(local[point], rotor) for point in group.points}
 
 
 def loci_of(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices: Choices) -> list[Any]:
@@ -410,7 +412,7 @@ def _meet(group: Meet, m: Namespace, numbers: Dimensions, at: Positions, choices
     one, other = (_locus(locus, m, numbers, at, arms, rotor) for locus in group.loci)
     vector = numbers.space.meet(one, other, choices.root, choices.divisor)
     if group.carriage is not None and rotor is not None:
-        at.poses[group.carriage] = Pose(vector, rotor)
+        at.poses[group.carriage] = PlanePose(vector, rotor)
     for point in group.points:
         at.points[point] = vector if rotor is None else add(vector, arms[point])
     for rod in group.rods:
@@ -426,15 +428,15 @@ def _locus(
     rotor: Vector | None,
 ) -> Any:
     """Locus of the group's unknown vector: that of the point, moved back by the point's arm on the carriage."""
-    if isinstance(locus, Stroke | Touch | Rolloff):
+    if isinstance(locus, CylinderCircle | Touch | Rolloff):
         found = _driven_or_rolled(locus, numbers, at, rotor)
     else:
         found = _of_point(locus, m, numbers, at, rotor)
     if rotor is None:
         return found
     arm = arms.get(locus.point, (0.0, 0.0))
-    if isinstance(found, Circle):
-        return Circle(subtract(found.centre, arm), found.radius)
+    if isinstance(found, PlaneCircle):
+        return PlaneCircle(subtract(found.centre, arm), found.radius)
     return Line(subtract(found.through, arm), found.direction)
 
 
@@ -447,8 +449,8 @@ def _of_point(
         return numbers.space.circle(m, at.points[locus.centre], local[locus.centre], local[locus.point])
     if isinstance(locus, Slot):
         assert rotor is not None
-        arm = turned(numbers.through[locus.guide], rotor)
-        direction = turned(numbers.direction[locus.guide], rotor)
+        arm = rotate_vector(numbers.through[locus.guide], rotor)
+        direction = rotate_vector(numbers.direction[locus.guide], rotor)
         return Line(subtract(at.points[locus.point], arm), direction)
     assert isinstance(locus, (Rail, Stop))
     pose, curve = at.poses[locus.on], numbers.curve(locus.guide)
@@ -458,15 +460,15 @@ def _of_point(
 
 
 def _driven_or_rolled(
-    locus: Stroke | Touch | Rolloff, numbers: Dimensions, at: Positions, rotor: Vector | None
-) -> Circle | Line:
+    locus: CylinderCircle | Touch | Rolloff, numbers: Dimensions, at: Positions, rotor: Vector | None
+) -> PlaneCircle | Line:
     """Locus of a point at a cylinder or a track; of the unknown vector itself, if the carriage holds the track."""
-    if isinstance(locus, Stroke):
-        return Circle(at.points[locus.centre], at.drives[locus.drive])
+    if isinstance(locus, CylinderCircle):
+        return PlaneCircle(at.points[locus.centre], at.drives[locus.drive])
     if isinstance(locus, Rolloff):
         turn = at.angles[locus.rolling.link] - at.angles[locus.rolling.on]
         return Line(*rolloff_line(locus, turn, numbers, at, rotor))
     if locus.letter == "R":
         reach = numbers.gearing.reach(locus.contact.rolling)
-        return Circle(touched_circle(locus, numbers, at, rotor), reach)
+        return PlaneCircle(touched_circle(locus, numbers, at, rotor), reach)
     return Line(*touched_line(locus, numbers, at, rotor))

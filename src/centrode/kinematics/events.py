@@ -26,17 +26,17 @@ from centrode.kinematics.cells import (
     CellPieces,
     changes,
     clear,
-    divided,
+    divide_cells,
     parts_of,
     straight,
     towards,
-    unsettled,
+    unsettled_stretches,
     without_sign,
 )
 from centrode.kinematics.change_points import BranchedPlan, Rough, Windows, inside, numbers_of, set_numbers
 from centrode.kinematics.mesh import CLOSING_IN, cut_cells, first_changes, largest_of, low_minima
 from centrode.kinematics.path import JETS, Path, nearest_node
-from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, ReachedRadicand, counted
+from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, ReachedRadicand, count_turns
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.bends import BendFunctions, Bent, Cells
@@ -107,7 +107,7 @@ class Bending(Rough):
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         """What a group of higher class gives are jets: nothing is known of their second derivatives."""
-        known = at.mapped(lambda x: Jet(x.coefficients) if isinstance(x, Bent) else x)
+        known = at.map_numbers(lambda x: Jet(x.coefficients) if isinstance(x, Bent) else x)
         super().higher(group, JETS, known)
         which = self.continuation.kinematics.structure.groups[group]
         assert isinstance(which, Newton)
@@ -167,16 +167,16 @@ class Guards:
         """A group's number with derivatives."""
         hooks = self.continuation.hooks(JETS, at, lanes)
         with np.errstate(all="ignore"):
-            guard = self.continuation.kinematics.taken(lanes).guard(
+            guard = self.continuation.kinematics.take(lanes).guard(
                 JETS, Jet.variable(at, order), group, hooks
             )
         return (
             guard if isinstance(guard, Jet) else Jet((np.broadcast_to(guard, at.shape), *[0.0 * at] * order))
         )
 
-    def bent(self, group: int, lanes: Lanes, at: Array, half: Array) -> tuple[Array, Array, Array]:
+    def bend_bound(self, group: int, lanes: Lanes, at: Array, half: Array) -> tuple[Array, Array, Array]:
         """Value and slope, and a bound of the second derivative over cells of half widths."""
-        used, hooks = self.continuation.kinematics.taken(lanes), Bending(self.continuation, at, lanes)
+        used, hooks = self.continuation.kinematics.take(lanes), Bending(self.continuation, at, lanes)
         with np.errstate(all="ignore"):
             guard = used.guard_behind(bent_frame(used, at, half), BENDS, group, hooks)
         if not isinstance(guard, Bent):
@@ -184,7 +184,7 @@ class Guards:
         value, slope, bend = (np.broadcast_to(x, at.shape) for x in (*guard.coefficients, guard.bend))
         return value, slope, bend
 
-    def rounded(self, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
+    def rounding_bound(self, group: int, lanes: Lanes, at: Array) -> tuple[Array, Array]:
         """Value with the bound of its rounding error."""
         return guard_with_bound(self.continuation, group, lanes, at)
 
@@ -211,7 +211,7 @@ def guard_with_bound(continuation: BranchedPlan, group: int, lanes: Lanes, at: A
     """Radicand of a group at parameters, one lane for each, with the bound of its rounding error."""
     hooks = continuation.hooks(ROUNDED, at, lanes)
     with np.errstate(all="ignore"):
-        used = continuation.kinematics.taken(lanes)
+        used = continuation.kinematics.take(lanes)
         guard = Rounded.of(used.guard(ROUNDED, Rounded.of(at), group, hooks))
     return np.broadcast_to(guard.value, at.shape), np.broadcast_to(guard.bound, at.shape)
 
@@ -307,8 +307,8 @@ class Zeros:
             if not rough.any():
                 return (lanes, self.guards.roots(group, *ends)), NOWHERE
             minima = self._looked_into(group, value, slope, rough, stops)
-            pieces = self._divided(group, value, rough, (stops, minima))
-            pieces = self._signed(group, pieces, stops, minima, greatest)
+            pieces = self._divide_cells(group, value, rough, (stops, minima))
+            pieces = self._sign_cells(group, pieces, stops, minima, greatest)
             others = self._unforeseen(group, pieces, minima)
         more = changes(pieces, SLACK * self._finest)
         lanes, low, high = (
@@ -370,13 +370,13 @@ class Zeros:
         return self._touching(group, lanes, at, sign[lanes, cells])
 
     def _touching(self, group: int, lanes: Lanes, at: Array, sign: Array) -> _Minima:
-        least, bound = self.guards.rounded(group, lanes, at) if len(lanes) else (at, at)
+        least, bound = self.guards.rounding_bound(group, lanes, at) if len(lanes) else (at, at)
         near = np.abs(least) <= SAFETY * bound
         # a radicand that touches zero from below closes in one place, and is not passed
         touches = near & ((sign > 0.0) | (group not in self.branches.signs))
         return _Minima(lanes, at, self._nodes_at(at), np.where(near, 0.0, least), touches)
 
-    def _divided(self, group: int, value: Array, rough: Mask, places: Sequence[_Places]) -> CellPieces:
+    def _divide_cells(self, group: int, value: Array, rough: Mask, places: Sequence[_Places]) -> CellPieces:
         """The rough cells in parts that are known, with the nodes beside them."""
         half = np.broadcast_to(self.half, self.mesh.shape)
         lanes = np.concatenate([each.lane for each in places])
@@ -396,7 +396,7 @@ class Zeros:
         parts = CellPieces.joined(
             parts_of(CellPieces.of(rows, self.mesh[cells], half[cells])), towards(lanes, low, high, at)
         )
-        found = divided(parts, lambda *cell: self.guards.bent(group, *cell), self.branches.unit)
+        found = divide_cells(parts, lambda *cell: self.guards.bend_bound(group, *cell), self.branches.unit)
         beside = np.zeros(rough.shape, dtype=bool)
         beside[:, 1:] |= rough[:, :-1]
         beside[:, :-1] |= rough[:, 1:]
@@ -405,7 +405,7 @@ class Zeros:
             found, CellPieces.of(rows, self.mesh[cells], half[cells], value[rows, cells], nodes=True)
         )
 
-    def _signed(
+    def _sign_cells(
         self, group: int, pieces: CellPieces, stops: _Stops, minima: _Minima, greatest: Array
     ) -> CellPieces:
         """Cells in the order of the path, with the least sizes as cells of their own; zero where a sign is rounding."""
@@ -416,12 +416,12 @@ class Zeros:
         doubtful = np.nonzero(~pieces.nodes & (~pieces.known | faint))[0]
         value = pieces.value.copy()
         if len(doubtful):
-            _value, bound = self.guards.rounded(group, pieces.lane[doubtful], pieces.centre[doubtful])
+            _value, bound = self.guards.rounding_bound(group, pieces.lane[doubtful], pieces.centre[doubtful])
             value[doubtful[~(np.abs(value[doubtful]) > SAFETY * bound)]] = 0.0
         cores = CellPieces.of(minima.lane, minima.at, self._finest, minima.least)
-        walls = CellPieces.of(stops.lane, stops.at, self._finest, np.inf).taken(stops.walls)
-        cores = cores.taken(np.isfinite(minima.least))
-        return CellPieces.joined(replace(pieces, value=value), cores, walls).sorted()
+        walls = CellPieces.of(stops.lane, stops.at, self._finest, np.inf).take(stops.walls)
+        cores = cores.take(np.isfinite(minima.least))
+        return CellPieces.joined(replace(pieces, value=value), cores, walls).sort_by_path()
 
     def _unforeseen(self, group: int, pieces: CellPieces, minima: _Minima) -> _Minima:
         """The least sizes between cells of one sign, where no node foretold one.
@@ -431,7 +431,7 @@ class Zeros:
         slack = SLACK * self._finest
         lanes, low, high, sign = (
             np.concatenate(both)
-            for both in zip(without_sign(pieces, slack), unsettled(pieces, slack), strict=True)
+            for both in zip(without_sign(pieces, slack), unsettled_stretches(pieces, slack), strict=True)
         )
         foretold = np.zeros(len(lanes), dtype=bool)
         for k in range(len(lanes)):
@@ -475,7 +475,7 @@ class EventScan:
             at = bent_frame(self.kinematics, along, self.zeros.half)
             with suppress(ReachedRadicand):  # slopes are needed up to the last radicand, and not beyond
                 self.kinematics.advance(at, range(last + 1), BENDS, _Searching(self, last))
-            plain = at.mapped(lambda x: x.value if isinstance(x, Jet) else x)
+            plain = at.map_numbers(lambda x: x.value if isinstance(x, Jet) else x)
             self.kinematics.advance(plain, range(last, len(groups)), ARRAYS, _Counting(self, ARRAYS))
         return plain
 
@@ -540,7 +540,7 @@ class EventScan:
         lanes, cells = low_minima(self.mesh, value, slope)
         if len(lanes):
             at = self.guards.minima(group, lanes, self.mesh[cells], self.mesh[cells + 1])
-            least, bound = self.guards.rounded(group, lanes, at)
+            least, bound = self.guards.rounding_bound(group, lanes, at)
             # where a group before this one goes to infinity, the radicand's error exceeds the radicand itself
             certain = SAFETY * bound <= self.branches.largest[group][lanes]
             touches = certain & (np.abs(least) <= SAFETY * bound)
@@ -576,7 +576,7 @@ class EventScan:
             return lanes, ends
         nodes = np.where(np.isfinite(value[lanes, cells]), self.mesh[cells], self.mesh[cells + 1])
         places = ends[:, None] + (nodes - ends)[:, None] * CLOSING_IN
-        guard, bound = self.guards.rounded(group, np.repeat(lanes, len(CLOSING_IN)), places.ravel())
+        guard, bound = self.guards.rounding_bound(group, np.repeat(lanes, len(CLOSING_IN)), places.ravel())
         # what is rounding has no sign: groups that stop together do not stop each other
         signs = np.where(np.abs(guard) > SAFETY * bound, np.sign(guard), 0.0).reshape(places.shape)
         rows, last, first = first_changes(signs)
@@ -610,9 +610,9 @@ class _Counting(Rough):
         super().__init__(scan.continuation, m, scan.mesh[None, :], None)
         self.scan = scan
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         count(self.scan, group, key, angle)
-        return super().continued(group, key, angle)
+        return super().continue_angle(group, key, angle)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         self.scan.trace(group)
@@ -627,9 +627,9 @@ class _Searching(Bending):
         self.scan = scan
         self.last = last
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         count(self.scan, group, key, angle)
-        return super().continued(group, key, angle)
+        return super().continue_angle(group, key, angle)
 
     def root(self, group: int, radicand: Jet) -> Number:
         self.scan.find(group, radicand)
@@ -653,4 +653,4 @@ def count(scan: EventScan, group: int, key: str, angle: Number) -> None:
     """Count the turns of an angle on the mesh."""
     branches, mesh = scan.branches, scan.mesh
     quick = QuickTurns(scan.continuation, mesh, group).in_plan(group, key)
-    branches.turns[key] = counted(angle, mesh, branches.angles.get(key, 0.0), branches.initial, quick)
+    branches.turns[key] = count_turns(angle, mesh, branches.angles.get(key, 0.0), branches.initial, quick)

@@ -103,7 +103,7 @@ def first_jump(law: Law, first: float, last: float, least: float) -> Jump | None
 def _suspects(law: TextLaw, mesh: Array) -> Array:
     """Times at which a number whose zeros matter changes its sign, or turns round towards zero."""
     found = [np.empty(0)]
-    for number, jet in enumerate(_kept(law, mesh, 1)):
+    for number, jet in enumerate(_watched_jets(law, mesh, 1)):
         value, slope = (np.broadcast_to(jet.derivative(k), mesh.shape) for k in (0, 1))
         with np.errstate(all="ignore"):
             dips = (value[:-1] * slope[:-1] < 0.0) & (value[1:] * slope[1:] >= 0.0)
@@ -121,7 +121,7 @@ def _turns(law: TextLaw, number: int, low: Array, high: Array) -> Array:
     """Where a number turns round."""
 
     def slope(x: Array) -> tuple[Array, Array]:
-        jet = _kept(law, x, 2)[number]
+        jet = _watched_jets(law, x, 2)[number]
         return np.broadcast_to(jet.derivative(1), x.shape), np.broadcast_to(jet.derivative(2), x.shape)
 
     return newton_roots(slope, low, high)
@@ -131,14 +131,14 @@ def _changes(law: TextLaw, number: int, nodes: Array) -> Array:
     """Where a number changes its sign, zero being a sign of its own."""
 
     def sign(x: Array) -> Array:
-        return np.broadcast_to(np.sign(_kept(law, x, 0)[number].value), x.shape)
+        return np.broadcast_to(np.sign(_watched_jets(law, x, 0)[number].value), x.shape)
 
     at = sign(nodes)
     cells = np.flatnonzero(at[:-1] != at[1:])[:MOST]
     return bisect(lambda x: sign(x) == at[cells], nodes[cells], nodes[cells + 1])[1]
 
 
-def _kept(law: TextLaw, time: Array, order: int) -> list[Jet]:
+def _watched_jets(law: TextLaw, time: Array, order: int) -> list[Jet]:
     watching = _Watching()
     with np.errstate(all="ignore"):
         law.jet(watching, Jet.variable(time, order))

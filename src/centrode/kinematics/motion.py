@@ -14,9 +14,9 @@ import pandas as pd
 import xarray as xr
 
 from centrode.errors import STATUSES_OF_MOTION, InputError
-from centrode.kinematics.path import SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.solve import Progress, Solved, asked_span, solve
+from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.solve import Progress, Solved, requested_grid, solve
 from centrode.locale import _, speaking
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
@@ -55,7 +55,7 @@ def dataset_of(solved: Solved, vary: Mapping[str, Any] | None = None) -> xr.Data
     return data
 
 
-def named(
+def vocabulary_variable(
     name: str, dimensions: tuple[str, ...], values: Any, drive_unit: str = "rad", length_unit: str = "m"
 ) -> Variable:
     """A variable of the vocabulary with its dimensions, values and attributes."""
@@ -84,7 +84,7 @@ def _in_time(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
             if values is None:
                 continue
             name, dimensions = kind.names[order], (*front, "sample", *kind.dimensions)
-            found[name] = named(name, dimensions, _lanes(values, front), length_unit=unit)
+            found[name] = vocabulary_variable(name, dimensions, _lanes(values, front), length_unit=unit)
     return found
 
 
@@ -138,7 +138,7 @@ def _coefficients(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]
         for kind in kinds_of(solved):
             name, dimensions = f"{kind.prefix}{word}_coefficient", (*front, "sample", *kind.dimensions)
             values = _lanes(kind.orders[order], front)
-            found[name] = named(name, dimensions, values, unit, _length_unit(solved))
+            found[name] = vocabulary_variable(name, dimensions, values, unit, _length_unit(solved))
     return found
 
 
@@ -151,17 +151,19 @@ def _contacts(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     if not solved.ready.mechanism.rolling:
         return {}
     dimensions = (*front, "sample", "rolling", "axis")
-    return {"contact": named("contact", dimensions, _lanes(solved.contacts, front))}
+    return {"contact": vocabulary_variable("contact", dimensions, _lanes(solved.contacts, front))}
 
 
 def judgements_of(solved: Solved, front: tuple[str, ...]) -> dict[str, Variable]:
     """Status and residual of every sample."""
-    dimensions, status, attributes = named("status", (*front, "sample"), _lanes(solved.status, front))
+    dimensions, status, attributes = vocabulary_variable(
+        "status", (*front, "sample"), _lanes(solved.status, front)
+    )
     attributes["flag_values"] = np.array([s.value for s in STATUSES_OF_MOTION], dtype=np.int8)
     attributes["flag_meanings"] = " ".join(s.name.lower() for s in STATUSES_OF_MOTION)
     return {
         "status": (dimensions, status, attributes),
-        "residual": named("residual", (*front, "sample"), _lanes(solved.residual, front)),
+        "residual": vocabulary_variable("residual", (*front, "sample"), _lanes(solved.residual, front)),
     }
 
 
@@ -171,15 +173,15 @@ def _events(solved: Solved) -> dict[str, Variable]:
     with speaking("en"):
         groups = [name_of(solved.ready.structure.groups[event.group]) for event in events]
     kinds = np.array([EVENT_KINDS.index(event.kind) for event in events], dtype=np.int8)
-    dimensions, values, attributes = named("event_kind", ("event",), kinds)
+    dimensions, values, attributes = vocabulary_variable("event_kind", ("event",), kinds)
     attributes["flag_values"] = np.arange(len(EVENT_KINDS), dtype=np.int8)
     attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in EVENT_KINDS)
-    places = named("event_value", ("event",), np.array([event.at for event in events]))
+    places = vocabulary_variable("event_value", ("event",), np.array([event.at for event in events]))
     places[2]["units"] = parameter.variable.unit
     return {
         "event_value": places,
         "event_kind": (dimensions, values, attributes),
-        "event_group": named("event_group", ("event",), np.array(groups, dtype=str)),
+        "event_group": vocabulary_variable("event_group", ("event",), np.array(groups, dtype=str)),
     }
 
 
@@ -190,14 +192,14 @@ def coordinates_of(solved: Solved) -> dict[str, Any]:
     count = len(solved.span.time)
     drives = np.stack([np.broadcast_to(value, (count,)) for value in values.values()], axis=-1)
     units = solved.ready.parameter.units
-    drive_value = named("drive_value", ("sample", "drive"), drives, units[0])
+    drive_value = vocabulary_variable("drive_value", ("sample", "drive"), drives, units[0])
     if len(set(units)) > 1:
         drive_value[2]["units"] = " ".join(units)
     frame = tuple(solved.ready.structure.dimensions.frame)
     joints = {} if solved.spins is None else {"joint": labels_of(solved.layout.angles)}
     wheels = tuple(wheel.id for wheel in solved.ready.mechanism.rolling)
     return {
-        "time": named("time", ("sample",), solved.span.time),
+        "time": vocabulary_variable("time", ("sample",), solved.span.time),
         "drive_value": drive_value,
         "point": labels_of(frame + solved.layout.points),
         "link": labels_of(solved.layout.links),
@@ -233,7 +235,7 @@ def attributes_of(solved: Solved) -> dict[str, Any]:
 Values: TypeAlias = Mapping[str, npt.ArrayLike]
 
 # what machine code needs is not loaded for one motion
-_many = functools.partial(importlib.import_module, "centrode.kinematics.compiled.batch")
+_many = functools.partial(importlib.import_module, "centrode.kinematics.machine_code.batch")
 
 
 def motion(
@@ -277,13 +279,13 @@ def motion(
     prepared = ready(mechanism)
     numbers, lanes = _batch(mechanism, vary)
     if at is None:
-        span = asked_span(prepared, samples, start, stop)
+        span = requested_grid(prepared, samples, start, stop)
     else:
-        span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
-    return dataset_of(_solved(prepared, span, numbers, lanes, progress), vary)
+        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+    return dataset_of(_solve_range(prepared, span, numbers, lanes, progress), vary)
 
 
-def _solved(
+def _solve_range(
     ready: Ready, span: SampleGrid, numbers: Dimensions | None, lanes: int, progress: Progress | None
 ) -> Solved:
     if numbers is None:

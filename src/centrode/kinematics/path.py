@@ -88,12 +88,12 @@ class TimeScale:
 
     def beyond(self, low: float, high: float, units: float) -> tuple[float, float]:
         """A range with so many units added at both ends; those of the next stretches count where they are near."""
-        return self._moved(low, -units), self._moved(high, units)
+        return self._advance(low, -units), self._advance(high, units)
 
     def nodes(self, low: float, high: float) -> Array:
         """Mesh nodes from the last one below `low` to the first one above `high`."""
         found = []
-        for k in self._stretches(self._moved(low, -0.1), self._moved(high, 0.1)):
+        for k in self._stretches(self._advance(low, -0.1), self._advance(high, 0.1)):
             first, last = _ends(k, self.base)
             step = self._unit(k) * tau / NODES_PER_TURN
             least = max(0, int(np.floor((low - first) / step)) - 2)
@@ -102,7 +102,7 @@ class TimeScale:
             found.append(nodes[nodes < last])
         return np.concatenate(found)
 
-    def _moved(self, time: float, units: float) -> float:
+    def _advance(self, time: float, units: float) -> float:
         here = self._stretch(time)
         there = here + (1 if units > 0.0 else -1)
         reached = time + units * self._unit(here)
@@ -229,7 +229,7 @@ class Path:
         """The same path with the unit that is fit for all of a range."""
         return self if self.pace is None else replace(self, unit=self.pace.finest(low, high))
 
-    def taken(self, take: Callable[[Number], Number]) -> Path:
+    def take(self, take: Callable[[Number], Number]) -> Path:
         """The paths of chosen mechanisms of a batch."""
         if not self.held:
             return self
@@ -390,7 +390,7 @@ class SampleGrid:
         return bool(self.second_rate.any())
 
 
-def span_of(
+def even_grid(
     path: Path,
     samples: int,
     start: float | None,
@@ -426,7 +426,7 @@ def span_of(
     return span
 
 
-def span_at(path: Path, places: Array) -> SampleGrid:
+def grid_at(path: Path, places: Array) -> SampleGrid:
     """Samples at given places: values of the drive [rad or m], or times [s] where the drive is a law."""
     if places.ndim != 1 or not 1 <= len(places) <= reading.SAMPLES or not np.isfinite(places).all():
         raise InputError("at", _("it needs finite values of the drive, one or more, in one dimension"))

@@ -35,7 +35,7 @@ class EvaluationPolicy:
         """A number that a group divides by."""
         return divisor
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         """An angle in (-pi, pi] with the turns that its path has made."""
         return angle
 
@@ -60,7 +60,7 @@ class FixedSigns(EvaluationPolicy):
     def root(self, group: int, radicand: Number) -> Number:
         return self.m.sqrt(radicand) * self.signs[group]
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         return self.turned(key, angle)
 
 
@@ -79,9 +79,9 @@ class SideChoices:
         """A number that the group divides by."""
         return self.hooks.divisor(self.group, divisor)
 
-    def continued(self, key: str, angle: Number) -> Number:
+    def continue_angle(self, key: str, angle: Number) -> Number:
         """An angle in (-pi, pi] with the turns that its path has made; `key` names it."""
-        return self.hooks.continued(self.group, key, angle)
+        return self.hooks.continue_angle(self.group, key, angle)
 
     def higher(self, m: Namespace, at: Positions) -> None:
         """Add what the group gives, if it is of higher class."""
@@ -125,7 +125,7 @@ class Kinematics:
         """Add the angles, with their turns, of links of a group on which gears or rolling wheels depend."""
         for link in self.structure.counted[group]:
             if link not in at.angles:
-                at.angles[link] = hooks.continued(group, link, own_angle(m, self.numbers, at, link))
+                at.angles[link] = hooks.continue_angle(group, link, own_angle(m, self.numbers, at, link))
 
     def guard(self, m: Namespace, parameter: Number, group: int, hooks: EvaluationPolicy) -> Number:
         """The number whose sign decides whether a group closes: its radicand, or the divisor of a group without one."""
@@ -139,13 +139,13 @@ class Kinematics:
             return reached.value
         raise ValueError(f"group {group} has neither a radicand nor a divisor")
 
-    def taken(self, lanes: Any) -> Kinematics:
+    def take(self, lanes: Any) -> Kinematics:
         """The same plan with the numbers of chosen mechanisms of the batch, one for each entry of `lanes`."""
 
         def take(x: Number) -> Number:
             return x if isinstance(x, float) else x.reshape(-1)[lanes]
 
-        return Kinematics(self.structure, self.numbers.mapped(take), self.path.taken(take))
+        return Kinematics(self.structure, self.numbers.map_numbers(take), self.path.take(take))
 
 
 def own_angle(m: Namespace, numbers: Dimensions, at: Positions, link: str) -> Number:
@@ -175,8 +175,8 @@ class _UpTo(EvaluationPolicy):
             raise ReachedRadicand(divisor)
         return divisor
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
-        return self.hooks.continued(group, key, angle)
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
+        return self.hooks.continue_angle(group, key, angle)
 
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         self.hooks.higher(group, m, at)
@@ -207,7 +207,7 @@ class Turns:
     turns: Array
     quick: Sequence[TurnedStretch] = ()
 
-    def continued(self, angle: Number, parameter: Array, lanes: Lanes | None) -> Number:
+    def continue_angle(self, angle: Number, parameter: Array, lanes: Lanes | None) -> Number:
         """An angle in (-pi, pi], over any algebra, with its turns at parameters as `EvaluationPolicy` has them."""
         node = nearest_node(self.mesh, parameter)
         if lanes is None:
@@ -222,14 +222,14 @@ class Turns:
         return angle + TURN * whole if whole.any() else angle
 
 
-def counted(
+def count_turns(
     angle: Number, mesh: Array, initial: float, start: float, quick: Sequence[TurnedStretch] = ()
 ) -> Turns:
     """Turns of an angle on a mesh (nodes,); `initial` is its value at the parameter `start`."""
     values = np.atleast_2d(np.asarray(_value(angle), dtype=np.float64))
     values = np.broadcast_to(values, (values.shape[0], len(mesh)))
     node = int(np.argmin(np.abs(mesh - start)))
-    values = _bridged(values, node)
+    values = _fill_gaps(values, node)
     steps = np.round((values[:, :-1] - values[:, 1:]) / TURN)
     with_quick_steps(steps, quick)
     turns = np.zeros(values.shape)
@@ -238,7 +238,7 @@ def counted(
     return Turns(mesh, values, turns, quick)
 
 
-def _bridged(values: Array, start: int) -> Array:
+def _fill_gaps(values: Array, start: int) -> Array:
     """Gaps filled by the last known value on the way from the start, in both directions; zero if there is none."""
     known = np.isfinite(values)
     if known.all():

@@ -73,7 +73,7 @@ class QuickTurns:
 
     @cached_property
     def _positions(self) -> tuple[Positions, Dimensions]:
-        kinematics = self.continuation.kinematics.taken(self._lanes)
+        kinematics = self.continuation.kinematics.take(self._lanes)
         with np.errstate(all="ignore"):
             hooks = self.continuation.hooks(ARRAYS, self._parameter, self._lanes)
             return kinematics.positions(ARRAYS, self._parameter, hooks), kinematics.numbers
@@ -83,22 +83,22 @@ class QuickTurns:
         if not self.stretches:
             return []
         at, numbers = self._positions
-        return self._divided(angle(numbers, at))
+        return self._divide_stretches(angle(numbers, at))
 
     def in_plan(self, group: int, key: str) -> list[TurnedStretch]:
         """How an angle turns that a group of the plan itself counts."""
         if not self.stretches:
             return []
-        kinematics = self.continuation.kinematics.taken(self._lanes)
+        kinematics = self.continuation.kinematics.take(self._lanes)
         hooks = _Counted(self.continuation, ARRAYS, self._parameter, self._lanes, group, key)
         try:
             with np.errstate(all="ignore"):
                 kinematics.positions(ARRAYS, self._parameter, hooks)
         except ReachedRadicand as reached:
-            return self._divided(reached.value)
+            return self._divide_stretches(reached.value)
         return []
 
-    def _divided(self, angle: Number) -> list[TurnedStretch]:
+    def _divide_stretches(self, angle: Number) -> list[TurnedStretch]:
         ends = np.cumsum([len(s.places) for s in self.stretches])
         angles = np.split(np.broadcast_to(angle, (ends[-1],)), ends[:-1])
         return [TurnedStretch.of(s, part) for s, part in zip(self.stretches, angles, strict=True)]
@@ -119,10 +119,10 @@ class _Counted(Smooth):
         super().__init__(continuation, m, parameter, lanes)
         self.group, self.key = group, key
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         if (group, key) == (self.group, self.key):
             raise ReachedRadicand(angle)
-        return super().continued(group, key, angle)
+        return super().continue_angle(group, key, angle)
 
 
 def _stretches(lane: int, windows: list[tuple[float, float]], mesh: Array) -> list[ParameterStretch]:

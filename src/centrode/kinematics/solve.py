@@ -13,10 +13,10 @@ from centrode.errors import InputError
 from centrode.kinematics.assembly import with_phases
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.path import SampleGrid, span_of
+from centrode.kinematics.path import SampleGrid, even_grid
 from centrode.kinematics.plan_evaluation import Branches, Event, Kinematics, PlanLayout, layout_of
-from centrode.kinematics.prepared import Ready
-from centrode.kinematics.sampling import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
+from centrode.kinematics.preparation import Ready
+from centrode.kinematics.samples import Kept, MotionOnPath, ResultArrays, Samples, contacts_at, start_of
 from centrode.locale import _
 from centrode.model.settings import REACHABLE
 from centrode.structure.dimensions import Dimensions
@@ -75,7 +75,7 @@ class Solved:
         return sorted((e for e in inside if e.lane == lane), key=lambda e: e.at)
 
 
-def asked_span(ready: Ready, samples: int | None, start: float | None, stop: float | None) -> SampleGrid:
+def requested_grid(ready: Ready, samples: int | None, start: float | None, stop: float | None) -> SampleGrid:
     """Evenly spaced samples; what is left out is what the description asks for."""
     study = ready.mechanism.study
     start = study.start if start is None else start
@@ -83,7 +83,7 @@ def asked_span(ready: Ready, samples: int | None, start: float | None, stop: flo
     count = samples if samples is not None else study.samples or DEFAULT_SAMPLES
     reachable = study.range == REACHABLE
     reach = _reach_if_needed(ready, start, stop, reachable)
-    return span_of(ready.kinematics.path, count, start, stop, reach, reachable)
+    return even_grid(ready.kinematics.path, count, start, stop, reach, reachable)
 
 
 def solve(
@@ -114,7 +114,7 @@ def solve(
         ready,
         span,
         layout,
-        _joined([part.branches for part in parts]),
+        _join_branches([part.branches for part in parts]),
         points,
         points[:, :, :, len(kinematics.numbers.frame) :],
         room.turned,
@@ -182,7 +182,9 @@ def of_batch(kinematics: Kinematics, numbers: Dimensions) -> Kinematics:
 
 def _upright(numbers: Dimensions) -> Dimensions:
     """Arrays of a batch as columns, so that they meet samples in the last axis."""
-    return numbers.mapped(lambda x: x if isinstance(x, float) else np.asarray(x, dtype=np.float64)[:, None])
+    return numbers.map_numbers(
+        lambda x: x if isinstance(x, float) else np.asarray(x, dtype=np.float64)[:, None]
+    )
 
 
 def of_lanes(kinematics: Kinematics, rows: slice | npt.NDArray[np.intp]) -> Kinematics:
@@ -191,7 +193,7 @@ def of_lanes(kinematics: Kinematics, rows: slice | npt.NDArray[np.intp]) -> Kine
     def cut(x: Number) -> Number:
         return x if isinstance(x, float) else x[rows]
 
-    return replace(kinematics, numbers=kinematics.numbers.mapped(cut))
+    return replace(kinematics, numbers=kinematics.numbers.map_numbers(cut))
 
 
 @dataclass(frozen=True)
@@ -212,7 +214,7 @@ def _solve_part(ready: Ready, kinematics: Kinematics, span: SampleGrid, samples:
     return _Part(places.continuation.branches, found.residual, found.worst_constraint, contacts)
 
 
-def _joined(parts: Sequence[Branches]) -> Branches:
+def _join_branches(parts: Sequence[Branches]) -> Branches:
     """The branches of a batch from those of its parts: signs and events, which is what is asked for afterwards."""
     if len(parts) == 1:
         return parts[0]

@@ -1,7 +1,7 @@
 """Motion laws of one variable: what a drive does in time, and how a cam lifts, over any algebra."""
 
 from centrode.laws.laws import ShaftLaw, TableLaw, TextLaw, Uniform
-from centrode.laws.rises import CURVES, Curve, Law, Piece
+from centrode.laws.rises import CURVES, Law, Piece, RiseCurve
 from centrode.laws.segments import (
     B_SPLINE,
     DEGREE,
@@ -10,7 +10,7 @@ from centrode.laws.segments import (
     POLYNOMIAL,
     SEGMENT_CURVES,
     THROUGH_POINTS,
-    Segment,
+    LawSegment,
     SegmentedLaw,
 )
 
@@ -24,9 +24,9 @@ __all__ = [
     "Piece",
     "SEGMENT_CURVES",
     "THROUGH_POINTS",
-    "Curve",
+    "RiseCurve",
     "Law",
-    "Segment",
+    "LawSegment",
     "SegmentedLaw",
     "ShaftLaw",
     "TableLaw",

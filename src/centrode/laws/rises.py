@@ -142,7 +142,7 @@ def row_at(breaks: Sequence[float], rows: Sequence[Row], t: Number) -> Row:
 
 
 @dataclass(frozen=True)
-class Curve:
+class RiseCurve:
     """A rise s(u) by formulas between breaks 0 < ... < 1; outside 0 to 1 those at the ends go on."""
 
     breaks: tuple[float, ...]
@@ -158,19 +158,19 @@ class Curve:
         return self.whole.jet(m, u)
 
 
-def _symmetric(*half: tuple[float, Piece]) -> Curve:
+def _symmetric(*half: tuple[float, Piece]) -> RiseCurve:
     """The curve with s(u) + s(1 - u) = 1 from the pieces of its first half, each with its end."""
     ends = [end for end, _piece in half]
     pieces = [piece for _end, piece in half]
     other = [piece.mirrored() for piece in reversed(pieces)]
     breaks = (0.0, *ends, *(1.0 - end for end in reversed(ends[:-1])), 1.0)
-    return Curve(breaks, (*pieces, *other))
+    return RiseCurve(breaks, (*pieces, *other))
 
 
 _SINE = 1.0 / (4.0 + pi)
 _TRAPEZOID = 1.0 / (2.0 + pi)
 
-CURVES: dict[str, Curve] = {
+CURVES: dict[str, RiseCurve] = {
     "uniform": _symmetric((0.5, Piece(0.0, 0.0, (1.0,)))),
     "harmonic": _symmetric((0.5, Piece(0.0, 0.0, wave=pi / 2, square=1.0))),
     "cycloidal": _symmetric((0.5, Piece(0.0, 0.0, wave=2 * pi, cycloid=0.5 / pi))),

@@ -52,7 +52,7 @@ def polynomial(conditions: Sequence[Condition]) -> list[tuple[float, Piece]]:
     unit = conditions[-1][0] - conditions[0][0]
     found = []
     for end, node, (time, _given) in zip(ends, nodes, conditions, strict=True):
-        rounded = _rounded(_about(powers, node), int(Fraction(unit) * ticks), divisor)
+        rounded = _coefficients_in_units(_about(powers, node), int(Fraction(unit) * ticks), divisor)
         found.append((end, Piece(time, rounded[0], tuple(rounded[1:]), unit=unit)))
     return found
 
@@ -100,7 +100,7 @@ def _about(powers: list[int], node: int) -> list[int]:
     return shifted
 
 
-def _rounded(powers: list[int], unit: int, divisor: int) -> list[float]:
+def _coefficients_in_units(powers: list[int], unit: int, divisor: int) -> list[float]:
     """Coefficients for a distance that is counted in units."""
     try:
         return [c * unit**k / divisor for k, c in enumerate(powers)]
@@ -190,7 +190,7 @@ def _coefficients(places: Numbers, rates: list[Numbers], knots: Numbers, degree:
         rows.append({k: b for k, b in width.items() if 0 <= k < len(inner)})
         rows[number].setdefault(number, 0.0)
         sides.append(side)
-    solved = _eliminated(rows, sides)
+    solved = _solve_banded(rows, sides)
     return [*left, *solved, *right][:count]
 
 
@@ -214,7 +214,7 @@ def _at_end(rates: Numbers, knots: Numbers, degree: int) -> Numbers:
     return found
 
 
-def _eliminated(rows: list[dict[int, float]], sides: Numbers) -> Numbers:
+def _solve_banded(rows: list[dict[int, float]], sides: Numbers) -> Numbers:
     """The solution of a banded system by elimination without pivoting."""
     count = len(rows)
     for k in range(count):
@@ -288,7 +288,7 @@ INNER_JUMPS = {"modified sine": 4, "modified trapezoid": 4}
 
 
 @dataclass(frozen=True)
-class Segment:
+class LawSegment:
     """A stretch of a motion.
 
     Attributes
@@ -381,7 +381,7 @@ class SegmentedLaw:
         No segments, or one so short that it is lost beside the others.
     """
 
-    segments: tuple[Segment, ...]
+    segments: tuple[LawSegment, ...]
     repeat: bool = False
     whole: Pieces = field(init=False, repr=False, compare=False)
     ends: tuple[float, ...] = field(init=False, repr=False, compare=False)

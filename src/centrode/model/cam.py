@@ -15,17 +15,17 @@ from centrode.model import reading
 from centrode.model.links import part_tables
 from centrode.model.reading import (
     KEY,
+    DescriptionPart,
     FrozenMap,
-    Part,
     Problem,
     Problems,
+    bounded_list,
     choice,
     likely,
-    listed,
     missing_key,
     named_entries,
     nearest,
-    shown,
+    value_text,
 )
 from centrode.model.settings import CamReportWishes, Display, read_samples
 from centrode.model.values import (
@@ -78,14 +78,14 @@ def _read_letter(key: object) -> str:
     name = str(key)
     if LETTER.fullmatch(name) and name not in ("phi", "pi", "e"):
         return name
-    what = _("{name} cannot be a letter of a formula").format(name=shown(name))
+    what = _("{name} cannot be a letter of a formula").format(name=value_text(name))
     raise Problem(what, _("use letters, digits and underscores, a letter in front; phi, pi and e are taken"))
 
 
 def read_flag(value: object) -> bool:
     """True or false."""
     if not isinstance(value, bool):
-        raise Problem(_("expected true or false, got {value}").format(value=shown(value)))
+        raise Problem(_("expected true or false, got {value}").format(value=value_text(value)))
     return value
 
 
@@ -93,7 +93,7 @@ def read_steepness(value: object, kind: str) -> float:
     """A greatest pressure angle [rad], below a right angle."""
     number = positive(value, kind)
     if number >= math.pi / 2:
-        what = _("{key} must be smaller than 90 deg, got {value}").format(key=KEY, value=shown(value))
+        what = _("{key} must be smaller than 90 deg, got {value}").format(key=KEY, value=value_text(value))
         raise Problem(what, _("at 90 deg the follower stalls"))
     return number
 
@@ -102,7 +102,7 @@ def read_poisson(value: object, kind: str) -> float:
     """A Poisson's ratio."""
     number = si(value, kind)
     if not 0 <= number <= 0.5:
-        what = _("{key} must lie between 0 and 0.5, got {value}").format(key=KEY, value=shown(value))
+        what = _("{key} must lie between 0 and 0.5, got {value}").format(key=KEY, value=value_text(value))
         raise Problem(what, _("it is 0.3 for steel"))
     return number
 
@@ -113,7 +113,7 @@ def whole(least: int, most: int) -> PlainValidator:
     def read(value: object) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
             what = _("{key} must be a whole number from {least} to {most}, got {value}")
-            raise Problem(what.format(key=KEY, least=least, most=most, value=shown(value)))
+            raise Problem(what.format(key=KEY, least=least, most=most, value=value_text(value)))
         return value
 
     return PlainValidator(read)
@@ -149,7 +149,7 @@ def read_parameters(value: object) -> FrozenMap[str, tuple[float, float]]:
 def _read_parameter(key: object) -> str:
     if isinstance(key, str) and (key in PARAMETERS or POINT.fullmatch(key) or CONSTANT.fullmatch(key)):
         return key
-    what = _("{name} cannot be chosen").format(name=shown(key))
+    what = _("{name} cannot be chosen").format(name=value_text(key))
     names = ", ".join([*PARAMETERS, "curvature.points.1", "curvature.constants.a"])
     known = _("known are: {names}").format(names=names)
     raise Problem(what, (likely(key, PARAMETERS) if isinstance(key, str) else "") or known)
@@ -157,7 +157,7 @@ def _read_parameter(key: object) -> str:
 
 def _read_bounds(name: str, pair: object) -> tuple[float, float]:
     if not isinstance(pair, list | tuple) or len(pair) != 2:
-        what = _("expected {form}, got {value}").format(form=_("[least, greatest]"), value=shown(pair))
+        what = _("expected {form}, got {value}").format(form=_("[least, greatest]"), value=value_text(pair))
         raise Problem(what, at=(name,))
     try:
         low, high = (_of_kinds(end, _kinds_of(name)) for end in pair)
@@ -209,7 +209,7 @@ MINIMISED = ("size", "stress", "pressure_angle")
 MEASURED = (*MINIMISED, "lift", "gap")
 
 
-class Curvature(Part):
+class Curvature(DescriptionPart):
     """The law K(phi) of the curvature of the path of the roller's centre.
 
     Attributes
@@ -267,31 +267,31 @@ class Curvature(Part):
 
 
 def _foreign(law: str, key: str) -> Problem:
-    what = _("a law of kind {law} has no {key}").format(law=shown(law), key=shown(key))
+    what = _("a law of kind {law} has no {key}").format(law=value_text(law), key=value_text(key))
     return Problem(what, _("take it out, or change the law"))
 
 
-class Start(Part):
+class Start(DescriptionPart):
     """The path at phi = 0: `radius` [m] of the roller's centre, `pressure_angle` [rad] there."""
 
     radius: Size
     pressure_angle: Angle = 0.0
 
 
-class NumberRange(Part):
+class NumberRange(DescriptionPart):
     """Ends of the path [rad], "from" and "to" in a file; phi = 0 lies between."""
 
     start: Annotated[Angle, Field(alias="from")] = 0.0
     stop: Annotated[Angle, Field(alias="to")]
 
 
-class Roller(Part):
+class Roller(DescriptionPart):
     """The follower's roller: `radius` [m]."""
 
     radius: Size
 
 
-class Return(Part):
+class Return(DescriptionPart):
     """The arc that brings the roller back from the end of the working arc to its beginning.
 
     Attributes
@@ -316,7 +316,7 @@ class Return(Part):
     convex: Flag = False
 
 
-class CamMover(Part):
+class CamMover(DescriptionPart):
     """A wheel that walks on legs.
 
     Attributes
@@ -331,17 +331,17 @@ class CamMover(Part):
 
     legs: Annotated[int, whole(LEAST_LEGS, MOST_LEGS)]
     post: Annotated[float, quantity("length", not_negative)] = 0.0
-    working_arc: Annotated[tuple[Angle, ...], listed(2)] | None = None
+    working_arc: Annotated[tuple[Angle, ...], bounded_list(2)] | None = None
 
 
-class Material(Part):
+class Material(DescriptionPart):
     """A material: `elasticity` (modulus) [Pa] and Poisson's ratio `poisson`."""
 
     elasticity: Stress
     poisson: Annotated[float, quantity("ratio", read_poisson)] = 0.3
 
 
-class CamContact(Part):
+class CamContact(DescriptionPart):
     """The contact of roller and cam.
 
     Attributes
@@ -366,7 +366,7 @@ class CamContact(Part):
     outer: Flag = False
 
 
-class Choose(Part):
+class Choose(DescriptionPart):
     """Parameters to be chosen so that bounds hold and something is least.
 
     Attributes
@@ -394,7 +394,7 @@ class Choose(Part):
     ] = None
 
 
-class CamStudy(Part):
+class CamStudy(DescriptionPart):
     """What is to be computed.
 
     Attributes
@@ -409,13 +409,13 @@ class CamStudy(Part):
 
     samples: Annotated[int, PlainValidator(read_samples)] | None = None
     terms: Annotated[int, whole(2, MOST_TERMS)] = 20
-    instants: Annotated[tuple[Angle, ...], listed(reading.INSTANTS)] = ()
+    instants: Annotated[tuple[Angle, ...], bounded_list(reading.INSTANTS)] = ()
 
 
-SomeCam = TypeVar("SomeCam", bound=Part)
+SomeCam = TypeVar("SomeCam", bound=DescriptionPart)
 
 
-class Cam(Part):
+class Cam(DescriptionPart):
     """A fixed cam and a carrier that leads a roller about it, by the curvature of the roller's path.
 
     The arguments are those of a file (docs: cams), as parts or as plain dicts, texts with units included:
@@ -506,7 +506,7 @@ def _of_choice(cam: Cam) -> list[Problem]:
     problems = []
     for name in cam.choose.parameters:
         if not _has(cam, name):
-            what = _("the cam has no {name}").format(name=shown(name))
+            what = _("the cam has no {name}").format(name=value_text(name))
             problems.append(Problem(what, _("choose what the description gives"), ("choose", "parameters")))
     stressed = cam.choose.stress is not None or "stress" in (cam.choose.minimise, cam.choose.trade_off)
     if stressed and cam.contact is None:
@@ -534,7 +534,9 @@ def varied(cam: SomeCam, values: Mapping[str, float]) -> SomeCam:
     for path, value in values.items():
         table, _dot, key = path.partition(".")
         if not isinstance(tables.get(table), dict) or not key:
-            raise InputError("", _("the cam has no {name}").format(name=shown(path)), nearest(path, tables))
+            raise InputError(
+                "", _("the cam has no {name}").format(name=value_text(path)), nearest(path, tables)
+            )
         if POINT.fullmatch(path):
             _put_point(tables[table], path, value)
         elif CONSTANT.fullmatch(path):
@@ -548,7 +550,7 @@ def _put_point(curvature: dict[str, Any], path: str, value: float) -> None:
     points = [list(point) for point in curvature.get("points", ())]
     number = int(path.rpartition(".")[2])
     if number > len(points):
-        what = _("the cam has no {name}").format(name=shown(path))
+        what = _("the cam has no {name}").format(name=value_text(path))
         raise InputError("", what, _("points of a spline are counted from 1"))
     points[number - 1][1] = value
     curvature["points"] = points

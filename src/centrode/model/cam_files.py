@@ -15,7 +15,7 @@ from centrode.model.files import in_short_lines
 from centrode.model.follower_cam import PlateCam
 from centrode.model.links import part_tables
 from centrode.model.reading import read_file
-from centrode.model.toml import described, is_cam, toml_tables
+from centrode.model.toml import is_cam, parse_tables, toml_tables
 
 AnyCam: TypeAlias = Cam | PlateCam
 """A cam by the curvature of its roller's path, or by the lift of its follower."""
@@ -57,7 +57,7 @@ def cam_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = 
         )
     given = [key for key in _OF_FOLLOWER if key in mapping]
     if not given:
-        return described(Cam, mapping, where, folder)
+        return parse_tables(Cam, mapping, where, folder)
     other = [key for key in _OF_CURVATURE if key in mapping]
     if other:
         what = _("{one} and {other} do not go together: a cam has a curvature law, or a follower's lift")
@@ -65,10 +65,10 @@ def cam_from(mapping: Mapping[str, Any], where: str = "", folder: Path | None = 
             one=f"[{other[0]}]", other="[follower]" if given[0] == "follower" else "[[segments]]"
         )
         raise InputError(where, told, _("keep one of them"))
-    return described(PlateCam, mapping, where, folder)
+    return parse_tables(PlateCam, mapping, where, folder)
 
 
-def curved(cam: AnyCam) -> Cam:
+def require_curvature_cam(cam: AnyCam) -> Cam:
     """The cam itself if it is one by a curvature law; InputError if a follower's lift gives it."""
     if isinstance(cam, Cam):
         return cam

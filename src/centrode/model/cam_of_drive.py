@@ -9,8 +9,8 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.examples import example_names, example_text
 from centrode.model.follower_cam import PlateCam
-from centrode.model.reading import Problem, nearest, read_file, shown
-from centrode.model.toml import described, is_cam, toml_tables
+from centrode.model.reading import Problem, nearest, read_file, value_text
+from centrode.model.toml import is_cam, parse_tables, toml_tables
 from centrode.model.values import READING
 
 
@@ -19,12 +19,12 @@ def read_plate_cam(value: object) -> PlateCam | None:
     if value is None or isinstance(value, PlateCam):
         return value
     if isinstance(value, Mapping):
-        return _described(value, "")
+        return _parse_plate_cam(value, "")
     if not isinstance(value, str):
         what = _("expected the name of a cam's file or of a built-in cam, got {value}")
-        raise Problem(what.format(value=shown(value)))
+        raise Problem(what.format(value=value_text(value)))
     try:
-        return _described(toml_tables(_text(value), value), value)
+        return _parse_plate_cam(toml_tables(_text(value), value), value)
     except InputError as error:
         raise Problem(": ".join(part for part in (error.where, error.what) if part), error.repair) from None
 
@@ -34,17 +34,17 @@ def _text(name: str) -> str:
     if not name.endswith(".toml"):
         names = example_names("cam")
         if name not in names:
-            what = _("there is no built-in cam {name}").format(name=shown(name))
+            what = _("there is no built-in cam {name}").format(name=value_text(name))
             raise Problem(what, _("a file's name ends in .toml") + "; " + nearest(name, names))
         return example_text(name)
     path = PurePosixPath(name.replace("\\", "/"))
     if not name.isprintable() or path.is_absolute() or ".." in path.parts or ":" in name:
-        what = _("{name} does not lie beside the description").format(name=shown(name))
+        what = _("{name} does not lie beside the description").format(name=value_text(name))
         raise Problem(what, _("put the cam's file into the folder of the description"))
     return read_file(READING.get().folder / path)
 
 
-def _described(tables: Mapping[str, object], name: str) -> PlateCam:
+def _parse_plate_cam(tables: Mapping[str, object], name: str) -> PlateCam:
     """The plate cam that tables describe."""
     if not is_cam(tables):
         what = _("this does not describe a cam")
@@ -53,6 +53,6 @@ def _described(tables: Mapping[str, object], name: str) -> PlateCam:
         what = _("this cam has no follower whose lift could drive something")
         raise Problem(f"{name}: {what}" if name else what, _("write [follower] and [[segments]]"))
     try:
-        return described(PlateCam, tables, name, READING.get().folder)
+        return parse_tables(PlateCam, tables, name, READING.get().folder)
     except InputError as error:
         raise Problem(": ".join(part for part in (error.where, error.what) if part), error.repair) from None

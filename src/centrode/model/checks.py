@@ -13,7 +13,7 @@ from centrode.model import reading
 from centrode.model.description import Description, value_at_start
 from centrode.model.drives import Drive
 from centrode.model.links import Gear, Link, Rolling
-from centrode.model.reading import FRAME, Place, Problem, nearest, shown, two_points
+from centrode.model.reading import FRAME, Place, Problem, nearest, two_points, value_text
 from centrode.model.values import Placed, Vector, makes_arc, unit_vector
 
 if TYPE_CHECKING:
@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 # Checks that a name in a description is one of something: a point, a link, a guide.
 
 
-def known(name: str, names: Iterable[str], kind: str, at: Place, link: str = "") -> Iterator[Problem]:
+def unknown_name_problems(
+    name: str, names: Iterable[str], kind: str, at: Place, link: str = ""
+) -> Iterator[Problem]:
     """The problem, if any, of a name that is none of `names`; `link` is the one whose points they are."""
     candidates = list(names)
     if name in candidates:
@@ -33,12 +35,14 @@ def known(name: str, names: Iterable[str], kind: str, at: Place, link: str = "")
         "guide": _("unknown guide {name}"),
         "point, link or guide": _("unknown point, link or guide {name}"),
     }
-    yield Problem(sentences[kind].format(name=shown(name), link=link), nearest(name, candidates), at)
+    yield Problem(sentences[kind].format(name=value_text(name), link=link), nearest(name, candidates), at)
 
 
 def link_known(mechanism: Description, name: str, at: Place, moving: bool = False) -> Iterator[Problem]:
     """The problem, if any, of a link that is not there; the frame counts as one unless it has to move."""
-    yield from known(name, list(mechanism.links) if moving else [FRAME, *mechanism.links], "link", at)
+    yield from unknown_name_problems(
+        name, list(mechanism.links) if moving else [FRAME, *mechanism.links], "link", at
+    )
 
 
 def two_known_points(mechanism: Description, points: tuple[str, ...] | None, at: Place) -> Iterator[Problem]:
@@ -48,7 +52,7 @@ def two_known_points(mechanism: Description, points: tuple[str, ...] | None, at:
     if len(set(points)) != 2 or len(points) != 2:
         yield Problem(_('two different points are needed: ["A", "B"]'), "", at)
     for point in points:
-        yield from known(point, mechanism.points, "point", at)
+        yield from unknown_name_problems(point, mechanism.points, "point", at)
 
 
 def points_on(mechanism: Description, link: str) -> Iterable[str]:
@@ -76,13 +80,13 @@ def joining_problems(mechanism: Description) -> Iterator[Problem]:
         yield from _once(gear.id, identities, at)
     for index, wheel in enumerate(mechanism.rolling):
         at = ("rolling", index)
-        yield from _rolling(mechanism, wheel, at)
+        yield from _rolling_problems(mechanism, wheel, at)
         yield from _once(wheel.id, identities, at)
 
 
 def _once(identity: str, identities: set[str], at: Place) -> Iterator[Problem]:
     if identity in identities:
-        what = _("there are two gears or rolling wheels {name}").format(name=shown(identity))
+        what = _("there are two gears or rolling wheels {name}").format(name=value_text(identity))
         yield Problem(what, _("give one of them a name of its own: name = ..."), at)
     identities.add(identity)
 
@@ -101,12 +105,12 @@ def _gear(mechanism: Description, gear: Gear, at: Place) -> Iterator[Problem]:
     yield from link_known(mechanism, gear.carrier, (*at, "carrier"))
 
 
-def _rolling(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Problem]:
+def _rolling_problems(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Problem]:
     unknown = list(link_known(mechanism, wheel.link, (*at, "link"), moving=True))
     yield from unknown
     if not unknown:
         local = mechanism.links[wheel.link].coordinates
-        yield from known(wheel.centre, local, "point", (*at, "centre"), wheel.link)
+        yield from unknown_name_problems(wheel.centre, local, "point", (*at, "centre"), wheel.link)
     yield from link_known(mechanism, wheel.on, (*at, "on"))
     if wheel.link == wheel.on:
         what = _("link {link} cannot roll on itself").format(link=wheel.link)
@@ -122,11 +126,13 @@ def _rolling(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Prob
 def _on_track(mechanism: Description, wheel: Rolling, at: Place) -> Iterator[Problem]:
     points = points_on(mechanism, wheel.on)
     if isinstance(wheel.along.centre, str):
-        yield from known(wheel.along.centre, points, "point", (*at, "along", "centre"), wheel.on)
+        yield from unknown_name_problems(
+            wheel.along.centre, points, "point", (*at, "along", "centre"), wheel.on
+        )
     if wheel.centre in points:
         what = _("point {point} is a point of {link} already, the wheel cannot roll on it")
         repair = _("take it out of the link, or let the wheel roll on another one")
-        yield Problem(what.format(point=shown(wheel.centre), link=wheel.on), repair, at)
+        yield Problem(what.format(point=value_text(wheel.centre), link=wheel.on), repair, at)
 
 
 def cylinder_problems(mechanism: Description, drive: Drive, at: Place) -> Iterator[Problem]:
@@ -136,7 +142,7 @@ def cylinder_problems(mechanism: Description, drive: Drive, at: Place) -> Iterat
         if {first, second} <= set(points_on(mechanism, body)):
             what = _("points {first} and {second} both belong to {link}: their distance cannot change")
             repair = _("name points of two different links")
-            told = what.format(first=shown(first), second=shown(second), link=body)
+            told = what.format(first=value_text(first), second=value_text(second), link=body)
             yield Problem(told, repair, (*at, "distance"))
     value = value_at_start(drive)
     if value is not None and value <= 0:
@@ -205,7 +211,7 @@ def _planar_keys(mechanism: Description) -> Iterator[Problem]:
             yield _planar(side, repair, ("assembly", "sides", name))
     for index, load in enumerate(mechanism.loads):
         if isinstance(load.axis, str):
-            yield from known(load.axis, mechanism.points, "point", ("loads", index, "axis"))
+            yield from unknown_name_problems(load.axis, mechanism.points, "point", ("loads", index, "axis"))
 
 
 def _planar(key: str, repair: str, at: Place) -> Problem:
@@ -221,7 +227,7 @@ def _angles(mechanism: Description) -> Iterator[Problem]:
             wrong = list(two_known_points(mechanism, link.reference, (*at, "reference")))
             yield from wrong or _reference(mechanism, link, driven.get(name, FRAME), (*at, "reference"))
         elif link.angle is not None or name in driven:
-            first = shown(next(iter(link.coordinates), "A"))
+            first = value_text(next(iter(link.coordinates), "A"))
             what = _("reference is missing: on the sphere the angle is measured from an arc")
             yield Problem(what, _("add reference = [{first}, ...]").format(first=first), at)
 
@@ -235,11 +241,11 @@ def _reference(mechanism: Description, link: Link, against: str, at: Place) -> I
     elif arcs[0] != points[0]:
         what = _("the reference starts at {point}, the link's first point is {first}")
         repair = _("a link's angle is measured in its first point: start the reference there")
-        yield Problem(what.format(point=shown(arcs[0]), first=shown(points[0])), repair, at)
+        yield Problem(what.format(point=value_text(arcs[0]), first=value_text(points[0])), repair, at)
     else:
         yield from _lengths_of(mechanism, link, at)
         if against != FRAME and against in mechanism.links:
-            yield from _carried(mechanism, arcs, against, at)
+            yield from _reference_problems(mechanism, arcs, against, at)
 
 
 def _lengths_of(mechanism: Description, link: Link, at: Place) -> Iterator[Problem]:
@@ -255,12 +261,14 @@ def _lengths_of(mechanism: Description, link: Link, at: Place) -> Iterator[Probl
                 yield Problem(what, _("choose another second point"), at)
 
 
-def _carried(mechanism: Description, arcs: tuple[str, ...], link: str, at: Place) -> Iterator[Problem]:
+def _reference_problems(
+    mechanism: Description, arcs: tuple[str, ...], link: str, at: Place
+) -> Iterator[Problem]:
     missing = [point for point in arcs if point not in points_on(mechanism, link)]
     if missing:
         what = _("the drive is relative to {link}, but {point} of the reference is no point of it")
         repair = _("name two points of {link}").format(link=link)
-        yield Problem(what.format(link=link, point=shown(missing[0])), repair, at)
+        yield Problem(what.format(link=link, point=value_text(missing[0])), repair, at)
 
 
 # Checks of a cam's follower against the link that it is.
@@ -281,17 +289,17 @@ def follower_problems(mechanism: Description, drive: Drive, at: Place) -> Iterat
     if drive.cam is None or drive.cam_point is None or link not in mechanism.links:
         return
     points = mechanism.links[link].coordinates
-    unknown = list(known(drive.cam_point, points, "point", (*at, "cam_point"), link))
+    unknown = list(unknown_name_problems(drive.cam_point, points, "point", (*at, "cam_point"), link))
     pivot = pivot_of(mechanism, link)
     yield from unknown
     if unknown or pivot is None:
         return
     if pivot == drive.cam_point:
-        what = _("{point} is the pivot of the follower").format(point=shown(pivot))
+        what = _("{point} is the pivot of the follower").format(point=value_text(pivot))
         yield Problem(what, _("name the roller's centre, or the edge"), (*at, "cam_point"))
     elif not _fits(drive.cam, length := math.dist(points[pivot], points[drive.cam_point])):
         what = _("the cam's follower has an arm of {arm:.9g} m, but {point} is {length:.9g} m from its pivot")
-        told = what.format(arm=drive.cam.follower.arm, point=shown(drive.cam_point), length=length)
+        told = what.format(arm=drive.cam.follower.arm, point=value_text(drive.cam_point), length=length)
         yield Problem(told, _("correct one of them"), (*at, "cam_point"))
 
 
@@ -342,11 +350,11 @@ def disconnected_parts(mechanism: Description) -> tuple[LoosePart, ...]:
     for one, other in joints(mechanism):
         neighbours.setdefault(one, set()).add(other)
         neighbours.setdefault(other, set()).add(one)
-    reached = _reached(("link", FRAME), neighbours)
+    reached = _connected_nodes(("link", FRAME), neighbours)
     parts = []
     for node in neighbours:
         if node not in reached:
-            part = _reached(node, neighbours)
+            part = _connected_nodes(node, neighbours)
             reached |= part
             links = tuple(name for name in mechanism.links if ("link", name) in part)
             parts.append(
@@ -355,7 +363,7 @@ def disconnected_parts(mechanism: Description) -> tuple[LoosePart, ...]:
     return tuple(parts)
 
 
-def _reached(start: Node, neighbours: dict[Node, set[Node]]) -> set[Node]:
+def _connected_nodes(start: Node, neighbours: dict[Node, set[Node]]) -> set[Node]:
     reached, waiting = {start}, [start]
     while waiting:
         for node in neighbours[waiting.pop()]:
@@ -381,7 +389,9 @@ def _links(mechanism: Description) -> Iterator[Problem]:
         yield Problem(_("at most {most} points are allowed").format(most=reading.POINTS))
     for name, link in mechanism.links.items():
         if isinstance(link.centre, str):
-            yield from known(link.centre, link.coordinates, "point", ("links", name, "centre"), name)
+            yield from unknown_name_problems(
+                link.centre, link.coordinates, "point", ("links", name, "centre"), name
+            )
 
 
 def _link(name: str, link: Link, at: Place) -> Iterator[Problem]:
@@ -421,17 +431,19 @@ def _guides(mechanism: Description) -> Iterator[Problem]:
     for index, guide in enumerate(mechanism.guides):
         at: Place = ("guides", index)
         if guide.id in identities:
-            what = _("there are two guides {name}").format(name=shown(guide.id))
+            what = _("there are two guides {name}").format(name=value_text(guide.id))
             yield Problem(what, _("give one of them a name of its own: name = ..."), at)
         identities.add(guide.id)
         yield from link_known(mechanism, guide.on, (*at, "on"))
         for key, line in (("through", guide.through), ("pole", guide.pole)):
             if isinstance(line, str) and is_link(mechanism, guide.on):
-                yield from known(line, points_on(mechanism, guide.on), "point", (*at, key), guide.on)
+                yield from unknown_name_problems(
+                    line, points_on(mechanism, guide.on), "point", (*at, key), guide.on
+                )
         if guide.on in mechanism.links and guide.point in mechanism.links[guide.on].coordinates:
             what = _("point {point} is a point of {link} already, it cannot slide on it")
             repair = _("take it out of the link, or guide another point")
-            yield Problem(what.format(point=shown(guide.point), link=guide.on), repair, at)
+            yield Problem(what.format(point=value_text(guide.point), link=guide.on), repair, at)
         if guide.link is not None:
             yield from _guided_link(mechanism, guide.link, guide.point, guide.on, at)
 
@@ -441,7 +453,7 @@ def _guided_link(mechanism: Description, link: str, point: str, on: str, at: Pla
     yield from unknown
     if not unknown and point not in mechanism.links[link].coordinates:
         what = _("link {link} does not contain the guided point {point}").format(
-            link=link, point=shown(point)
+            link=link, point=value_text(point)
         )
         yield Problem(what, nearest(point, mechanism.links[link].coordinates), at)
     if link == on:
@@ -456,7 +468,7 @@ def _drives(mechanism: Description) -> Iterator[Problem]:
         at: Place = ("drives", index)
         if drive.id in identities:
             yield Problem(
-                _("{name} is driven twice").format(name=shown(drive.id)), _("keep one of the drives"), at
+                _("{name} is driven twice").format(name=value_text(drive.id)), _("keep one of the drives"), at
             )
         identities.add(drive.id)
         if drive.link:
@@ -465,7 +477,9 @@ def _drives(mechanism: Description) -> Iterator[Problem]:
         if drive.link and drive.link == drive.relative_to:
             yield Problem(_("a link cannot be driven relative to itself"), _("name another link"), at)
         if drive.guide:
-            yield from known(drive.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide"))
+            yield from unknown_name_problems(
+                drive.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide")
+            )
         if drive.distance:
             wrong = list(two_known_points(mechanism, drive.distance, (*at, "distance")))
             yield from wrong or cylinder_problems(mechanism, drive, at)
@@ -475,22 +489,24 @@ def _drives(mechanism: Description) -> Iterator[Problem]:
 def _rest(mechanism: Description) -> Iterator[Problem]:
     names = [*mechanism.points, *mechanism.links, *(guide.id for guide in mechanism.guides)]
     for name in mechanism.assembly.sides:
-        yield from known(name, names, "point, link or guide", ("assembly", "sides", name))
+        yield from unknown_name_problems(name, names, "point, link or guide", ("assembly", "sides", name))
     for index, load in enumerate(mechanism.loads):
         at: Place = ("loads", index)
         if load.point:
-            yield from known(load.point, mechanism.points, "point", (*at, "point"))
+            yield from unknown_name_problems(load.point, mechanism.points, "point", (*at, "point"))
         if load.link:
             yield from link_known(mechanism, load.link, (*at, "link"), moving=True)
         if load.guide:
-            yield from known(load.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide"))
+            yield from unknown_name_problems(
+                load.guide, [guide.id for guide in mechanism.guides], "guide", (*at, "guide")
+            )
         if load.pin:
             yield from link_known(mechanism, load.pin, (*at, "pin"))
         yield from two_known_points(mechanism, load.points, (*at, "points"))
         yield from link_known(mechanism, load.axes, (*at, "axes"))
         yield from link_known(mechanism, load.relative_to, (*at, "relative_to"))
     for point in mechanism.report.points:
-        yield from known(point, mechanism.points, "point", ("report", "points"))
+        yield from unknown_name_problems(point, mechanism.points, "point", ("report", "points"))
 
 
 def _loose(mechanism: Description) -> Iterator[Problem]:

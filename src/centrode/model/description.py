@@ -21,7 +21,16 @@ from centrode.model.motion_parameter import (
     MotionParameter,
     drive_coordinate,
 )
-from centrode.model.reading import FRAME, FrozenMap, Part, choice, listed, nearest, shown, two_points
+from centrode.model.reading import (
+    FRAME,
+    DescriptionPart,
+    FrozenMap,
+    bounded_list,
+    choice,
+    nearest,
+    two_points,
+    value_text,
+)
 from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
 from centrode.model.simulation import Simulation
 from centrode.model.values import (
@@ -41,7 +50,7 @@ def _read_gravity(value: object) -> tuple[float, ...]:
     return read_axes(value, "acceleration")
 
 
-def _filled(links: Mapping[str, Link]) -> Mapping[str, Link]:
+def _fill_points(links: Mapping[str, Link]) -> Mapping[str, Link]:
     """Links with the two points that a name made of two points stands for, where a link lists none."""
     return FrozenMap({name: _with_points(name, link) for name, link in links.items()})
 
@@ -53,7 +62,7 @@ def _with_points(name: str, link: Link) -> Link:
     return link.model_copy(update={"points": points})
 
 
-class Description(Part):
+class Description(DescriptionPart):
     """The parts of a mechanism, each right in itself, not yet checked against each other; see `Mechanism`."""
 
     title: Text = ""
@@ -62,13 +71,13 @@ class Description(Part):
     radius: PositiveMetres | None = None
     display: Display = Display()
     frame: Frame = Frame()
-    links: Annotated[Mapping[str, Link], link_table, AfterValidator(_filled)]
-    guides: Annotated[tuple[Guide, ...], listed(reading.GUIDES)] = ()
-    gears: Annotated[tuple[Gear, ...], listed(reading.LINKS)] = ()
-    rolling: Annotated[tuple[Rolling, ...], listed(reading.LINKS)] = ()
-    drives: Annotated[tuple[Drive, ...], listed(reading.DRIVES)] = ()
+    links: Annotated[Mapping[str, Link], link_table, AfterValidator(_fill_points)]
+    guides: Annotated[tuple[Guide, ...], bounded_list(reading.GUIDES)] = ()
+    gears: Annotated[tuple[Gear, ...], bounded_list(reading.LINKS)] = ()
+    rolling: Annotated[tuple[Rolling, ...], bounded_list(reading.LINKS)] = ()
+    drives: Annotated[tuple[Drive, ...], bounded_list(reading.DRIVES)] = ()
     assembly: Assembly = Assembly()
-    loads: Annotated[tuple[Load, ...], listed(reading.LOADS)] = ()
+    loads: Annotated[tuple[Load, ...], bounded_list(reading.LOADS)] = ()
     machine: Machine | None = None
     simulation: Simulation | None = None
     study: Study = Study()
@@ -77,7 +86,7 @@ class Description(Part):
     @model_validator(mode="wrap")
     @classmethod
     def _in_its_space(cls, data: Any, handler: ModelWrapValidatorHandler[Description]) -> Description:
-        token = READING.set(_reading(data, READING.get().folder))
+        token = READING.set(_reading_of(data, READING.get().folder))
         try:
             return handler(data)
         finally:
@@ -115,7 +124,7 @@ class Description(Part):
         for guide in self.guides:
             if guide.id == identity:
                 return guide
-        what = _("there is no guide {name}").format(name=shown(identity))
+        what = _("there is no guide {name}").format(name=value_text(identity))
         raise InputError("", what, nearest(identity, [guide.id for guide in self.guides]))
 
     def drive(self, identity: str) -> Drive:
@@ -123,7 +132,7 @@ class Description(Part):
         for drive in self.drives:
             if drive.id == identity:
                 return drive
-        what = _("there is no drive {name}").format(name=shown(identity))
+        what = _("there is no drive {name}").format(name=value_text(identity))
         raise InputError("", what, nearest(identity, [drive.id for drive in self.drives]))
 
     def through(self, guide: Guide) -> Vector:
@@ -184,7 +193,7 @@ def value_at_start(drive: Drive) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _reading(data: object, folder: Path) -> Reading:
+def _reading_of(data: object, folder: Path) -> Reading:
     """Space and kind of the drives, from the raw data, for the values whose meaning they decide."""
     if not isinstance(data, Mapping):
         return Reading(folder=folder)

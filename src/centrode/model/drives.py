@@ -13,8 +13,8 @@ from centrode.locale import _
 from centrode.model.cam_of_drive import read_plate_cam
 from centrode.model.follower_cam import PlateCam
 from centrode.model.motion_parameter import SPEED_KINDS, kind_of_value
-from centrode.model.reading import FRAME, Part, Problem, listed, one_of
-from centrode.model.segments import Segment, read_repeat, read_segments, segmented
+from centrode.model.reading import FRAME, DescriptionPart, Problem, bounded_list, one_of
+from centrode.model.segments import Segment, law_of_segments, read_repeat, read_segments
 from centrode.model.values import (
     READING,
     Angle,
@@ -40,7 +40,7 @@ def _read_law(value: object) -> str:
     return text
 
 
-class Drive(Part):
+class Drive(DescriptionPart):
     """A given motion of one degree of freedom: value(t) = start + law(t).
 
     Attributes
@@ -69,7 +69,7 @@ class Drive(Part):
 
     link: Name | None = None
     guide: Name | None = None
-    distance: Annotated[tuple[Name, ...], listed(2)] | None = None
+    distance: Annotated[tuple[Name, ...], bounded_list(2)] | None = None
     relative_to: Name = FRAME
     start: float | None = None
     speed: float | None = None
@@ -154,7 +154,7 @@ class Drive(Part):
         if self.law is not None:
             return TextLaw(self.law)
         if self.segments is not None:
-            return segmented(self.segments, self.repeat)
+            return law_of_segments(self.segments, self.repeat)
         if self.cam is not None:
             return ShaftLaw(self.cam.lift_law, self.turning or 1.0, self.cam_angle, self.lowers)
         times, values = zip(*self.table or (), strict=True)

@@ -15,8 +15,8 @@ from centrode.locale import _
 from centrode.model.description import Description
 from centrode.model.links import part_tables
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import PLACED, nearest, read_file, shown, two_points
-from centrode.model.toml import described, is_cam, toml_tables
+from centrode.model.reading import PLACED, nearest, read_file, two_points, value_text
+from centrode.model.toml import is_cam, parse_tables, toml_tables
 
 # A mechanism as the tables of its file, with only what differs from the defaults.
 
@@ -63,7 +63,7 @@ def mechanism_from(mapping: Mapping[str, Any], where: str = "", folder: Path | N
     if is_cam(mapping):
         repair = _("compute it with: centrode cam; in Python read it with read_cam")
         raise InputError(where, _("this describes a cam, not a linkage"), repair)
-    return described(Mechanism, mapping, where, folder)
+    return parse_tables(Mechanism, mapping, where, folder)
 
 
 def mechanism_text(mechanism: Mechanism) -> str:
@@ -201,7 +201,7 @@ def _first(rest: str, known: list[str], path: str) -> tuple[str, str]:
 
 
 def _unknown(path: str, word: str, known: list[str]) -> InputError:
-    what = _("there is no {word} in the path {path}").format(word=shown(word), path=shown(path))
+    what = _("there is no {word} in the path {path}").format(word=value_text(word), path=value_text(path))
     return InputError("", what, nearest(word, known))
 
 

@@ -23,7 +23,16 @@ from centrode.laws import SegmentedLaw
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.cam import Flag, Material, Size, Steepness, Stress
-from centrode.model.reading import Part, Problem, Problems, choice, entries, listed, missing_key, shown
+from centrode.model.reading import (
+    DescriptionPart,
+    Problem,
+    Problems,
+    bounded_list,
+    choice,
+    entries,
+    missing_key,
+    value_text,
+)
 from centrode.model.segments import DRIVEN, UNITS, foreign_keys, plain_rate, read_degree, read_through
 from centrode.model.settings import CamReportWishes, Display, read_samples
 from centrode.model.values import Angle, Text, not_negative, positive, quantity, si
@@ -35,7 +44,7 @@ CONTACTS = ("knife", "roller", "flat")
 TURNS = ("counter-clockwise", "clockwise")
 
 
-class CamBody(Part):
+class CamBody(DescriptionPart):
     """The cam: table [cam].
 
     Attributes
@@ -57,7 +66,7 @@ class CamBody(Part):
     material: Material | None = None
 
 
-class Spring(Part):
+class Spring(DescriptionPart):
     """A spring that presses the follower on the cam.
 
     Attributes
@@ -81,7 +90,7 @@ class Spring(Part):
         return not_negative(value, "torque" if DRIVEN.get() == "angle" else "force")
 
 
-class Follower(Part):
+class Follower(DescriptionPart):
     """What the cam moves.
 
     Attributes
@@ -154,10 +163,10 @@ def _belongs(
         return [missing_key(key)] if needed and not has else []
     if not has or given[key] == 0:
         return []
-    return [Problem(_("{key} belongs to {whose}").format(key=shown(key), whose=whose), _("take it out"))]
+    return [Problem(_("{key} belongs to {whose}").format(key=value_text(key), whose=whose), _("take it out"))]
 
 
-class FollowerBounds(Part):
+class FollowerBounds(DescriptionPart):
     """What is admissible: table [bounds].
 
     Attributes
@@ -178,13 +187,13 @@ class FollowerBounds(Part):
     stress: Stress | None = None
 
 
-class Tool(Part):
+class Tool(DescriptionPart):
     """The milling cutter or grinding wheel that the cam is made with: `radius` [m]."""
 
     radius: Size
 
 
-class FollowerStudy(Part):
+class FollowerStudy(DescriptionPart):
     """What is to be computed.
 
     Attributes
@@ -200,7 +209,7 @@ class FollowerStudy(Part):
     """
 
     samples: Annotated[int, PlainValidator(read_samples)] | None = None
-    instants: Annotated[tuple[Angle, ...], listed(reading.INSTANTS)] = ()
+    instants: Annotated[tuple[Angle, ...], bounded_list(reading.INSTANTS)] = ()
     chord_tolerance: Size = 1e-6
     show_undercut: Flag = False
 
@@ -242,12 +251,12 @@ def _rate(value: object, kind: str, order: int) -> float:
 def _read_angle(value: object) -> float:
     angle = positive(value, "angle")
     if angle < LEAST_ANGLE:
-        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
         raise Problem(what, _("stay above {least:g}").format(least=LEAST_ANGLE))
     return angle
 
 
-class LiftSegment(Part):
+class LiftSegment(DescriptionPart):
     """A stretch of a turn, over which the follower rises, falls or dwells.
 
     Attributes
@@ -304,19 +313,23 @@ class LiftSegment(Part):
         return read_through(value, info, "angle", "[angle, lift]")
 
     @property
-    def law(self) -> laws.Segment:
+    def law(self) -> laws.LawSegment:
         """The segment of the law, over angles instead of times; raises InputError where it makes none."""
         degree = laws.DEGREE if self.degree is None else self.degree
-        return laws.Segment(self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, degree)
+        return laws.LawSegment(
+            self.angle, self.to, self.curve, self.at_start, self.at_end, self.through, degree
+        )
 
 
 def _lift_of(value: object) -> float:
     lift = si(value, DRIVEN.get())
     if lift < 0:
         what = _("the lift is counted from its lowest place and not negative, got {value}")
-        raise Problem(what.format(value=shown(value)), _("let the base circle be that of the lowest place"))
+        raise Problem(
+            what.format(value=value_text(value)), _("let the base circle be that of the lowest place")
+        )
     if 0 < lift < reading.LEAST:
-        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
         raise Problem(what, _("stay above {least:g}").format(least=reading.LEAST))
     return lift
 
@@ -334,7 +347,7 @@ def segment_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
     """What is wrong with segments as the lift of a turn: gaps, overlaps, a lift that does not return."""
     if not segments:
         return [Problem(_("no segments are given"), _("write [[segments]] that fill a turn"), ("segments",))]
-    found = _misplaced(segments)
+    found = _start_problems(segments)
     end = math.fsum(segment.angle for segment in segments)
     if not found and end > math.tau + CLOSED:
         what = _("the segments overlap: together they take {angle:.9g} deg, a turn has 360 deg")
@@ -360,7 +373,7 @@ def _swells(segment: LiftSegment) -> bool:
     return any((*lifts, *segment.at_start, *segment.at_end))
 
 
-def _reached(pieces: Sequence[tuple[float, laws.Piece]]) -> float:
+def _lift_bound(pieces: Sequence[tuple[float, laws.Piece]]) -> float:
     """A bound of the lift's size: what the powers of each formula sum up to at its ends."""
     bounds, start = [], 0.0
     for end, piece in pieces:
@@ -371,7 +384,7 @@ def _reached(pieces: Sequence[tuple[float, laws.Piece]]) -> float:
     return max(bounds)
 
 
-def _misplaced(segments: Sequence[LiftSegment]) -> list[Problem]:
+def _start_problems(segments: Sequence[LiftSegment]) -> list[Problem]:
     """Segments that say they begin where the one before does not end."""
     found, end = [], 0.0
     for number, segment in enumerate(segments):
@@ -411,7 +424,7 @@ def _check_formulas(segment: LiftSegment, before: float) -> None:
         what = _("the angles of `through` increase and lie inside the segment, counted from its start")
         raise Problem(what, _("correct them, or the segment's angle"))
     try:
-        reached = _reached(segment.law.pieces(0.0, before))
+        reached = _lift_bound(segment.law.pieces(0.0, before))
     except InputError as error:
         raise Problem(error.what, error.repair) from None
     if not reached <= MOST_LIFT:
@@ -420,7 +433,7 @@ def _check_formulas(segment: LiftSegment, before: float) -> None:
         raise Problem(what.format(lift=reached, unit=UNITS[DRIVEN.get()]), repair)
 
 
-class PlateCam(Part):
+class PlateCam(DescriptionPart):
     """A turning plate cam and its follower, by the follower's lift.
 
     The arguments are those of a file (docs: cam followers), as parts or as plain dicts, texts with units included.
@@ -452,7 +465,7 @@ class PlateCam(Part):
     display: Display = Display()
     body: Annotated[CamBody, Field(alias="cam")] = CamBody()
     follower: Follower
-    segments: Annotated[tuple[LiftSegment, ...], listed(MOST)]
+    segments: Annotated[tuple[LiftSegment, ...], bounded_list(MOST)]
     bounds: FollowerBounds = FollowerBounds()
     tool: Tool | None = None
     study: FollowerStudy = FollowerStudy()
@@ -465,7 +478,7 @@ class PlateCam(Part):
     @model_validator(mode="wrap")
     @classmethod
     def _of_its_follower(cls, data: Any, handler: ModelWrapValidatorHandler[PlateCam]) -> PlateCam:
-        token = DRIVEN.set("angle" if _swings(data) else "length")
+        token = DRIVEN.set("angle" if _is_oscillating(data) else "length")
         try:
             return handler(data)
         finally:
@@ -489,7 +502,7 @@ class PlateCam(Part):
         return lift_law(self.segments)
 
 
-def _swings(data: Any) -> bool:
+def _is_oscillating(data: Any) -> bool:
     """Whether what is read says that its follower oscillates."""
     follower = data.get("follower") if isinstance(data, Mapping) else getattr(data, "follower", None)
     kind = follower.get("kind") if isinstance(follower, Mapping) else getattr(follower, "kind", None)

@@ -15,18 +15,18 @@ from centrode.model.reading import (
     FRAME,
     KEY,
     PLACED,
+    DescriptionPart,
     FrozenMap,
-    Part,
     Problem,
     Problems,
+    bounded_list,
     choice,
     entries,
-    listed,
     missing_key,
     named_entries,
     one_of,
     read_name,
-    shown,
+    value_text,
 )
 from centrode.model.values import (
     READING,
@@ -60,7 +60,7 @@ def _read_points(value: object) -> tuple[str, ...] | Mapping[str, Vector]:
         return _read_local(named_entries(value, read_name, reading.POINTS))
     if not isinstance(value, list | tuple):
         what = _('expected names ["A", "B"] or coordinates {{ A = [x, y] }}, got {value}')
-        raise Problem(what.format(value=shown(value)))
+        raise Problem(what.format(value=value_text(value)))
     return tuple(read_name(name) for name in entries(value, reading.POINTS))
 
 
@@ -77,7 +77,7 @@ def _read_local(named: Mapping[str, object]) -> Mapping[str, Vector]:
     return FrozenMap(local)
 
 
-class Frame(Part):
+class Frame(DescriptionPart):
     """The fixed link.
 
     Attributes
@@ -90,10 +90,10 @@ class Frame(Part):
     @property
     def coordinates(self) -> Mapping[str, Vector]:
         """Coordinates [m] of every point; raises InputError for a point that is not placed yet."""
-        return FrozenMap({name: _resolved(name, position) for name, position in self.points.items()})
+        return FrozenMap({name: _resolve_position(name, position) for name, position in self.points.items()})
 
 
-def _resolved(name: str, position: Vector | Placed) -> Vector:
+def _resolve_position(name: str, position: Vector | Placed) -> Vector:
     if not isinstance(position, Placed):
         return position
     if position.at is None:
@@ -103,7 +103,7 @@ def _resolved(name: str, position: Vector | Placed) -> Vector:
     return position.at
 
 
-class Link(Part):
+class Link(DescriptionPart):
     """A rigid link.
 
     Attributes
@@ -136,7 +136,7 @@ class Link(Part):
     radius: PositiveMetres | None = None
     centre_radius: Annotated[float, PlainValidator(lambda value: not_negative(value, "length"))] | None = None
     model: Annotated[Literal["ring and point mass"], choice(RING_AND_POINT)] | None = None
-    reference: Annotated[tuple[Name, ...], listed(2)] | None = None
+    reference: Annotated[tuple[Name, ...], bounded_list(2)] | None = None
 
     @property
     def coordinates(self) -> Mapping[str, Vector]:
@@ -163,7 +163,7 @@ def _read_ratio(value: object) -> float:
 
 def _read_flag(value: object) -> bool:
     if not isinstance(value, bool):
-        raise Problem(_("expected true or false, got {value}").format(value=shown(value)))
+        raise Problem(_("expected true or false, got {value}").format(value=value_text(value)))
     return value
 
 
@@ -175,7 +175,7 @@ def unit_along(direction: Vector | float) -> Vector:
     return math.cos(direction), math.sin(direction)
 
 
-class Guide(Part):
+class Guide(DescriptionPart):
     """A point on a line of the frame or of a link; on the sphere, on a circle about a pole.
 
     Attributes
@@ -256,7 +256,7 @@ def _foreign(key: str, sphere: bool) -> Problem:
     )
 
 
-class Gear(Part):
+class Gear(DescriptionPart):
     """Two links whose angles against a carrier keep a ratio: the second's turn over the first's.
 
     Attributes
@@ -271,7 +271,7 @@ class Gear(Part):
         The gear's id where its links' names will not do.
     """
 
-    links: Annotated[tuple[Name, ...], listed(2)]
+    links: Annotated[tuple[Name, ...], bounded_list(2)]
     ratio: Annotated[float, PlainValidator(_read_ratio)]
     carrier: Name = FRAME
     name: Name | None = None
@@ -282,7 +282,7 @@ class Gear(Part):
         return self.name or "-".join(self.links)
 
 
-class Track(Part):
+class Track(DescriptionPart):
     """What a wheel rolls on: a line (`through`, `direction`) or a circle (`centre`, `radius`).
 
     The wheel's centre lies to the left of a line, outside a circle or, with `inside`, inside it.
@@ -312,7 +312,7 @@ class Track(Part):
         return unit_along(self.direction or 0.0)
 
 
-class Rolling(Part):
+class Rolling(DescriptionPart):
     """A wheel that rolls without slip on a line or a circle of another link.
 
     Attributes
@@ -343,23 +343,23 @@ class Rolling(Part):
 # Any part of a description as the tables of a file, with only what differs from the defaults.
 
 
-def part_tables(part: Part) -> dict[str, Any]:
+def part_tables(part: DescriptionPart) -> dict[str, Any]:
     """Tables of any part of a description."""
     tables = {}
     for key, name in part.keys().items():
         value, field = getattr(part, name), type(part).model_fields[name]
-        if field.is_required() or value != field.default or _needed(part, name):
+        if field.is_required() or value != field.default or _is_required_key(part, name):
             tables[key] = _plain(value)
     return tables
 
 
-def _needed(part: Part, name: str) -> bool:
+def _is_required_key(part: DescriptionPart, name: str) -> bool:
     """Keys that a file has to give although the part has a default: a guide's line, in the plane."""
     return isinstance(part, Guide) and part.pole is None and name in PLANE_KEYS
 
 
 def _plain(value: object) -> Any:
-    if isinstance(value, Part):
+    if isinstance(value, DescriptionPart):
         return part_tables(value)
     if isinstance(value, Placed):
         return PLACED if value.at is None else {PLACED: list(value.at)}

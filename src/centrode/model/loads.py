@@ -10,7 +10,17 @@ from pydantic import PlainValidator, ValidationInfo, field_validator
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.reading import FRAME, Part, Problem, choice, listed, missing_key, one_of, read_name, shown
+from centrode.model.reading import (
+    FRAME,
+    DescriptionPart,
+    Problem,
+    bounded_list,
+    choice,
+    missing_key,
+    one_of,
+    read_name,
+    value_text,
+)
 from centrode.model.values import (
     READING,
     Angle,
@@ -95,7 +105,7 @@ def _of_force(given: Mapping[str, Any], present: set[str], said: set[str]) -> li
         wrong = [key for key in _IN_POINT if key in said]
         what = _("{key} belongs to a force in a point")
         repair = _("give value or table, or a point in place of the guide")
-    return missing + [Problem(what.format(key=shown(key)), repair) for key in wrong]
+    return missing + [Problem(what.format(key=value_text(key)), repair) for key in wrong]
 
 
 def _of_friction(given: Mapping[str, Any], present: set[str], said: set[str]) -> list[Problem]:
@@ -112,7 +122,7 @@ def _of_friction(given: Mapping[str, Any], present: set[str], said: set[str]) ->
     if wrong:
         what = _("{key} belongs to friction by a coefficient")
         repair = _("give coefficient in place of {keys}").format(keys=", ".join(amounts))
-        return [Problem(what.format(key=shown(key)), repair) for key in wrong]
+        return [Problem(what.format(key=value_text(key)), repair) for key in wrong]
     if given.get("form") == "plain sum" and (amounts != ["quadratic"] or "link" not in present):
         what = _("the plain sum belongs to quadratic friction in a hinge")
         return [Problem(what, _("take form out, or give quadratic alone"))]
@@ -135,12 +145,12 @@ def _of_coefficient(present: set[str], said: set[str]) -> list[Problem]:
             problems.append(Problem(_("the radius of the pin is missing"), _("give radius")))
         wrong = [key for key in (*_OF_SLIDER, "relative_to", "axis", "form") if key in said]
         what, repair = _("{key} does not belong to friction by a coefficient there"), _("take it out")
-    return problems + [Problem(what.format(key=shown(key)), repair) for key in wrong]
+    return problems + [Problem(what.format(key=value_text(key)), repair) for key in wrong]
 
 
 def _foreign(key: str, kind: str) -> Problem:
     known = (*_ALTERNATIVES[kind], *_NEEDED[kind], *_ALLOWED[kind])
-    what = _("{key} does not belong to a {kind}").format(key=shown(key), kind=kind)
+    what = _("{key} does not belong to a {kind}").format(key=value_text(key), kind=kind)
     return Problem(what, _("it has: {keys}").format(keys=", ".join(known)))
 
 
@@ -180,7 +190,7 @@ def _amount(value: object, kind: str) -> Amount:
 def _read_force(value: object) -> tuple[Amount, ...]:
     count, form = (3, "[x, y, z]") if READING.get().space == "sphere" else (2, "[x, y]")
     if not isinstance(value, list | tuple) or len(value) != count:
-        raise Problem(_("expected {form}, got {value}").format(form=form, value=shown(value)))
+        raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(value)))
     return tuple(_amount(entry, "force") for entry in value)
 
 
@@ -188,7 +198,7 @@ def _read_axis(value: object) -> str | tuple[float, ...]:
     return read_name(value) if isinstance(value, str) else read_heading(value)
 
 
-class Load(Part):
+class Load(DescriptionPart):
     """A load of one kind.
 
     Attributes
@@ -228,7 +238,7 @@ class Load(Part):
     point: Name | None = None
     link: Name | None = None
     guide: Name | None = None
-    points: Annotated[tuple[Name, ...], listed(2)] | None = None
+    points: Annotated[tuple[Name, ...], bounded_list(2)] | None = None
     vector: Annotated[tuple[Amount, ...], PlainValidator(_read_force)] | None = None
     axes: Name = FRAME
     value: Amount | None = None

@@ -11,7 +11,7 @@ from centrode.model.description import Description
 from centrode.model.drives import Drive
 from centrode.model.links import Frame, Gear, Guide, Link, Rolling, Track
 from centrode.model.loads import Load
-from centrode.model.placement import resolved
+from centrode.model.placement import resolve_placement
 from centrode.model.reading import FRAME, Problems
 from centrode.model.settings import Assembly, Display, Machine, ReportWishes, Study
 from centrode.model.simulation import Simulation
@@ -79,7 +79,7 @@ class Mechanism(Description):
         problems = problems_of_parts(self)
         if problems:
             raise Problems(problems)
-        frame, guides = resolved(self)
+        frame, guides = resolve_placement(self)
         # The only writes to a frozen description, before anybody has seen it.
         object.__setattr__(self, "frame", frame)
         object.__setattr__(self, "guides", guides)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.units import KINDS, to_si
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ class MotionParameter:
         for one in self.drives:
             if one.name == name:
                 return one
-        what = _("there is no drive {name}").format(name=shown(name))
+        what = _("there is no drive {name}").format(name=value_text(name))
         raise InputError("", what, nearest(name, [one.name for one in self.drives]))
 
     def along(self, name: str) -> MotionParameter:

@@ -9,15 +9,15 @@ from typing import TypeVar
 from centrode.locale import _
 from centrode.model.description import Description
 from centrode.model.links import Frame, Guide
-from centrode.model.reading import FRAME, FrozenMap, Place, Problem, Problems, shown, told
+from centrode.model.reading import FRAME, FrozenMap, Place, Problem, Problems, error_at_place, value_text
 from centrode.model.values import (
     Placed,
     Vector,
     axes,
-    carried,
-    heading,
     longitude_latitude,
     makes_arc,
+    tangent_towards,
+    transfer_vector,
     turned_about,
     unit_vector,
 )
@@ -52,11 +52,11 @@ class InitialChain:
         known = next((point for point in local if point in self.points), None)
         if angle is None or known is None:
             return False
-        x, y = turned(local[known], angle)
+        x, y = rotate_vector(local[known], angle)
         origin = self.points[known][0] - x, self.points[known][1] - y
         self.poses[name] = origin, angle
         for point, coordinates in local.items():
-            dx, dy = turned(coordinates, angle)
+            dx, dy = rotate_vector(coordinates, angle)
             self.points.setdefault(point, (origin[0] + dx, origin[1] + dy))
         return True
 
@@ -65,14 +65,14 @@ class InitialChain:
         if link == FRAME:
             return position
         (x, y), angle = self.poses[link]
-        return turned((position[0] - x, position[1] - y), -angle)
+        return rotate_vector((position[0] - x, position[1] - y), -angle)
 
     def problem(self, point: str, at: Place, link: str = "") -> Problem:
         """That the chain does not reach a point, naming the links on its shortest way that lack an angle."""
         way = [*self._ways.get(point, ()), *([link] if link else [])]
         missing = [name for name in dict.fromkeys(way) if self.mechanism.initial_angle(name) is None]
         what = _("{point} cannot be placed: the chain from the frame does not reach it").format(
-            point=shown(point)
+            point=value_text(point)
         )
         if not missing:
             return Problem(what, _("give its coordinates"), at)
@@ -106,15 +106,15 @@ class SphericalChain(InitialChain):
         local = [unit_vector(place) for place in link.coordinates.values()]
         if not (makes_arc(pivot, towards) and makes_arc(local[0], local[1])):
             return False
-        forward = turned_about(pivot, heading(pivot, towards), angle)
-        mine, theirs = axes(local[0], heading(local[0], local[1])), axes(pivot, forward)
+        forward = turned_about(pivot, tangent_towards(pivot, towards), angle)
+        mine, theirs = axes(local[0], tangent_towards(local[0], local[1])), axes(pivot, forward)
         for point, place in zip(points, local, strict=True):
-            self.points.setdefault(point, longitude_latitude(carried(place, mine, theirs)))
+            self.points.setdefault(point, longitude_latitude(transfer_vector(place, mine, theirs)))
         self.poses[name] = self.points[points[0]], angle
         return True
 
 
-def turned(vector: Vector, angle: float) -> Vector:
+def rotate_vector(vector: Vector, angle: float) -> Vector:
     """A vector turned by an angle [rad]."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return vector[0] * cosine - vector[1] * sine, vector[0] * sine + vector[1] * cosine
@@ -132,9 +132,9 @@ def place(mechanism: M) -> M:
         The chain does not reach it; the message names the link whose initial angle is missing.
     """
     try:
-        frame, guides = resolved(mechanism)
+        frame, guides = resolve_placement(mechanism)
     except Problems as error:
-        raise told(error.problems[0], (), "") from None
+        raise error_at_place(error.problems[0], (), "") from None
     if frame == mechanism.frame and guides == mechanism.guides:
         return mechanism
     return mechanism.model_copy(update={"frame": frame, "guides": guides})
@@ -146,18 +146,18 @@ def replace_placed(mechanism: M) -> M:
         name: Placed() if isinstance(position, Placed) else position
         for name, position in mechanism.frame.points.items()
     }
-    guides = tuple(_unresolved(guide) for guide in mechanism.guides)
+    guides = tuple(_forget_line(guide) for guide in mechanism.guides)
     update = {"frame": Frame(points=points), "guides": guides}
     return place(mechanism.model_copy(update=update))
 
 
-def _unresolved(guide: Guide) -> Guide:
+def _forget_line(guide: Guide) -> Guide:
     if not isinstance(guide.through, Placed):
         return guide
     return guide.model_copy(update={"through": Placed()})
 
 
-def resolved(mechanism: Description) -> tuple[Frame, tuple[Guide, ...]]:
+def resolve_placement(mechanism: Description) -> tuple[Frame, tuple[Guide, ...]]:
     """Frame and guides with nothing left to place; raises Problems that name the missing angles."""
     points = mechanism.frame.points
     open_points = [name for name, position in points.items() if position == Placed()]

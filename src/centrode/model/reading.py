@@ -92,7 +92,7 @@ class Problems(ValueError):
         self.problems = tuple(problems)
 
 
-def shown(value: object) -> str:
+def value_text(value: object) -> str:
     """A value as a sentence shows it: texts in quotes, numbers as written, anything else by its kind."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -117,7 +117,7 @@ def likely(name: str, known: Iterable[str]) -> str:
     folded = [other for other in names if other.casefold() == name.casefold()]
     cutoff = 0.5 if len(name) <= 3 else 0.6  # AO is near OA; "angle" is not near "machine"
     close = folded or difflib.get_close_matches(name[:NAME_LENGTH], names, n=1, cutoff=cutoff)
-    return _("did you mean {name}?").format(name=shown(close[0])) if close else ""
+    return _("did you mean {name}?").format(name=value_text(close[0])) if close else ""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -132,7 +132,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 def location(place: Place) -> tuple[str, str]:
     """Table and key of a place as the file spells them: ("[links.BC]", "length"), ("[[guides]] 2", "point")."""
-    place = tuple(part if isinstance(part, int) else shown(str(part))[1:-1] for part in place)
+    place = tuple(part if isinstance(part, int) else value_text(str(part))[1:-1] for part in place)
     if len(place) >= 2 and isinstance(place[1], int):
         return f"[[{place[0]}]] {place[1] + 1}", ".".join(str(p) for p in place[2:])
     if len(place) >= 3 and place[:2] == ("machine", "shafts") and isinstance(place[2], int):
@@ -148,7 +148,7 @@ def location(place: Place) -> tuple[str, str]:
     return "", str(place[0]) if place else ""
 
 
-def told(problem: Problem, place: Place, source: str) -> InputError:
+def error_at_place(problem: Problem, place: Place, source: str) -> InputError:
     """The sentence of a problem at a place of a source (a file's name; empty in Python)."""
     table, key = location(place + problem.at)
     what = problem.what
@@ -167,7 +167,7 @@ def problems_of(error: dict[str, Any]) -> list[Problem]:
         return list(cause.problems)
     if isinstance(cause, Problem):
         return [cause]
-    return [Problem(_("this value does not fit here: {value}").format(value=shown(error.get("input"))))]
+    return [Problem(_("this value does not fit here: {value}").format(value=value_text(error.get("input"))))]
 
 
 def input_error(error: ValidationError, source: str) -> InputError:
@@ -175,7 +175,7 @@ def input_error(error: ValidationError, source: str) -> InputError:
     found: list[InputError] = []
     for entry in error.errors(include_url=False):
         place: Place = tuple(part for part in entry["loc"] if part != "[key]")
-        found += [told(problem, place, source) for problem in problems_of(dict(entry))]
+        found += [error_at_place(problem, place, source) for problem in problems_of(dict(entry))]
     first, rest = found[0], found[1:PROBLEMS_SHOWN]
     lines = [str(other) for other in rest]
     left = len(found) - 1 - len(rest)
@@ -198,7 +198,7 @@ def read_file(path: Path) -> str:
         Missing, not a regular file, not readable, more than `limits.FILE_SIZE` bytes (told before any is
         read), or not UTF-8.
     """
-    where = shown(path.name or str(path))[1:-1]
+    where = value_text(path.name or str(path))[1:-1]
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
@@ -239,7 +239,7 @@ class _Telling(ModelMetaclass):
             raise input_error(error, "") from None
 
 
-class Part(BaseModel, metaclass=_Telling):
+class DescriptionPart(BaseModel, metaclass=_Telling):
     """Frozen data with known keys only; a wrong value raises InputError."""
 
     model_config = ConfigDict(
@@ -261,7 +261,7 @@ class Part(BaseModel, metaclass=_Telling):
         keys = cls.keys()
         known = {**keys, **{name: name for name in cls.model_fields}}
         unknown = [
-            Problem(_("unknown key {key}").format(key=shown(key)), nearest(str(key), keys))
+            Problem(_("unknown key {key}").format(key=value_text(key)), nearest(str(key), keys))
             for key in islice((key for key in given if key not in known), PROBLEMS_SOUGHT)
         ]
         missing = [
@@ -277,7 +277,7 @@ class Part(BaseModel, metaclass=_Telling):
         if isinstance(data, cls):
             return data
         if not isinstance(data, Mapping):
-            raise Problem(_("expected a table, got {value}").format(value=shown(data)))
+            raise Problem(_("expected a table, got {value}").format(value=value_text(data)))
         problems = cls.key_problems(data)
         if problems:
             raise Problems(problems)
@@ -286,7 +286,7 @@ class Part(BaseModel, metaclass=_Telling):
 
 def missing_key(key: str) -> Problem:
     """The problem of a key that has to be given."""
-    return Problem(_("{key} is missing").format(key=shown(key)))
+    return Problem(_("{key} is missing").format(key=value_text(key)))
 
 
 def one_of(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
@@ -309,10 +309,10 @@ def choice(*options: str) -> BeforeValidator:
     def read(value: object) -> object:
         if isinstance(value, str) and value in options:
             return value
-        words = ", ".join(shown(option) for option in options)
+        words = ", ".join(value_text(option) for option in options)
         repair = likely(value, options) if isinstance(value, str) else ""
         raise Problem(
-            _("expected one of {words}, got {value}").format(words=words, value=shown(value)), repair
+            _("expected one of {words}, got {value}").format(words=words, value=value_text(value)), repair
         )
 
     return BeforeValidator(read)
@@ -322,12 +322,12 @@ def entries(value: object, most: int) -> tuple[object, ...]:
     """The entries of a list, at most `most`."""
     if not isinstance(value, list | tuple):
         repair = _("write each entry below a [[...]] heading, or values in [...]")
-        raise Problem(_("expected a list, got {value}").format(value=shown(value)), repair)
-    _bounded(len(value), most)
+        raise Problem(_("expected a list, got {value}").format(value=value_text(value)), repair)
+    _check_count(len(value), most)
     return tuple(value)
 
 
-def listed(most: int) -> BeforeValidator:
+def bounded_list(most: int) -> BeforeValidator:
     """A list of at most `most` entries, kept as a tuple."""
     return BeforeValidator(lambda value: entries(value, most))
 
@@ -335,8 +335,8 @@ def listed(most: int) -> BeforeValidator:
 def named_entries(value: object, read_key: Callable[[object], str], most: int) -> dict[str, Any]:
     """The entries of a table, at most `most`; the names are read first, so that no two become one."""
     if not isinstance(value, Mapping):
-        raise Problem(_("expected a table, got {value}").format(value=shown(value)))
-    _bounded(len(value), most)
+        raise Problem(_("expected a table, got {value}").format(value=value_text(value)))
+    _check_count(len(value), most)
     named: dict[str, Any] = {}
     wrong: list[Problem] = []
     for key, entry in value.items():
@@ -347,7 +347,7 @@ def named_entries(value: object, read_key: Callable[[object], str], most: int) -
             continue
         if name in named:
             wrong.append(
-                Problem(_("{name} is named twice").format(name=shown(name)), _("rename one of them"))
+                Problem(_("{name} is named twice").format(name=value_text(name)), _("rename one of them"))
             )
         named[name] = entry
     if wrong:
@@ -355,7 +355,7 @@ def named_entries(value: object, read_key: Callable[[object], str], most: int) -
     return named
 
 
-def _bounded(count: int, most: int) -> None:
+def _check_count(count: int, most: int) -> None:
     if count > most:
         what = _("at most {most} entries are allowed, got {count}")
         raise Problem(what.format(most=most, count=count))
@@ -382,16 +382,16 @@ _TWO_POINTS = re.compile(rf"({_POINT})({_POINT})")
 def read_name(value: object) -> str:
     """A name in composed form (NFC); a Problem if it cannot stand in a file, a table and a drawing."""
     if not isinstance(value, str):
-        raise Problem(_("expected a name (text), got {value}").format(value=shown(value)))
+        raise Problem(_("expected a name (text), got {value}").format(value=value_text(value)))
     if len(value) > NAME_LENGTH:
         what = _("a name has at most {most} characters, got {count}")
         raise Problem(what.format(most=NAME_LENGTH, count=len(value)), _("shorten it"))
     name = unicodedata.normalize("NFC", value)
     repair = _("use letters, digits, primes, spaces, hyphens or underscores")
     if not name or name != name.strip():
-        raise Problem(_("{name} is not a name").format(name=shown(value)), repair)
+        raise Problem(_("{name} is not a name").format(name=value_text(value)), repair)
     if not name.isprintable() or name.startswith(".") or _REFUSED & set(name):
-        raise Problem(_("{name} has characters a name may not have").format(name=shown(value)), repair)
+        raise Problem(_("{name} has characters a name may not have").format(name=value_text(value)), repair)
     if name == PLACED:
         raise Problem(
             _('"placed" cannot be a name: it asks for a place along the chain'), _("choose another name")

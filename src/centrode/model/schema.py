@@ -50,7 +50,7 @@ from centrode.model.follower_cam import (
 from centrode.model.follower_cam import KINDS as FOLLOWER_KINDS
 from centrode.model.links import RING_AND_POINT, SHAPES, Frame, Gear, Guide, Link, Rolling, Track
 from centrode.model.loads import FITS, FORMS, KINDS, Load
-from centrode.model.reading import Part
+from centrode.model.reading import DescriptionPart
 from centrode.model.segments import MOST_THROUGH, Segment
 from centrode.model.settings import (
     LEAST_DIGITS,
@@ -100,7 +100,7 @@ def table_of(entry: Schema, most: int) -> Schema:
     return {"type": "object", "additionalProperties": entry, "maxProperties": most}
 
 
-def reference_to(part: type[Part]) -> Schema:
+def reference_to(part: type[DescriptionPart]) -> Schema:
     """Where the schema of a part stands."""
     return {"$ref": f"#/$defs/{part.__name__}"}
 
@@ -113,7 +113,9 @@ AMOUNT: Schema = {
 }
 
 
-def schema_of(title: str, whole: type[Part], properties: Mapping[type[Part], Schema]) -> Schema:
+def schema_of(
+    title: str, whole: type[DescriptionPart], properties: Mapping[type[DescriptionPart], Schema]
+) -> Schema:
     """JSON Schema of a file that one part describes, with the parts inside it as definitions."""
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -123,7 +125,7 @@ def schema_of(title: str, whole: type[Part], properties: Mapping[type[Part], Sch
     }
 
 
-def _object(part: type[Part], properties: Mapping[type[Part], Schema]) -> Schema:
+def _object(part: type[DescriptionPart], properties: Mapping[type[DescriptionPart], Schema]) -> Schema:
     required = [key for key, name in part.keys().items() if part.model_fields[name].is_required()]
     schema: Schema = {"type": "object", "properties": properties[part], "additionalProperties": False}
     return {**schema, "required": required} if required else schema
@@ -149,7 +151,7 @@ _DIRECTION: Schema = {"anyOf": [_PAIR, *quantity_schema("angle")["anyOf"]]}
 _POINTS: Schema = {"anyOf": [table_of(_COORDINATES, reading.POINTS), list_of(NAME, 1, 2)]}
 _SIDES: Schema = {"enum": ["left", "right", "ahead", "behind"]}
 
-PROPERTIES: dict[type[Part], Schema] = {
+PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Display: {"length": TEXT, "angle": TEXT},
     Frame: {"points": table_of(_POSITION, reading.POINTS)},
     Link: {
@@ -328,7 +330,7 @@ def mechanism_schema() -> Schema:
 
 _RATES = list_of(AMOUNT, 0, MOST_RATES)
 
-PLATE_PROPERTIES: dict[type[Part], Schema] = {
+PLATE_PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Display: PROPERTIES[Display],
     Material: {"elasticity": above_zero("pressure"), "poisson": quantity_schema("ratio")},
     CamBody: {
@@ -403,7 +405,7 @@ PLATE_PROPERTIES: dict[type[Part], Schema] = {
 _FLAG: Schema = {"type": "boolean"}
 _BOUNDS = list_of(AMOUNT, 2, 2)
 
-CAM_PROPERTIES: dict[type[Part], Schema] = {
+CAM_PROPERTIES: dict[type[DescriptionPart], Schema] = {
     Display: PROPERTIES[Display],
     Curvature: {
         "law": {"enum": list(LAWS)},

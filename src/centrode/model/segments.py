@@ -14,14 +14,14 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.reading import (
     KEY,
-    Part,
+    DescriptionPart,
     Problem,
     Problems,
     choice,
     entries,
     input_error,
     missing_key,
-    shown,
+    value_text,
 )
 from centrode.model.values import numbers, positive, si
 
@@ -54,7 +54,7 @@ def rate(value: object, kind: str, order: int) -> float:
         return plain_rate(value, f"{UNITS[kind]}/s^{order}")
 
 
-class Segment(Part):
+class Segment(DescriptionPart):
     """A stretch of a drive's law; see `centrode.laws.Segment`.
 
     Attributes
@@ -127,9 +127,9 @@ class Segment(Part):
         return self
 
     @property
-    def law(self) -> laws.Segment:
+    def law(self) -> laws.LawSegment:
         """The segment of the law; raises InputError where its times do not increase."""
-        return laws.Segment(
+        return laws.LawSegment(
             self.time,
             self.to,
             self.curve,
@@ -170,7 +170,7 @@ def read_degree(value: object) -> int:
     """Degree of a B-spline."""
     if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= laws.MOST_DEGREE:
         what = _("{key} must be a whole number from {least} to {most}, got {value}")
-        raise Problem(what.format(key=KEY, least=1, most=laws.MOST_DEGREE, value=shown(value)))
+        raise Problem(what.format(key=KEY, least=1, most=laws.MOST_DEGREE, value=value_text(value)))
     return value
 
 
@@ -179,7 +179,7 @@ def plain_rate(text: str, unit: str) -> float:
     try:
         return si(text, "ratio")
     except Problem:
-        what = _("expected a rate ({unit}), got {value}").format(unit=unit, value=shown(text))
+        what = _("expected a rate ({unit}), got {value}").format(unit=unit, value=value_text(text))
         repair = _('write a number in {unit}, or a text with a unit such as "{example}"')
         raise Problem(what, repair.format(unit=unit, example=f"5 {unit}")) from None
 
@@ -188,7 +188,7 @@ def read_segments(value: object, kind: str) -> tuple[Segment, ...]:
     """Segments of a drive of an angle or a length, each right in itself and all of them together a law."""
     token = DRIVEN.set(kind)
     try:
-        read = [_read(entry, number) for number, entry in enumerate(entries(value, MOST), 1)]
+        read = [_read_segment(entry, number) for number, entry in enumerate(entries(value, MOST), 1)]
     finally:
         DRIVEN.reset(token)
     wrong = [entry for entry in read if isinstance(entry, Problem)]
@@ -196,13 +196,13 @@ def read_segments(value: object, kind: str) -> tuple[Segment, ...]:
         raise Problems(wrong)
     segments = tuple(entry for entry in read if isinstance(entry, Segment))
     try:
-        segmented(segments, False)
+        law_of_segments(segments, False)
     except InputError as error:
         raise Problem(error.what, error.repair) from None
     return segments
 
 
-def segmented(segments: tuple[Segment, ...], repeat: bool) -> laws.SegmentedLaw:
+def law_of_segments(segments: tuple[Segment, ...], repeat: bool) -> laws.SegmentedLaw:
     """The law of these segments."""
     return laws.SegmentedLaw(tuple(segment.law for segment in segments), repeat)
 
@@ -210,7 +210,7 @@ def segmented(segments: tuple[Segment, ...], repeat: bool) -> laws.SegmentedLaw:
 def read_repeat(value: object) -> bool:
     """Whether, as true or false."""
     if not isinstance(value, bool):
-        raise Problem(_("expected true or false, got {value}").format(value=shown(value)))
+        raise Problem(_("expected true or false, got {value}").format(value=value_text(value)))
     return value
 
 
@@ -223,7 +223,7 @@ def _gaps(given: Mapping[str, Any], keys: tuple[str, ...]) -> list[Problem]:
     ]
 
 
-def _read(entry: object, number: int) -> Segment | Problem:
+def _read_segment(entry: object, number: int) -> Segment | Problem:
     """A segment, or what is wrong with it and which it is."""
     try:
         return Segment.model_validate(entry)

@@ -10,7 +10,17 @@ from pydantic import AfterValidator, Field, PlainValidator
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
-from centrode.model.reading import KEY, FrozenMap, Part, Problem, choice, listed, read_name, shown, table
+from centrode.model.reading import (
+    KEY,
+    DescriptionPart,
+    FrozenMap,
+    Problem,
+    bounded_list,
+    choice,
+    read_name,
+    table,
+    value_text,
+)
 from centrode.model.values import (
     Angle,
     EndOfMotion,
@@ -35,22 +45,22 @@ Side = Literal["left", "right", "ahead", "behind"]
 def read_samples(value: object) -> int:
     """A number of samples."""
     if isinstance(value, bool) or not isinstance(value, int):
-        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=shown(value)))
+        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=value_text(value)))
     if not 1 <= value <= reading.SAMPLES:
         what = _("{key} must lie between 1 and {most}, got {value}")
         repair = _("ask for fewer samples") if value > 0 else _("ask for more samples")
-        raise Problem(what.format(key=KEY, most=reading.SAMPLES, value=shown(value)), repair)
+        raise Problem(what.format(key=KEY, most=reading.SAMPLES, value=value_text(value)), repair)
     return value
 
 
-class Display(Part):
+class Display(DescriptionPart):
     """Units in which tables and figures show lengths and angles."""
 
     length: Annotated[str, choice(*LENGTHS)] = "m"
     angle: Annotated[str, choice(*ANGLES)] = "rad"
 
 
-class Assembly(Part):
+class Assembly(DescriptionPart):
     """Which way groups are assembled, and what happens at change points.
 
     Attributes
@@ -70,7 +80,7 @@ class Assembly(Part):
     continuation: Annotated[Literal["smooth", "keep"], choice("smooth", "keep")] = "smooth"
 
 
-class Study(Part):
+class Study(DescriptionPart):
     """What is to be computed.
 
     Attributes
@@ -86,7 +96,7 @@ class Study(Part):
     """
 
     samples: Annotated[int, PlainValidator(read_samples)] | None = None
-    instants: Annotated[tuple[PlaceOfMotion, ...], listed(reading.INSTANTS)] = ()
+    instants: Annotated[tuple[PlaceOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
     start: Annotated[EndOfMotion | None, Field(alias="from")] = None
     stop: Annotated[EndOfMotion | None, Field(alias="to")] = None
     range: Annotated[Literal["reachable"], choice(REACHABLE)] | None = None
@@ -116,17 +126,17 @@ LEAST_FLUCTUATION = 1e-6
 def _ratio(value: object, kind: str) -> float:
     number = si(value, kind)
     if not abs(number) > reading.LEAST:
-        raise Problem(_("{key} must not be zero, got {value}").format(key=KEY, value=shown(value)))
+        raise Problem(_("{key} must not be zero, got {value}").format(key=KEY, value=value_text(value)))
     return number
 
 
 def _fluctuation(value: object, kind: str) -> float:
     number = positive(value, kind)
     if number < LEAST_FLUCTUATION:
-        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
         raise Problem(what, _("stay above {least:g}").format(least=LEAST_FLUCTUATION))
     if number >= 2:
-        what = _("{key} must be smaller than 2, got {value}").format(key=KEY, value=shown(value))
+        what = _("{key} must be smaller than 2, got {value}").format(key=KEY, value=value_text(value))
         raise Problem(what, _("it is (greatest less least speed) over the mean one, such as 0.05"))
     return number
 
@@ -134,12 +144,12 @@ def _fluctuation(value: object, kind: str) -> float:
 def _hollow(value: object, kind: str) -> float:
     number = not_negative(value, kind)
     if number >= 1:
-        what = _("{key} must be smaller than 1, got {value}").format(key=KEY, value=shown(value))
+        what = _("{key} must be smaller than 1, got {value}").format(key=KEY, value=value_text(value))
         raise Problem(what, _("it is the inner over the outer diameter, such as 0.8"))
     return number
 
 
-def _driving(value: object) -> str:
+def _driving_formula(value: object) -> str:
     text = read_text(value)
     try:
         compile_formula(text, DRIVING_VARIABLES, "")
@@ -148,7 +158,7 @@ def _driving(value: object) -> str:
     return text
 
 
-class Shaft(Part):
+class Shaft(DescriptionPart):
     """What turns with the drive at a constant ratio: `ratio` is its speed over the drive's, `inertia` [kg m^2]."""
 
     inertia: Annotated[float, quantity("inertia", not_negative)]
@@ -156,7 +166,7 @@ class Shaft(Part):
     name: Text = ""
 
 
-class FlywheelShape(Part):
+class FlywheelShape(DescriptionPart):
     """Of what and how a flywheel is made.
 
     Attributes
@@ -177,7 +187,7 @@ class FlywheelShape(Part):
     rim_speed: Annotated[float, quantity("speed", positive)] | None = None
 
 
-class Machine(Part):
+class Machine(DescriptionPart):
     """The machine the mechanism works in.
 
     Attributes
@@ -195,9 +205,9 @@ class Machine(Part):
 
     mean_speed: Annotated[float, quantity("angular speed", positive)]
     fluctuation: Annotated[float, quantity("ratio", _fluctuation)] | None = None
-    shafts: Annotated[tuple[Shaft, ...], listed(SHAFTS)] = ()
+    shafts: Annotated[tuple[Shaft, ...], bounded_list(SHAFTS)] = ()
     flywheel: FlywheelShape = FlywheelShape()
-    driving: Annotated[str, PlainValidator(_driving)] | None = None
+    driving: Annotated[str, PlainValidator(_driving_formula)] | None = None
 
 
 # What a description wishes of its report: `[report]`.
@@ -210,14 +220,14 @@ MOST_CHAPTERS = 100
 def read_digits(value: object) -> int:
     """A number of significant digits."""
     if isinstance(value, bool) or not isinstance(value, int):
-        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=shown(value)))
+        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=value_text(value)))
     if not LEAST_DIGITS <= value <= MOST_DIGITS:
         what = _("{key} must lie between {least} and {most}, got {value}")
-        raise Problem(what.format(key=KEY, least=LEAST_DIGITS, most=MOST_DIGITS, value=shown(value)))
+        raise Problem(what.format(key=KEY, least=LEAST_DIGITS, most=MOST_DIGITS, value=value_text(value)))
     return value
 
 
-class CamReportWishes(Part):
+class CamReportWishes(DescriptionPart):
     """What the report of a cam is to hold; what is left out is chosen by the report.
 
     Attributes
@@ -229,12 +239,12 @@ class CamReportWishes(Part):
         Significant digits of numbers.
     """
 
-    chapters: Annotated[tuple[Name, ...], listed(MOST_CHAPTERS)] = ()
-    instants: Annotated[tuple[Angle, ...], listed(reading.INSTANTS)] = ()
+    chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
+    instants: Annotated[tuple[Angle, ...], bounded_list(reading.INSTANTS)] = ()
     digits: Annotated[int, PlainValidator(read_digits)] | None = None
 
 
-class ReportWishes(Part):
+class ReportWishes(DescriptionPart):
     """What the report of a mechanism is to hold; what is left out is chosen by the report.
 
     Attributes
@@ -248,7 +258,7 @@ class ReportWishes(Part):
         Significant digits of numbers.
     """
 
-    chapters: Annotated[tuple[Name, ...], listed(MOST_CHAPTERS)] = ()
-    instants: Annotated[tuple[PlaceOfMotion, ...], listed(reading.INSTANTS)] = ()
-    points: Annotated[tuple[Name, ...], listed(reading.POINTS)] = ()
+    chapters: Annotated[tuple[Name, ...], bounded_list(MOST_CHAPTERS)] = ()
+    instants: Annotated[tuple[PlaceOfMotion, ...], bounded_list(reading.INSTANTS)] = ()
+    points: Annotated[tuple[Name, ...], bounded_list(reading.POINTS)] = ()
     digits: Annotated[int, PlainValidator(read_digits)] | None = None

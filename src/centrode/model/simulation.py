@@ -12,7 +12,7 @@ from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
 from centrode.model.motion_parameter import UNDRIVEN, MotionParameter
-from centrode.model.reading import KEY, Part, Problem, choice, shown
+from centrode.model.reading import KEY, DescriptionPart, Problem, choice, value_text
 from centrode.model.values import READING, PlaceOfMotion, positive, quantity, read_text, si
 from centrode.numerics.text_formula import compile_formula
 
@@ -40,10 +40,10 @@ def _law(value: object) -> str:
 
 def _count(value: object, least: int, most: int) -> int:
     if isinstance(value, bool) or not isinstance(value, int):
-        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=shown(value)))
+        raise Problem(_("{key} must be a whole number, got {value}").format(key=KEY, value=value_text(value)))
     if not least <= value <= most:
         what = _("{key} must lie between {least} and {most}, got {value}")
-        raise Problem(what.format(key=KEY, least=least, most=most, value=shown(value)))
+        raise Problem(what.format(key=KEY, least=least, most=most, value=value_text(value)))
     return value
 
 
@@ -59,12 +59,12 @@ def _tolerance(value: object) -> float:
     if not LEAST_TOLERANCE <= number <= GREATEST_TOLERANCE:
         what = _("{key} must lie between {least:g} and {most:g}, got {value}")
         raise Problem(
-            what.format(key=KEY, least=LEAST_TOLERANCE, most=GREATEST_TOLERANCE, value=shown(value))
+            what.format(key=KEY, least=LEAST_TOLERANCE, most=GREATEST_TOLERANCE, value=value_text(value))
         )
     return number
 
 
-class Motor(Part):
+class Motor(DescriptionPart):
     """A motor with a known characteristic, on a shaft that turns `ratio` times as fast as the drive.
 
     Attributes
@@ -102,7 +102,7 @@ class Motor(Part):
             if (given.get(key) is None) is (key in needed[kind]):
                 words = ", ".join(needed[kind])
                 what = _("a motor of the kind {kind} has {keys}, and no other moments")
-                return [Problem(what.format(kind=shown(kind), keys=words))]
+                return [Problem(what.format(kind=value_text(kind), keys=words))]
         return found
 
     @property
@@ -122,7 +122,7 @@ def _spelt(value: float | None) -> str:
     return repr(value).removesuffix(".0")
 
 
-class Simulation(Part):
+class Simulation(DescriptionPart):
     """A mechanism with one drive that is not led but driven: where it starts, what drives it, how long.
 
     Attributes

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
-from centrode.model.reading import Part, input_error
+from centrode.model.reading import DescriptionPart, input_error
 from centrode.model.values import READING, Reading
 
 # What the parser of TOML complains about, in sentences of ours: its own are for programmers, and English
@@ -54,7 +54,7 @@ def toml_reason(message: str) -> str:
     return message
 
 
-Described = TypeVar("Described", bound=Part)
+Described = TypeVar("Described", bound=DescriptionPart)
 
 _KEY = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 # Dotted keys nest without a bracket, and cost the parser the square of their number.
@@ -62,7 +62,7 @@ _DOTTED = re.compile(rf"(?<![\w-]){_KEY}(?:[ \t]*+\.[ \t]*+{_KEY}){{{reading.NES
 _PLACE = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)", re.DOTALL)
 
 
-def described(
+def parse_tables(
     kind: type[Described], mapping: Mapping[str, Any], where: str, folder: Path | None
 ) -> Described:
     """What plain dicts and lists describe, files beside it in `folder`; raises InputError that starts with `where`."""

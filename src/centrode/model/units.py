@@ -13,7 +13,7 @@ import lazy_loader
 from centrode.errors import InputError
 from centrode.locale import _, mark
 from centrode.model import reading
-from centrode.model.reading import shown
+from centrode.model.reading import value_text
 from centrode.numerics.operations import SCALARS
 from centrode.numerics.text_formula import compile_formula
 
@@ -22,7 +22,7 @@ _pint = functools.partial(lazy_loader.load, "pint")
 
 
 @dataclass(frozen=True)
-class Kind:
+class UnitKind:
     """A kind of quantity: its name in a sentence, SI unit, an example, other SI units that also fit."""
 
     name: str
@@ -32,34 +32,34 @@ class Kind:
 
 
 KINDS = {
-    "length": Kind(mark("a length"), "m", "5 mm"),
-    "angle": Kind(mark("an angle"), "rad", "28.6 deg"),
-    "arc": Kind(mark("an arc"), "rad", "30 deg"),
-    "time": Kind(mark("a time"), "s", "20 ms"),
-    "speed": Kind(mark("a speed"), "m/s", "20 mm/s"),
-    "angular speed": Kind(mark("an angular speed"), "rad/s", "65 rpm"),
-    "acceleration": Kind(mark("an acceleration"), "m/s^2", "9.81 m/s^2"),
-    "mass": Kind(mark("a mass"), "kg", "90 g"),
-    "inertia": Kind(mark("a moment of inertia"), "kg*m^2", "450 kg*mm^2"),
-    "density": Kind(mark("a density"), "kg/m^3", "7.8 g/cm^3"),
-    "force": Kind(mark("a force"), "N", "9 kN"),
-    "torque": Kind(mark("a torque"), "N*m", "3 N*mm"),
-    "stiffness": Kind(mark("a stiffness"), "N/m", "2 N/mm"),
-    "damping": Kind(mark("a damping"), "N*s/m", "2 N*s/mm"),
-    "angular stiffness": Kind(mark("an angular stiffness"), "N*m/rad", "2 N*m/deg", ("N*m",)),
-    "angular damping": Kind(mark("an angular damping"), "N*m*s/rad", "2 N*mm*s/rad", ("N*m*s",)),
-    "quadratic damping": Kind(mark("a friction by the square of the speed"), "N*s^2/m^2", "2 N*s^2/m^2"),
-    "angular quadratic damping": Kind(
+    "length": UnitKind(mark("a length"), "m", "5 mm"),
+    "angle": UnitKind(mark("an angle"), "rad", "28.6 deg"),
+    "arc": UnitKind(mark("an arc"), "rad", "30 deg"),
+    "time": UnitKind(mark("a time"), "s", "20 ms"),
+    "speed": UnitKind(mark("a speed"), "m/s", "20 mm/s"),
+    "angular speed": UnitKind(mark("an angular speed"), "rad/s", "65 rpm"),
+    "acceleration": UnitKind(mark("an acceleration"), "m/s^2", "9.81 m/s^2"),
+    "mass": UnitKind(mark("a mass"), "kg", "90 g"),
+    "inertia": UnitKind(mark("a moment of inertia"), "kg*m^2", "450 kg*mm^2"),
+    "density": UnitKind(mark("a density"), "kg/m^3", "7.8 g/cm^3"),
+    "force": UnitKind(mark("a force"), "N", "9 kN"),
+    "torque": UnitKind(mark("a torque"), "N*m", "3 N*mm"),
+    "stiffness": UnitKind(mark("a stiffness"), "N/m", "2 N/mm"),
+    "damping": UnitKind(mark("a damping"), "N*s/m", "2 N*s/mm"),
+    "angular stiffness": UnitKind(mark("an angular stiffness"), "N*m/rad", "2 N*m/deg", ("N*m",)),
+    "angular damping": UnitKind(mark("an angular damping"), "N*m*s/rad", "2 N*mm*s/rad", ("N*m*s",)),
+    "quadratic damping": UnitKind(mark("a friction by the square of the speed"), "N*s^2/m^2", "2 N*s^2/m^2"),
+    "angular quadratic damping": UnitKind(
         mark("a friction by the square of the angular speed"),
         "N*m*s^2/rad^2",
         "2 N*mm*s^2/rad^2",
         ("N*m*s^2",),
     ),
-    "curvature": Kind(mark("a curvature"), "1/m", "0.01 1/mm"),
-    "curvature slope": Kind(mark("a curvature by angle"), "1/m/rad", "0.01 1/mm/rad", ("1/m",)),
-    "per angle": Kind(mark("a number by angle"), "1/rad", "0.013 1/deg"),
-    "pressure": Kind(mark("a stress"), "Pa", "210 GPa"),
-    "ratio": Kind(mark("a number"), "", "-40/20"),
+    "curvature": UnitKind(mark("a curvature"), "1/m", "0.01 1/mm"),
+    "curvature slope": UnitKind(mark("a curvature by angle"), "1/m/rad", "0.01 1/mm/rad", ("1/m",)),
+    "per angle": UnitKind(mark("a number by angle"), "1/rad", "0.013 1/deg"),
+    "pressure": UnitKind(mark("a stress"), "Pa", "210 GPa"),
+    "ratio": UnitKind(mark("a number"), "", "-40/20"),
 }
 
 COMMON: dict[str, dict[str, float]] = {
@@ -106,7 +106,7 @@ def unit_factor(unit: str, kind: str) -> float:
     """SI value of one `unit` of a kind; raises InputError for an unknown unit or one of another kind."""
     unit = unit.strip()
     if len(unit) > reading.UNIT_LENGTH or not _UNIT.fullmatch(unit):
-        raise InputError("", _("{unit} is not a unit").format(unit=shown(unit)), _example(kind))
+        raise InputError("", _("{unit} is not a unit").format(unit=value_text(unit)), _example(kind))
     accepted = (KINDS[kind].unit, *KINDS[kind].also)
     for si, units in COMMON.items():
         if unit in units:
@@ -122,17 +122,17 @@ def _text_to_si(text: str, kind: str) -> float:
             "a text of {count} characters is too long for a number with its unit, at most {most} are allowed"
         )
         raise InputError("", what.format(count=len(text), most=reading.QUANTITY_LENGTH), _("shorten it"))
-    number, unit = _split(text, kind)
+    number, unit = _split_unit(text, kind)
     if not unit:
         return _finite(number, text)
     try:
         factor = unit_factor(unit, kind)
     except InputError as error:
         raise InputError("", _wrong(text, kind).what, error.repair) from None
-    return _finite(_scaled(number, factor), text)
+    return _finite(_scale(number, factor), text)
 
 
-def _split(text: str, kind: str) -> tuple[float, str]:
+def _split_unit(text: str, kind: str) -> tuple[float, str]:
     """Number and unit of a text: the shortest formula from the left with a unit, or nothing, behind."""
     simple = _NUMBER.fullmatch(text.strip())
     if simple and (not simple.group(2) or _UNIT.fullmatch(simple.group(2))):
@@ -149,7 +149,7 @@ def _split(text: str, kind: str) -> tuple[float, str]:
     raise _wrong(text, kind)
 
 
-def _scaled(value: float, factor: float) -> float:
+def _scale(value: float, factor: float) -> float:
     """Value times factor; a whole fraction (mm: 1/1000) divides, so that "850 mm" is 0.85 to the last bit."""
     inverse = round(1 / factor) if 0 < factor < 1 else 0
     return value / inverse if inverse and abs(inverse * factor - 1) < 1e-15 else value * factor
@@ -157,7 +157,7 @@ def _scaled(value: float, factor: float) -> float:
 
 def _finite(value: float, given: object) -> float:
     if not math.isfinite(value):
-        raise InputError("", _("expected a finite number, got {value}").format(value=shown(given)))
+        raise InputError("", _("expected a finite number, got {value}").format(value=value_text(given)))
     return value
 
 
@@ -173,10 +173,12 @@ def _example(kind: str) -> str:
 def _wrong(value: object, kind: str) -> InputError:
     named = KINDS[kind]
     if not named.unit:
-        return InputError("", _("expected a number, got {value}").format(value=shown(value)), _example(kind))
+        return InputError(
+            "", _("expected a number, got {value}").format(value=value_text(value)), _example(kind)
+        )
     what = _("expected {kind} ({unit}), got {value}")
     return InputError(
-        "", what.format(kind=_(named.name), unit=named.unit, value=shown(value)), _example(kind)
+        "", what.format(kind=_(named.name), unit=named.unit, value=value_text(value)), _example(kind)
     )
 
 
@@ -197,7 +199,7 @@ def _pint_factor(unit: str, kind: str, accepted: tuple[str, ...]) -> float:
                 return float(factor / own)
         frequency = base == registry.get_base_units("1/s")[1]
     except (_pint().errors.PintError, AttributeError, ValueError, ArithmeticError, TypeError):
-        what = _("{unit} is not a known unit").format(unit=shown(unit))
+        what = _("{unit} is not a known unit").format(unit=value_text(unit))
         raise InputError("", what, what + ", " + _example(kind)) from None
     raise _other_kind(unit, kind, frequency)
 

@@ -27,8 +27,8 @@ from centrode.model.reading import (
     read_file,
     read_link_name,
     read_name,
-    shown,
     table,
+    value_text,
 )
 from centrode.model.units import to_si, unit_factor
 
@@ -67,7 +67,7 @@ def si(value: object, kind: str) -> float:
         raise Problem(error.what, error.repair) from None
     most = reading.GREATEST_ANGLE if kind in ("angle", "arc") else reading.GREATEST
     if abs(number) > most:
-        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
         raise Problem(what, _("stay below {most:g}").format(most=most))
     return number
 
@@ -76,13 +76,13 @@ def positive(value: object, kind: str) -> float:
     """`si`, greater than zero."""
     number = si(value, kind)
     if number <= 0:
-        raise Problem(_("{key} must be positive, got {value}").format(key=KEY, value=shown(value)))
+        raise Problem(_("{key} must be positive, got {value}").format(key=KEY, value=value_text(value)))
     if number < reading.LEAST:
-        what = _("{value} is beyond what can be computed with").format(value=shown(value))
+        what = _("{value} is beyond what can be computed with").format(value=value_text(value))
         raise Problem(what, _("stay above {least:g}").format(least=reading.LEAST))
     if kind == "arc" and number >= math.pi:
         what = _("{key} must be shorter than half a great circle, got {value}")
-        raise Problem(what.format(key=KEY, value=shown(value)), _("stay below 180 deg"))
+        raise Problem(what.format(key=KEY, value=value_text(value)), _("stay below 180 deg"))
     return number
 
 
@@ -90,14 +90,14 @@ def not_negative(value: object, kind: str) -> float:
     """`si`, zero or more."""
     number = si(value, kind)
     if number < 0:
-        raise Problem(_("{key} must not be negative, got {value}").format(key=KEY, value=shown(value)))
+        raise Problem(_("{key} must not be negative, got {value}").format(key=KEY, value=value_text(value)))
     return number
 
 
 def numbers(value: object, kinds: tuple[str, ...], form: str) -> tuple[float, ...]:
     """A list of numbers of these kinds; `form` shows how it is written."""
     if not isinstance(value, list | tuple) or len(value) != len(kinds):
-        raise Problem(_("expected {form}, got {value}").format(form=form, value=shown(value)))
+        raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(value)))
     return tuple(si(item, kind) for item, kind in zip(value, kinds, strict=True))
 
 
@@ -137,7 +137,7 @@ def read_position(value: object) -> Vector | Placed:
     if isinstance(value, Mapping) and set(value) == {PLACED}:
         return Placed(read_coordinates(value[PLACED]))
     if isinstance(value, str | Mapping):
-        what = _('expected coordinates or "placed", got {value}').format(value=shown(value))
+        what = _('expected coordinates or "placed", got {value}').format(value=value_text(value))
         raise Problem(what, likely(value, [PLACED]) if isinstance(value, str) else "")
     return read_coordinates(value)
 
@@ -176,13 +176,13 @@ def read_direction(value: object) -> Vector | float:
 def read_text(value: object) -> str:
     """One line of text."""
     if not isinstance(value, str):
-        raise Problem(_("expected a text, got {value}").format(value=shown(value)))
+        raise Problem(_("expected a text, got {value}").format(value=value_text(value)))
     if len(value) > reading.TEXT_LENGTH:
         what = _("a text has at most {most} characters, got {count}")
         raise Problem(what.format(most=reading.TEXT_LENGTH, count=len(value)), _("shorten it"))
     if not all(c.isprintable() or unicodedata.category(c) == "Zs" for c in value):
         raise Problem(
-            _("{value} has control characters").format(value=shown(value)), _("write one line of text")
+            _("{value} has control characters").format(value=value_text(value)), _("write one line of text")
         )
     return value
 
@@ -240,7 +240,7 @@ def read_rows(value: object, columns: TableColumns, folder: Path) -> Rows:
         return _csv_rows(value, columns, folder)
     if not isinstance(value, list | tuple):
         what = _("expected the path of a CSV file or rows [{form}, ...], got {value}")
-        raise Problem(what.format(form=columns.form, value=shown(value)))
+        raise Problem(what.format(form=columns.form, value=value_text(value)))
     _count(len(value))
     first = len(value[0]) if value and isinstance(value[0], list | tuple) else 0
     kinds = columns.kinds[: max(first, columns.least)]
@@ -250,17 +250,17 @@ def read_rows(value: object, columns: TableColumns, folder: Path) -> Rows:
 def _csv_rows(name: str, columns: TableColumns, folder: Path) -> Rows:
     path = PurePosixPath(name.replace("\\", "/"))
     if not name.isprintable() or path.is_absolute() or ".." in path.parts or ":" in name:
-        what = _("{name} does not lie beside the description").format(name=shown(name))
+        what = _("{name} does not lie beside the description").format(name=value_text(name))
         raise Problem(what, _("put the CSV file into the folder of the description"))
     try:
         lines = [
             row for row in csv.reader(read_file(folder / path).splitlines()) if any(c.strip() for c in row)
         ]
     except InputError as error:
-        raise Problem(f"{shown(name)}: {error.what}", error.repair) from None
+        raise Problem(f"{value_text(name)}: {error.what}", error.repair) from None
     except csv.Error as error:
         raise Problem(
-            _("{name} is not a CSV file: {reason}").format(name=shown(name), reason=error)
+            _("{name} is not a CSV file: {reason}").format(name=value_text(name), reason=error)
         ) from None
     factors = _header(lines[0], columns) if lines else None
     body = lines[1:] if factors else lines
@@ -294,13 +294,15 @@ def _table_row(
             what = _("row {number} of {name} has {count} values, expected a time and a value")
         else:
             what = _("row {number} of {name} has {count} values, expected {expected}")
-        text = what.format(number=number, name=shown(name), count=len(row), expected=len(kinds))
+        text = what.format(number=number, name=value_text(name), count=len(row), expected=len(kinds))
         raise Problem(text)
     try:
         values = (si(cell.strip(), kind) for cell, kind in zip(row, kinds, strict=True))
         return tuple(value * factor for value, factor in zip(values, factors, strict=True))
     except Problem as problem:
-        place = _("row {number} of {name}: {what}").format(number=number, name=shown(name), what=problem.what)
+        place = _("row {number} of {name}: {what}").format(
+            number=number, name=value_text(name), what=problem.what
+        )
         raise Problem(place, problem.repair) from None
 
 
@@ -329,7 +331,7 @@ def read_inertia(value: object) -> Inertia:
         return not_negative(value, "inertia")
     if len(value) != 3:
         form = _("a number, principal moments [a, b, c], or a tensor of three rows")
-        raise Problem(_("expected {form}, got {value}").format(form=form, value=shown(value)))
+        raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(value)))
     found: Row | Tensor
     if not any(isinstance(row, list | tuple) for row in value):
         found = tuple(si(entry, "inertia") for entry in value)
@@ -343,7 +345,7 @@ def read_inertia(value: object) -> Inertia:
 def _tensor_row(value: object) -> Row:
     if not isinstance(value, list | tuple) or len(value) != 3:
         form = _("a number, principal moments [a, b, c], or a tensor of three rows")
-        raise Problem(_("expected {form}, got {value}").format(form=form, value=shown(value)))
+        raise Problem(_("expected {form}, got {value}").format(form=form, value=value_text(value)))
     return tuple(si(entry, "inertia") for entry in value)
 
 
@@ -462,7 +464,7 @@ def makes_arc(a: Vector3, b: Vector3) -> bool:
     return FLAT < arc(a, b) < math.pi - FLAT
 
 
-def heading(start: Vector3, towards: Vector3) -> Vector3:
+def tangent_towards(start: Vector3, towards: Vector3) -> Vector3:
     """Unit tangent in `start` of the arc towards a point that is neither `start` nor opposite to it."""
     normal = cross(start, towards)
     size = math.hypot(*normal)
@@ -483,7 +485,7 @@ def axes(pivot: Vector3, forward: Vector3) -> Axes:
     return pivot, forward, cross(pivot, forward)
 
 
-def carried(vector: Vector3, mine: Axes, theirs: Axes) -> Vector3:
+def transfer_vector(vector: Vector3, mine: Axes, theirs: Axes) -> Vector3:
     """A vector turned together with its axes into others."""
     sizes = [dot(vector, axis) for axis in mine]
     x, y, z = (sum(size * axis[k] for size, axis in zip(sizes, theirs, strict=True)) for k in range(3))
@@ -495,5 +497,5 @@ def angle_between(pivot: Vector3, reference: Vector3, point: Vector3) -> float:
 
     Counter-clockwise seen from outside the sphere; neither point may be the pivot or opposite to it.
     """
-    start, end = heading(pivot, reference), heading(pivot, point)
+    start, end = tangent_towards(pivot, reference), tangent_towards(pivot, point)
     return math.atan2(dot(pivot, cross(start, end)), dot(start, end))

@@ -153,7 +153,7 @@ class Bent(Jet):
 
     def __truediv__(self, other: Number) -> Jet:
         if isinstance(other, Bent):
-            return _divided(self, other)
+            return _divide_bends(self, other)
         if isinstance(other, Jet):
             return Jet(jets.quotient(self.coefficients, other.coefficients))
         return self._with(
@@ -163,13 +163,13 @@ class Bent(Jet):
     def __rtruediv__(self, other: Number) -> Jet:
         if isinstance(other, Jet):
             return Jet(jets.quotient(other.coefficients, self.coefficients))
-        return _divided(Bent(other, 0.0, 0.0, self.cells), self)
+        return _divide_bends(Bent(other, 0.0, 0.0, self.cells), self)
 
     def __pow__(self, exponent: float) -> Jet:
         raise NotImplementedError("no formula of a group has a power")
 
 
-def _divided(a: Bent, b: Bent) -> Bent:
+def _divide_bends(a: Bent, b: Bent) -> Bent:
     """Quotient q: q'' = (a'' - 2 q' b' - q b'') / b, where |q'| and |q| grow with the bound of q'' itself."""
     cells = a.cells
     value, slope = jets.quotient(a.coefficients, b.coefficients)

@@ -22,7 +22,7 @@ _kernels = functools.partial(importlib.import_module, "centrode.numerics.machine
 _streaming = functools.partial(importlib.import_module, "centrode.numerics.machine_code.kernels")
 
 
-def chosen(executor: str) -> str:
+def choose_executor(executor: str) -> str:
     """The executor that is used where `executor` is asked for: "auto" takes machine code if it can."""
     if executor not in (AUTO, ARRAYS, MACHINE_CODE):
         raise ValueError(f"no such executor: {executor}")
@@ -48,7 +48,7 @@ def runner(
     ImportError
         Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
     """
-    if chosen(executor) == ARRAYS:
+    if choose_executor(executor) == ARRAYS:
         return functools.partial(run_on_arrays, scan, number=number)
     kernel = _kernels().kernel_of(scan, number, lanes_inside=lanes_inside, relaxed=relaxed)
     return functools.partial(kernel.run, threads=threads)
@@ -65,7 +65,7 @@ def streamer(scan: Scan, parameters: npt.ArrayLike, executor: str = AUTO, thread
         Machine code is asked for, and llvmlite (the extra `fast`) is not installed.
     """
     lanes = np.array(parameters, np.float64)  # of its own: what is handed over once may change afterwards
-    if chosen(executor) == ARRAYS:
+    if choose_executor(executor) == ARRAYS:
 
         def take(inputs: npt.ArrayLike | None, out: Array) -> Array:
             return run_on_arrays(scan, lanes, inputs, out=out, steps=out.shape[1]).outputs

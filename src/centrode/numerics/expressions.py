@@ -24,7 +24,7 @@ from centrode.numerics.operations import CONSTANT, DERIVED, OPERATIONS, VARIABLE
 NAN = math.nan
 
 
-def divided(a: float, b: float) -> float:
+def ieee_quotient(a: float, b: float) -> float:
     """Quotient by IEEE 754: infinite by zero, NaN for 0/0."""
     if b != 0.0:
         return a / b
@@ -62,7 +62,7 @@ FOLDED: Mapping[str, Callable[..., float]] = {
     "add": lambda a, b: a + b,
     "subtract": lambda a, b: a - b,
     "multiply": lambda a, b: a * b,
-    "divide": divided,
+    "divide": ieee_quotient,
     "negate": lambda a: -a,
     "abs": abs,
     "sqrt": square_root,
@@ -113,52 +113,52 @@ class Node:
         return self.operation in OPERATIONS and OPERATIONS[self.operation].condition
 
     def __add__(self, other: Any) -> Node:
-        return _operated("add", self, other)
+        return _build_operation("add", self, other)
 
     def __radd__(self, other: Any) -> Node:
-        return _operated("add", other, self)
+        return _build_operation("add", other, self)
 
     def __sub__(self, other: Any) -> Node:
-        return _operated("subtract", self, other)
+        return _build_operation("subtract", self, other)
 
     def __rsub__(self, other: Any) -> Node:
-        return _operated("subtract", other, self)
+        return _build_operation("subtract", other, self)
 
     def __mul__(self, other: Any) -> Node:
-        return _operated("multiply", self, other)
+        return _build_operation("multiply", self, other)
 
     def __rmul__(self, other: Any) -> Node:
-        return _operated("multiply", other, self)
+        return _build_operation("multiply", other, self)
 
     def __truediv__(self, other: Any) -> Node:
-        return _operated("divide", self, other)
+        return _build_operation("divide", self, other)
 
     def __rtruediv__(self, other: Any) -> Node:
-        return _operated("divide", other, self)
+        return _build_operation("divide", other, self)
 
     def __pow__(self, other: Any) -> Node:
-        return _operated("power", self, other)
+        return _build_operation("power", self, other)
 
     def __lt__(self, other: Any) -> Node:
-        return _operated("less", self, other)
+        return _build_operation("less", self, other)
 
     def __le__(self, other: Any) -> Node:
-        return _operated("less_equal", self, other)
+        return _build_operation("less_equal", self, other)
 
     def __gt__(self, other: Any) -> Node:
-        return _operated("less", other, self)
+        return _build_operation("less", other, self)
 
     def __ge__(self, other: Any) -> Node:
-        return _operated("less_equal", other, self)
+        return _build_operation("less_equal", other, self)
 
     def __neg__(self) -> Node:
-        return operated("negate", self)
+        return apply_operation("negate", self)
 
     def __pos__(self) -> Node:
         return self
 
     def __abs__(self) -> Node:
-        return operated("abs", self)
+        return apply_operation("abs", self)
 
 
 Operand: TypeAlias = Node | float
@@ -182,7 +182,7 @@ def as_node(x: Operand) -> Node:
     return x if isinstance(x, Node) else constant(x)
 
 
-def operated(operation: str, *arguments: Operand) -> Node:
+def apply_operation(operation: str, *arguments: Operand) -> Node:
     """The node of an operation on arguments, rewritten where a simpler expression has the same bits."""
     nodes = tuple(as_node(x) for x in arguments)
     _check_kinds(operation, nodes)
@@ -190,10 +190,10 @@ def operated(operation: str, *arguments: Operand) -> Node:
     return _node(operation, nodes, "") if simpler is None else simpler
 
 
-def _operated(operation: str, a: Any, b: Any) -> Node:
+def _build_operation(operation: str, a: Any, b: Any) -> Node:
     # what is neither node nor number (a jet, say) has operators of its own
     if isinstance(a, (Node, float, int)) and isinstance(b, (Node, float, int)):
-        return operated(operation, a, b)
+        return apply_operation(operation, a, b)
     return NotImplemented  # type: ignore[no-any-return]
 
 
@@ -238,7 +238,7 @@ def _rewritten(operation: str, nodes: tuple[Node, ...]) -> Node | None:
     return found
 
 
-def _negated(x: Node) -> Node | None:
+def _opposite_of(x: Node) -> Node | None:
     """The expression that x is the opposite of."""
     return x.arguments[0] if x.operation == "negate" else None
 
@@ -250,10 +250,10 @@ def _is(x: Node, value: float) -> bool:
 def _add(a: Node, b: Node) -> Node | None:
     if _is(a, -0.0) or _is(b, -0.0):
         return b if _is(a, -0.0) else a
-    if (y := _negated(b)) is not None:
-        return operated("subtract", a, y)
-    if (x := _negated(a)) is not None:
-        return operated("subtract", b, x)
+    if (y := _opposite_of(b)) is not None:
+        return apply_operation("subtract", a, y)
+    if (x := _opposite_of(a)) is not None:
+        return apply_operation("subtract", b, x)
     return None
 
 
@@ -261,11 +261,11 @@ def _subtract(a: Node, b: Node) -> Node | None:
     if _is(b, 0.0):
         return a
     if _is(a, -0.0):
-        return operated("negate", b)
-    if _negated(a) is b:
-        return operated("multiply", -2.0, b)
-    y = _negated(b)
-    return None if y is None else operated("add", a, y)
+        return apply_operation("negate", b)
+    if _opposite_of(a) is b:
+        return apply_operation("multiply", -2.0, b)
+    y = _opposite_of(b)
+    return None if y is None else apply_operation("add", a, y)
 
 
 def _multiply(a: Node, b: Node) -> Node | None:
@@ -273,38 +273,38 @@ def _multiply(a: Node, b: Node) -> Node | None:
         if _is(factor, 1.0):
             return other
         if _is(factor, -1.0):
-            return operated("negate", other)
-        if (x := _negated(factor)) is not None:
-            return operated("negate", operated("multiply", x, other))
+            return apply_operation("negate", other)
+        if (x := _opposite_of(factor)) is not None:
+            return apply_operation("negate", apply_operation("multiply", x, other))
     return None
 
 
 def _divide(a: Node, b: Node) -> Node | None:
-    if (x := _negated(a)) is not None:
-        return operated("negate", operated("divide", x, b))
-    if (y := _negated(b)) is not None:
-        return operated("negate", operated("divide", a, y))
+    if (x := _opposite_of(a)) is not None:
+        return apply_operation("negate", apply_operation("divide", x, b))
+    if (y := _opposite_of(b)) is not None:
+        return apply_operation("negate", apply_operation("divide", a, y))
     if b.operation == CONSTANT:
         reciprocal = exact_reciprocal(float(b.detail))
-        return None if reciprocal is None else operated("multiply", a, reciprocal)
+        return None if reciprocal is None else apply_operation("multiply", a, reciprocal)
     return None
 
 
 def _abs(x: Node) -> Node | None:
     if x.operation == "abs":
         return x
-    y = _negated(x)
-    return None if y is None else operated("abs", y)
+    y = _opposite_of(x)
+    return None if y is None else apply_operation("abs", y)
 
 
 def _sin(x: Node) -> Node | None:
-    y = _negated(x)
-    return None if y is None else operated("negate", operated("sin", y))
+    y = _opposite_of(x)
+    return None if y is None else apply_operation("negate", apply_operation("sin", y))
 
 
 def _cos(x: Node) -> Node | None:
-    y = _negated(x)
-    return None if y is None else operated("cos", y)
+    y = _opposite_of(x)
+    return None if y is None else apply_operation("cos", y)
 
 
 def _extreme(a: Node, b: Node) -> Node | None:
@@ -319,7 +319,7 @@ def _where(condition: Node, a: Node, b: Node) -> Node | None:
     if a is b:
         return a
     if condition.operation == "opposite":
-        return operated("where", condition.arguments[0], b, a)
+        return apply_operation("where", condition.arguments[0], b, a)
     return None
 
 
@@ -328,7 +328,7 @@ _RULES: dict[str, Any] = {
     "subtract": _subtract,
     "multiply": _multiply,
     "divide": _divide,
-    "negate": _negated,
+    "negate": _opposite_of,
     "abs": _abs,
     "sin": _sin,
     "cos": _cos,
@@ -352,22 +352,22 @@ class Expressions:
     """Namespace `m` of nodes. Plain numbers pass through to plain numbers, so jets keep their literal zeros."""
 
     def sqrt(self, x: Operand) -> Operand:
-        return operated("sqrt", x) if isinstance(x, Node) else square_root(x)
+        return apply_operation("sqrt", x) if isinstance(x, Node) else square_root(x)
 
     def sin(self, x: Operand) -> Operand:
-        return operated("sin", x) if isinstance(x, Node) else math.sin(x)
+        return apply_operation("sin", x) if isinstance(x, Node) else math.sin(x)
 
     def cos(self, x: Operand) -> Operand:
-        return operated("cos", x) if isinstance(x, Node) else math.cos(x)
+        return apply_operation("cos", x) if isinstance(x, Node) else math.cos(x)
 
     def atan2(self, y: Operand, x: Operand) -> Operand:
-        return operated("atan2", y, x) if _any_node(y, x) else math.atan2(_plain(y), _plain(x))
+        return apply_operation("atan2", y, x) if _any_node(y, x) else math.atan2(_plain(y), _plain(x))
 
     def exp(self, x: Operand) -> Operand:
-        return operated("exp", x) if isinstance(x, Node) else math.exp(x)
+        return apply_operation("exp", x) if isinstance(x, Node) else math.exp(x)
 
     def log(self, x: Operand) -> Operand:
-        return operated("log", x) if isinstance(x, Node) else math.log(x)
+        return apply_operation("log", x) if isinstance(x, Node) else math.log(x)
 
     def tan(self, x: Operand) -> Number:
         return DERIVED["tan"](self, x)
@@ -382,50 +382,50 @@ class Expressions:
         return DERIVED["atan"](self, x)
 
     def abs(self, x: Operand) -> Operand:
-        return operated("abs", x) if isinstance(x, Node) else math.fabs(x)
+        return apply_operation("abs", x) if isinstance(x, Node) else math.fabs(x)
 
     def sign(self, x: Operand) -> Number:
         # zeros and NaN stay what they are
         return self.where(self.less(0.0, x), 1.0, self.where(self.less(x, 0.0), -1.0, x))
 
     def min(self, x: Operand, y: Operand) -> Operand:
-        return operated("minimum", x, y)
+        return apply_operation("minimum", x, y)
 
     def max(self, x: Operand, y: Operand) -> Operand:
-        return operated("maximum", x, y)
+        return apply_operation("maximum", x, y)
 
     def least(self, x: Operand, y: Operand) -> Operand:
-        return operated("least", x, y)
+        return apply_operation("least", x, y)
 
     def greatest(self, x: Operand, y: Operand) -> Operand:
-        return operated("greatest", x, y)
+        return apply_operation("greatest", x, y)
 
     def is_number(self, x: Operand) -> Node:
-        return operated("equal", x, x)
+        return apply_operation("equal", x, x)
 
     def less(self, x: Operand, y: Operand) -> Node:
-        return operated("less", x, y)
+        return apply_operation("less", x, y)
 
     def less_equal(self, x: Operand, y: Operand) -> Node:
-        return operated("less_equal", x, y)
+        return apply_operation("less_equal", x, y)
 
     def equal(self, x: Operand, y: Operand) -> Node:
-        return operated("equal", x, y)
+        return apply_operation("equal", x, y)
 
     def not_equal(self, x: Operand, y: Operand) -> Node:
-        return operated("not_equal", x, y)
+        return apply_operation("not_equal", x, y)
 
     def both(self, p: Node, q: Node) -> Node:
-        return operated("both", p, q)
+        return apply_operation("both", p, q)
 
     def either(self, p: Node, q: Node) -> Node:
-        return operated("either", p, q)
+        return apply_operation("either", p, q)
 
     def opposite(self, p: Node) -> Node:
-        return operated("opposite", p)
+        return apply_operation("opposite", p)
 
     def where(self, condition: Node, x: Operand, y: Operand) -> Node:
-        return operated("where", condition, x, y)
+        return apply_operation("where", condition, x, y)
 
 
 def _any_node(*operands: Operand) -> bool:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, operated, variable
+from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, apply_operation, as_node, variable
 from centrode.numerics.operations import CONSTANT, OPERATIONS, VARIABLE
 
 
@@ -32,7 +32,7 @@ class Graph:
     @cached_property
     def order(self) -> tuple[Node, ...]:
         """All nodes once, arguments before what is computed from them."""
-        return tuple(ordered(self.outputs.values()))
+        return tuple(topological_order(self.outputs.values()))
 
     @cached_property
     def variables(self) -> tuple[str, ...]:
@@ -50,16 +50,16 @@ class Graph:
         parts = [name.encode() + b"\0" + node.key for name, node in self.outputs.items()]
         return hashlib.blake2b(b"".join(parts), digest_size=16).digest()
 
-    def substituted(self, values: Mapping[str, Operand]) -> Graph:
+    def substitute(self, values: Mapping[str, Operand]) -> Graph:
         """The graph with expressions or numbers in the place of some variables."""
 
-        def replaced(node: Node, _arguments: tuple[Node, ...]) -> Operand | None:
+        def replacement(node: Node, _arguments: tuple[Node, ...]) -> Operand | None:
             return values.get(str(node.detail)) if node.operation == VARIABLE else None
 
-        return Graph(rebuilt(self.outputs, replaced))
+        return Graph(rebuilt(self.outputs, replacement))
 
 
-def ordered(roots: Iterable[Node]) -> list[Node]:
+def topological_order(roots: Iterable[Node]) -> list[Node]:
     """The nodes that roots consist of, arguments first; without recursion, so that depth does not matter."""
     found: dict[Node, None] = {}
     stack = [(node, False) for node in reversed(list(roots))]
@@ -80,22 +80,22 @@ def rebuilt(
 ) -> dict[str, Node]:
     """Outputs with some nodes replaced, and everything above these built anew.
 
-    `replaced(node, arguments)` gives what stands for a node, its arguments being rebuilt already, or None.
+    `replace_letters(node, arguments)` gives what stands for a node, its arguments being rebuilt already, or None.
     """
     new: dict[Node, Node] = {}
-    for node in ordered(outputs.values()):
+    for node in topological_order(outputs.values()):
         arguments = tuple(new[x] for x in node.arguments)
         other = replaced(node, arguments)
         if other is not None:
             new[node] = as_node(other)
         elif arguments != node.arguments:
-            new[node] = operated(node.operation, *arguments)
+            new[node] = apply_operation(node.operation, *arguments)
         else:
             new[node] = node
     return {name: new[node] for name, node in outputs.items()}
 
 
-def split(
+def split_graph(
     graph: Graph, names: Iterable[str], prefix: str, only: Container[str] | None = None
 ) -> tuple[Graph, Graph]:
     """What depends on some variables alone, and the rest with that as variables.
@@ -136,9 +136,9 @@ def gradient(output: Node, variables: Sequence[Node]) -> list[Operand]:
     At a selection the derivative is that of what is selected; what is not selected may be NaN or infinite
     without harm. `abs`, `minimum` and `maximum` take the derivative of the side the value is on.
     """
-    order = ordered([output])
-    needed = _depending(order, variables)
-    guarded = _selected(order)
+    order = topological_order([output])
+    needed = _dependent_nodes(order, variables)
+    guarded = _nodes_below_selections(order)
     by: dict[Node, Operand] = {output: 1.0}
     for node in reversed(order):
         if node not in by or node not in needed or not node.arguments or node.is_condition:
@@ -147,11 +147,11 @@ def gradient(output: Node, variables: Sequence[Node]) -> list[Operand]:
             node.arguments, _RULES[node.operation](node, *node.arguments), strict=True
         ):
             if factor is not None and argument in needed:
-                _collect(by, argument, _chained(node, by[node], factor, node in guarded))
+                _collect(by, argument, _chain_rule_product(node, by[node], factor, node in guarded))
     return [by.get(x, 0.0) for x in variables]
 
 
-def _depending(order: Sequence[Node], variables: Sequence[Node]) -> set[Node]:
+def _dependent_nodes(order: Sequence[Node], variables: Sequence[Node]) -> set[Node]:
     """Nodes that depend on one of the variables."""
     needed = set(variables)
     for node in order:
@@ -160,7 +160,7 @@ def _depending(order: Sequence[Node], variables: Sequence[Node]) -> set[Node]:
     return needed
 
 
-def _selected(order: Sequence[Node]) -> set[Node]:
+def _nodes_below_selections(order: Sequence[Node]) -> set[Node]:
     """Nodes below a selection: their derivative may have to vanish although a factor of it is NaN."""
     found: set[Node] = set()
     for node in reversed(order):
@@ -173,7 +173,7 @@ def _collect(by: dict[Node, Operand], node: Node, part: Operand) -> None:
     by[node] = by[node] + part if node in by else part
 
 
-def _chained(node: Node, outer: Operand, factor: Operand, guarded: bool) -> Operand:
+def _chain_rule_product(node: Node, outer: Operand, factor: Operand, guarded: bool) -> Operand:
     """Product by the chain rule; a condition as the factor selects instead."""
     if isinstance(factor, Node) and factor.is_condition:
         return m.where(factor, outer, 0.0)
@@ -200,7 +200,7 @@ def _angle(node: Node, y: Node, x: Node) -> tuple[Operand, ...]:
 
 
 def _power(node: Node, x: Node, exponent: Node) -> tuple[Operand, ...]:
-    return exponent * operated("power", x, exponent - 1.0), node * m.log(x)
+    return exponent * apply_operation("power", x, exponent - 1.0), node * m.log(x)
 
 
 def _least(node: Node, a: Node, b: Node) -> tuple[Operand, ...]:
@@ -256,7 +256,7 @@ Text = tuple[str, int]
 """An expression as text and how strongly its outermost sign binds."""
 
 
-def listing(graph: Graph) -> str:
+def graph_listing(graph: Graph) -> str:
     """The graph as lines `name = expression`, in the order in which they are computed.
 
     What is used once stands where it is used; intermediate results are named t1, t2 ...
@@ -277,7 +277,7 @@ def listing(graph: Graph) -> str:
     return "\n".join(lines)
 
 
-def counted(graph: Graph) -> str:
+def operation_counts(graph: Graph) -> str:
     """How many operations of each kind the graph has, the most frequent first."""
     return ", ".join(f"{number} {operation}" for operation, number in graph.counts.most_common())
 

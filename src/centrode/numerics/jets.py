@@ -51,7 +51,7 @@ class Jet:
         """The derivative as a jet, one order lower."""
         return Jet([k * c for k, c in enumerate(self.coefficients)][1:])
 
-    def lowered(self) -> Jet:
+    def lower_order(self) -> Jet:
         """The same jet one order lower, to meet a slope."""
         return Jet(self.coefficients[:-1])
 
@@ -273,8 +273,8 @@ class JetFunctions:
         value = self.base.atan2(y.value, x.value)
         if not x.order:
             return Jet((value,))
-        turning = x.lowered() * y.slope() - y.lowered() * x.slope()
-        return integral((turning / (x * x + y * y).lowered()).coefficients, value)
+        turning = x.lower_order() * y.slope() - y.lower_order() * x.slope()
+        return integral((turning / (x * x + y * y).lower_order()).coefficients, value)
 
     def abs(self, x: Number) -> Number:
         return x * self.base.sign(x.value) if isinstance(x, Jet) else self.base.abs(x)
@@ -317,7 +317,7 @@ class JetFunctions:
         """The jet with the given value whose derivative is x' / divisor."""
         if not x.order:
             return Jet((value,))
-        return integral((x.slope() / divisor.lowered()).coefficients, value)
+        return integral((x.slope() / divisor.lower_order()).coefficients, value)
 
 
 def _value(x: Number) -> Number:

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
-from centrode.numerics.graphs import Graph, gradient, split
+from centrode.numerics.graphs import Graph, gradient, split_graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
 
 Array: TypeAlias = npt.NDArray[Any]
@@ -227,13 +227,13 @@ def total_with_gradient(name: str, value: Node, by: Sequence[Node], moving: Coll
     gone through once a lane.
     """
     variables = [x for x in Graph({"": value}).variables if x not in moving]
-    parts, rest = split(Graph({"": value}), variables, f"{name} part")
+    parts, rest = split_graph(Graph({"": value}), variables, f"{name} part")
     own = {x: variable(x) for x in rest.variables if x in variables}
     standing = {**parts.outputs, **own}
     slopes = Graph.of(
         dict(zip(standing, gradient(rest.outputs[""], [variable(x) for x in standing]), strict=True))
     )
-    carried = slopes.substituted(parts.outputs).outputs
+    carried = slopes.substitute(parts.outputs).outputs
     labels = {x: f"{name} through {x}" for x in standing}
     state = {name: _more(name, value, value)}
     state |= {labels[x]: _more(labels[x], value, carried[x]) for x in standing}

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from centrode.analysis.instant_centres.centres import bearing
+from centrode.analysis.instant_centres.centres import line_direction
 from centrode.locale import _, ngettext
 from centrode.model.labels import body_name
 from centrode.present.curves import write_title
@@ -225,7 +225,7 @@ def constructed(step: KennedyStep, bodies: int) -> str:
 def _elsewhere(step: KennedyStep, inside: bool) -> str:
     """What is said of a centre that the drawing does not show."""
     if step.direction is not None:
-        return f", ∞ {bearing(step.direction):.4g}°"
+        return f", ∞ {line_direction(step.direction):.4g}°"
     return "" if inside or step.place is None else ", " + _("off the sheet")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 
-from centrode.equations.spelling import SymbolFormula, spelled
+from centrode.equations.spelling import SymbolFormula, spell_formula
 from centrode.equations.symbols import Letter, Parts, SumTerm, Wave
 from centrode.present.equations.typst import LONG, TypstSpelling, unbracketed
 from centrode.render.document.numbers import Numbers
@@ -81,7 +81,7 @@ def with_numbers(
     differences_first: bool = False,
     turned: bool = False,
 ) -> str | None:
-    """A formula with its numbers, spelled as `spelled` does.
+    """A formula with its numbers, spelled as `spell_formula` does.
 
     None where it is too long, has no letters, or one of its numbers does not exist.
     """
@@ -90,7 +90,7 @@ def with_numbers(
         return None
     if not all(math.isfinite(values.get(letter, math.nan)) for letter in formula.total.letters):
         return None
-    return spelled(formula, NumberSpelling(values, numbers), differences_first, turned)
+    return spell_formula(formula, NumberSpelling(values, numbers), differences_first, turned)
 
 
 def _count(term: SumTerm) -> int:

@@ -11,7 +11,7 @@ from centrode.locale import _
 from centrode.model.cam_files import AnyCam
 from centrode.model.mechanism import Mechanism
 from centrode.model.motion_parameter import ANGLE
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.settings import DIGITS, LEAST_DIGITS, MOST_DIGITS, ReportWishes
 
 Wished = TypeVar("Wished")
@@ -91,4 +91,4 @@ def _check(names: Iterable[str] | None, known: Iterable[str], where: str, what: 
     candidates = list(known)
     for name in names or ():
         if name not in candidates:
-            raise InputError(where, what.format(name=shown(name)), nearest(name, candidates))
+            raise InputError(where, what.format(name=value_text(name)), nearest(name, candidates))

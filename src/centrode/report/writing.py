@@ -12,7 +12,7 @@ import lazy_loader
 from centrode.errors import InputError
 from centrode.files.drafts import draft_folder, refusals
 from centrode.locale import _, speaking
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.render.document.blocks import Report
 
 # What documents need is an extra: only where they are asked for.
@@ -80,7 +80,7 @@ def check_formats(formats: Sequence[str]) -> None:
         raise InputError("format", _("no format is named"), nearest("", FORMATS))
     for kind in formats:
         if kind not in FORMATS:
-            what = _("{kind} is no format of a report").format(kind=shown(kind))
+            what = _("{kind} is no format of a report").format(kind=value_text(kind))
             raise InputError("format", what, nearest(kind, FORMATS))
     if find_spec("typst") is None:
         raise lacking("typst")

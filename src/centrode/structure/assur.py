@@ -15,6 +15,7 @@ from centrode.model.reading import body_word
 from centrode.structure.groups import (
     Aim,
     AngleGiven,
+    CylinderCircle,
     Group,
     Locus,
     Meet,
@@ -27,7 +28,6 @@ from centrode.structure.groups import (
     Rolloff,
     Slot,
     Stop,
-    Stroke,
     Touch,
     Train,
     TurnedLink,
@@ -202,7 +202,7 @@ def is_input(group: Group) -> bool:
         return any(isinstance(e, AngleGiven) and e.drive is not None for e in group.equations)
     if isinstance(group, Meet):
         driven = isinstance(group.turning, Turning) and group.turning.drive is not None
-        return driven or any(isinstance(locus, (Stop, Stroke)) for locus in group.loci)
+        return driven or any(isinstance(locus, (Stop, CylinderCircle)) for locus in group.loci)
     return False
 
 
@@ -220,7 +220,7 @@ def _members(mechanism: Mechanism, group: Group) -> tuple[str, ...]:
                 guide = mechanism.guide(locus.guide)
                 if is_bare(guide) or guide.link not in names:
                     names.append(slider_of(guide))
-            if isinstance(locus, Stroke):
+            if isinstance(locus, CylinderCircle):
                 names.append(_("cylinder {drive}").format(drive=locus.drive))
     if isinstance(group, Newton):
         bare = [guide for guide in mechanism.guides if is_bare(guide)]
@@ -267,10 +267,10 @@ def step_of(group: Group) -> str:
         )
     if isinstance(group, Newton):
         return _("higher class: {names}").format(names=", ".join(group.points + group.links))
-    return _meeting(group)
+    return _meeting_text(group)
 
 
-def _meeting(group: Meet) -> str:
+def _meeting_text(group: Meet) -> str:
     one, other = (_locus(locus) for locus in group.loci)
     if group.carriage is None:
         return _("{kind}: point {point}, where {one} meets {other}").format(
@@ -284,7 +284,7 @@ def _meeting(group: Meet) -> str:
 def _locus(locus: Locus) -> str:
     if isinstance(locus, Rod):
         return _("the circle of {link} about {point}").format(link=locus.link, point=locus.centre)
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return _("the circle about {point} as large as the cylinder is long").format(point=locus.centre)
     if isinstance(locus, Rail):
         return _("the line of guide {guide}").format(guide=locus.guide)

@@ -18,9 +18,9 @@ from centrode.geometry.plane import (
     dot,
     place,
     reversed_rotor,
+    rotate_vector,
     rotor_of,
     subtract,
-    turned,
 )
 from centrode.geometry.space import Coordinates, Place, Pose, Rows
 from centrode.locale import _
@@ -72,7 +72,7 @@ class Positions:
         fixed = {name: space.place(m, space.at_rest, at) for name, at in dimensions.frame.items()}
         return cls(fixed, {FRAME: space.at_rest}, drives)
 
-    def mapped(self, function: Callable[[Number], Number]) -> Positions:
+    def map_numbers(self, function: Callable[[Number], Number]) -> Positions:
         """The same positions with every number replaced by function(number)."""
         return Positions(
             {name: tuple(map(function, at)) for name, at in self.points.items()},
@@ -81,7 +81,7 @@ class Positions:
             {name: function(value) for name, value in self.angles.items()},
         )
 
-    def copied(self) -> Positions:
+    def copy(self) -> Positions:
         """The same positions, to which others may be added apart."""
         return Positions(dict(self.points), dict(self.poses), self.drives, dict(self.angles))
 
@@ -93,7 +93,7 @@ def mapped_pose(pose: Pose, function: Callable[[Number], Number]) -> Pose:
 
 def angle_between(m: Namespace, rotor: Vector, reference: Vector) -> Number:
     """Angle from one rotor to another, in (-pi, pi]."""
-    difference = turned(rotor, reversed_rotor(reference))
+    difference = rotate_vector(rotor, reversed_rotor(reference))
     return m.atan2(difference[1], difference[0])
 
 
@@ -215,7 +215,7 @@ class _OnTrack:
         """Direction of a line as it lies now; from the circle's centre to that of the wheel."""
         track = numbers.gearing.track[self.rolling]
         if isinstance(track, Straight):
-            return turned(track.direction, at.poses[self.on].rotor)
+            return rotate_vector(track.direction, at.poses[self.on].rotor)
         x, y = self.offset(numbers, at)
         length = (x * x + y * y) ** 0.5
         return x / length, y / length
@@ -242,7 +242,7 @@ class Contact(_OnTrack):
         reach, offset = numbers.gearing.reach(self.rolling), self.offset(numbers, at)
         track = numbers.gearing.track[self.rolling]
         if isinstance(track, Straight):
-            return [cross(turned(track.direction, at.poses[self.on].rotor), offset) - reach]
+            return [cross(rotate_vector(track.direction, at.poses[self.on].rotor), offset) - reach]
         return [m.sqrt(dot(offset, offset)) - reach]
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:
@@ -273,7 +273,7 @@ class NoSlip(_OnTrack):
 
     def bearing(self, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
         """Direction [rad] of the wheel's centre from the circle's in the axes of its body, in (-pi, pi]."""
-        x, y = turned(self.offset(numbers, at), reversed_rotor(at.poses[self.on].rotor))
+        x, y = rotate_vector(self.offset(numbers, at), reversed_rotor(at.poses[self.on].rotor))
         return m.atan2(y, x)
 
     def constant(self, m: Namespace, numbers: Dimensions, at: Positions) -> Number:
@@ -290,7 +290,7 @@ class NoSlip(_OnTrack):
         # where the wheel's own turns, which are known, want its centre: so the centre's need not be counted
         spin = numbers.gearing.spin(self.rolling)
         bearing = (at.angles[self.link] - at.angles[self.on] - phase) / spin
-        wanted = turned(at.poses[self.on].rotor, rotor_of(m, bearing))
+        wanted = rotate_vector(at.poses[self.on].rotor, rotor_of(m, bearing))
         return [spin * angle_between(m, wanted, self.offset(numbers, at))]
 
     def rows(self, numbers: Dimensions, at: Positions) -> list[Row]:

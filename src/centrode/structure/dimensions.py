@@ -101,7 +101,7 @@ class Dimensions:
     references: Mapping[str, tuple[Vector, ...]] = field(default_factory=dict)
     gearing: Gearing = field(default_factory=Gearing)
 
-    def mapped(self, function: Callable[[Number], Number]) -> Dimensions:
+    def map_numbers(self, function: Callable[[Number], Number]) -> Dimensions:
         """The same dimensions with every number replaced by function(number)."""
 
         def vectors(pairs: Mapping[str, Vector]) -> dict[str, Vector]:
@@ -118,7 +118,7 @@ class Dimensions:
                 link: tuple((function(x), function(y)) for x, y in arcs)
                 for link, arcs in self.references.items()
             },
-            gearing=self.gearing.mapped(function),
+            gearing=self.gearing.map_numbers(function),
         )
 
     def curve(self, guide: str) -> Curve:

@@ -57,16 +57,16 @@ class Gearing:
     shares: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     measured: Mapping[str, str] = field(default_factory=dict)
 
-    def mapped(self, function: Callable[[Number], Number]) -> Gearing:
+    def map_numbers(self, function: Callable[[Number], Number]) -> Gearing:
         """The same with every number replaced by function(number)."""
         return replace(
-            self.resized(function),
+            self.scale_lengths(function),
             ratio={name: function(x) for name, x in self.ratio.items()},
             track={name: _track(track, function, function) for name, track in self.track.items()},
             phase={name: function(x) for name, x in self.phase.items()},
         )
 
-    def resized(self, function: Callable[[Number], Number]) -> Gearing:
+    def scale_lengths(self, function: Callable[[Number], Number]) -> Gearing:
         """The same with every length replaced by function(length); ratios, directions and phases stay."""
         return replace(
             self,

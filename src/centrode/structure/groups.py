@@ -218,7 +218,7 @@ class Stop:
 
 
 @dataclass(frozen=True)
-class Stroke:
+class CylinderCircle:
     """Locus: a circle about a known centre whose radius a cylinder's drive gives."""
 
     point: str
@@ -227,7 +227,7 @@ class Stroke:
     letter = "R"
 
 
-Locus: TypeAlias = Rod | Stroke | Rail | Slot | Stop | Touch | Rolloff
+Locus: TypeAlias = Rod | CylinderCircle | Rail | Slot | Stop | Touch | Rolloff
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,7 @@ from centrode.structure.groups import (
     AngleEquation,
     AngleGiven,
     Arm,
+    CylinderCircle,
     Following,
     Group,
     Locus,
@@ -48,7 +49,6 @@ from centrode.structure.groups import (
     Rolloff,
     Slot,
     Stop,
-    Stroke,
     Touch,
     Train,
     TurnedLink,
@@ -90,7 +90,7 @@ class GroupToSolve(Protocol):
     def knows_link(self, link: str) -> bool: ...
 
 
-def following(group: GroupToSolve, constraint: Constraint, link: str) -> Following | None:
+def relation_to_known(group: GroupToSolve, constraint: Constraint, link: str) -> Following | None:
     """How a gear or a rolling contact gives the angle of a link from what is known; None if it does not."""
     if isinstance(constraint, GearRatio) and link in constraint.links:
         if not all(group.knows_link(other) for other in constraint.links if other != link):
@@ -128,7 +128,7 @@ def train(group: GroupToSolve) -> Train | None:
     if len(equations) != len(group.links) or len(equations) < 2 or None in equations:
         return None
     found = tuple(equation for equation in equations if equation is not None)
-    placed = _placed(group, hinges)
+    placed = _placing_order(group, hinges)
     if placed is None:
         return None
     return Train(found, _pivots(group, found), *placed)
@@ -171,7 +171,7 @@ def _named_centre(mechanism: Mechanism, wheel: Rolling) -> str | None:
     return None
 
 
-def _placed(
+def _placing_order(
     group: GroupToSolve, hinges: Sequence[PointInLink]
 ) -> tuple[tuple[tuple[str, str], ...], tuple[tuple[str, str], ...]] | None:
     """Each link with its known point in an order of placing, and each point with the link that brings it."""
@@ -281,7 +281,7 @@ class Unsolved:
     def turning(self, link: str) -> tuple[Constraint, Turning | Following] | None:
         """The constraint that gives the angle of a link from known ones, if there is one."""
         for c in self.constraints:
-            follows = following(self, c, link)
+            follows = relation_to_known(self, c, link)
             if follows is not None:
                 return c, follows
             found = _turning_of(c)
@@ -424,12 +424,12 @@ def _rod(group: Unsolved, link: str) -> Rod | None:
     return Rod(unknown[0], known[0], link)
 
 
-def _stroke(group: Unsolved, drive: DistanceDrive) -> Stroke | None:
+def _stroke(group: Unsolved, drive: DistanceDrive) -> CylinderCircle | None:
     unknown = [point for point in (drive.first, drive.second) if not group.knows_point(point)]
     if len(unknown) != 1:
         return None
     known = drive.second if unknown[0] == drive.first else drive.first
-    return Stroke(unknown[0], known, drive.drive)
+    return CylinderCircle(unknown[0], known, drive.drive)
 
 
 def _line(group: Unsolved, constraint: Constraint, carriage: str | None) -> Locus | None:

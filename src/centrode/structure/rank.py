@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from centrode.geometry.plane import Pose, Vector, cross, reversed_rotor, subtract, turned
+from centrode.geometry.plane import PlanePose, Vector, cross, reversed_rotor, rotate_vector, subtract
 from centrode.geometry.space import Row
 from centrode.locale import _
 from centrode.model.mechanism import Guide, Mechanism, Rolling
@@ -76,7 +76,7 @@ def point_at(numbers: Dimensions, body: str, local: Vector) -> str | None:
 def local_of(at: Positions, body: str, point: str) -> Vector:
     """Coordinates of a point in the axes of a body."""
     pose = at.poses[body]
-    return turned(subtract(at.points[point], pose.origin), reversed_rotor(pose.rotor))
+    return rotate_vector(subtract(at.points[point], pose.origin), reversed_rotor(pose.rotor))
 
 
 def _direction(
@@ -95,10 +95,10 @@ def _direction(
         if guide.on == wheel.on and parallel(own, track.direction):
             return directions[guide.id]
         # the body that carries the track slides on the guide without turning
-        seen = turned(own, reversed_rotor(numbers.turn[guide.id]))
+        seen = rotate_vector(own, reversed_rotor(numbers.turn[guide.id]))
         if guide.link == wheel.on and parallel(seen, track.direction):
-            absolute = turned(directions[guide.id], at.poses[guide.on].rotor)
-            return turned(absolute, reversed_rotor(at.poses[wheel.on].rotor))
+            absolute = rotate_vector(directions[guide.id], at.poses[guide.on].rotor)
+            return rotate_vector(absolute, reversed_rotor(at.poses[wheel.on].rotor))
     angle = random.uniform(0.0, tau)
     return cos(angle), sin(angle)
 
@@ -177,15 +177,15 @@ def random_realisation(mechanism: Mechanism, numbers: Dimensions) -> tuple[Dimen
     """Random positions, and the lengths that make them fit: the same structure with nothing special about it."""
     random = np.random.default_rng(1)
     points = {name: _pair(random.normal(size=2)) for name in mechanism.points}
-    poses = {FRAME: Pose((0.0, 0.0), (1.0, 0.0))}
+    poses = {FRAME: PlanePose((0.0, 0.0), (1.0, 0.0))}
     for link in mechanism.links:
         angle = random.uniform(0.0, tau)
-        poses[link] = Pose(_pair(random.normal(size=2)), (cos(angle), sin(angle)))
+        poses[link] = PlanePose(_pair(random.normal(size=2)), (cos(angle), sin(angle)))
     at = Positions(points, poses, {drive.id: 0.0 for drive in mechanism.drives})
 
     def local(body: str, point: str) -> Vector:
         pose = poses[body]
-        return turned(subtract(points[point], pose.origin), reversed_rotor(pose.rotor))
+        return rotate_vector(subtract(points[point], pose.origin), reversed_rotor(pose.rotor))
 
     direction, turn = {}, {}
     for guide in mechanism.guides:

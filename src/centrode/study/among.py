@@ -11,7 +11,7 @@ from centrode.errors import InputError
 from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 
 ALL = "all"
 
@@ -31,6 +31,6 @@ def moving_points(mechanism: Mechanism, names: Sequence[str], where: str) -> tup
         return mechanism.moving_points
     for name in names:
         if name not in mechanism.moving_points:
-            what = _("there is no moving point {name}").format(name=shown(name))
+            what = _("there is no moving point {name}").format(name=value_text(name))
             raise InputError(where, what, nearest(name, mechanism.moving_points))
     return tuple(names)

@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 
 from centrode.analysis.instant_centres.bodies import Pair, sliders_of
-from centrode.analysis.instant_centres.centres import Case, bearing
+from centrode.analysis.instant_centres.centres import Case, line_direction
 from centrode.analysis.instant_centres.kennedy import Construction, KennedyStep
 from centrode.errors import Status
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.locale import _
 from centrode.model.labels import body_name
 from centrode.model.mechanism import FRAME, Display, Mechanism
@@ -136,7 +136,7 @@ def place_text(centre: xr.Dataset, display: Display) -> str:
         return "-"
     direction = centre["centre_direction"].to_numpy()
     if np.isfinite(direction).all():
-        return _("at infinity, {angle:.6g} deg").format(angle=bearing(direction.tolist()))
+        return _("at infinity, {angle:.6g} deg").format(angle=line_direction(direction.tolist()))
     return "-"
 
 

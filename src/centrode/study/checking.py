@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import AssurGroup, assur_groups, step_of, structural_formula
 from centrode.structure.rank import Count, count

@@ -10,7 +10,7 @@ from typing import TypeAlias
 from centrode.analysis.redesign.candidates import Candidates, impossible
 from centrode.analysis.redesign.repair import Change, Repair
 from centrode.analysis.rotatability.rotatability import rotatability
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.locale import _, ngettext, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.wording import value_text

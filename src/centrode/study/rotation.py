@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from centrode.analysis.rotatability.rotatability import LimitFound, rotatability
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 
 
 @dataclass(frozen=True)

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.steady_motion.machine import MachineResults, machine_results
 from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.several_inputs.coefficients import coefficients_of, most_samples
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
 from centrode.sheets.sheet import Scalar
@@ -67,7 +67,7 @@ def study(
 ) -> StudyResults:
     """Check a mechanism and compute its motion; the arguments are those of `motion`."""
     prepared = ready(mechanism)
-    solved = solve(prepared, asked_span(prepared, samples, start, stop))
+    solved = solve(prepared, requested_grid(prepared, samples, start, stop))
     checked = check_of(prepared)
     data = dataset_of(solved)
     words = Words(solved)
@@ -110,7 +110,7 @@ def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None,
         return None, []
     try:
         burden = MassesAndLoads.for_reactions(mechanism)
-        found = reactions_at(solved, burden, pace_of(solved, burden), contacts_of(mechanism))
+        found = reactions_at(solved, burden, input_motion_of(solved, burden), contacts_of(mechanism))
         return found, _jams(found)
     except (InputError, NotComputedYet) as missing:
         what = f"{missing.where}: {missing.what}" if missing.where else missing.what
@@ -142,7 +142,7 @@ def _at_instants(prepared: Ready) -> xr.Dataset | None:
     if not places or not prepared.parameter.states_instants:
         return None
     try:
-        span = span_at(prepared.kinematics.path, np.array(places))
+        span = grid_at(prepared.kinematics.path, np.array(places))
     except InputError as error:
         raise InputError("[study] instants", error.what, error.repair) from None
     return dataset_of(solve(prepared, span))

@@ -9,7 +9,7 @@ from typing import TypeAlias
 from centrode.analysis.rotatability.causes import Transmission
 from centrode.analysis.rotatability.circuits import Branch, Circuits, FourBar
 from centrode.analysis.rotatability.rotatability import LimitFound, LinkTurning, Rotatability
-from centrode.analysis.rotatability.tours import Dwell, StrokeExtreme, Swing
+from centrode.analysis.rotatability.tours import Dwell, LinkStroke, StrokeExtreme
 from centrode.locale import _, mark, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.model.reading import body_word
@@ -123,7 +123,7 @@ class _Words:
         )
         return _("{sides}: from {low} to {high}").format(sides=sides, low=next(ends), high=next(ends))
 
-    def swing(self, swing: Swing) -> Rows:
+    def swing(self, swing: LinkStroke) -> Rows:
         label = (_("link {name}") if swing.member == "link" else _("slide {name}")).format(name=swing.name)
         if swing.kind == "still":
             return [(label, _("keeps its angle") if swing.unit == "rad" else _("stands still"))]
@@ -141,7 +141,7 @@ class _Words:
             *self.dwells(swing.dwells),
         ]
 
-    def turns(self, swing: Swing) -> str:
+    def turns(self, swing: LinkStroke) -> str:
         if not swing.turns or self.turning.period is None:
             return _("runs on")
         count = abs(swing.turns)

@@ -13,7 +13,7 @@ from centrode.errors import Status
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.plan_evaluation import layout_of
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton

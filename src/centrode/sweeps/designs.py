@@ -20,7 +20,7 @@ from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model.files import value_at
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.units import to_si
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
@@ -145,7 +145,7 @@ def ends(mechanism: Mechanism, path: str, first: Any, last: Any) -> tuple[float,
     low, high = (_number(kind, path, end) for end in (first, last))
     if not low < high:
         what = _("the range from {first} to {last} does not rise").format(
-            first=shown(first), last=shown(last)
+            first=value_text(first), last=value_text(last)
         )
         raise InputError(path, what, _("give the lesser end first, and a greater one after it"))
     _refuse_negative(kind, path, low)
@@ -170,7 +170,7 @@ def count_of(path: str, given: Any, most: int) -> int:
     if isinstance(given, np.integer):
         given = int(given)
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= most:
-        what = _("{count} is no number of values").format(count=shown(given))
+        what = _("{count} is no number of values").format(count=value_text(given))
         raise InputError(path, what, _("give a whole number from 1 to {most}").format(most=most))
     return given
 
@@ -211,11 +211,11 @@ def sample(ranges: Mapping[str, Any], count: int, method: str = "latin hypercube
     return Sample(dict(ranges), count, method, seed)
 
 
-def drawn(mechanism: Mechanism, asked: Sample) -> dict[str, Array]:
+def draw_sample(mechanism: Mechanism, asked: Sample) -> dict[str, Array]:
     """Values [SI] of every path, one for each mechanism; InputError for a range, count, method or seed that is none."""
     count = count_of("sample", asked.count, DRAWN // len(asked.ranges))
     if asked.method not in METHODS:
-        what = _("unknown method {method}").format(method=shown(asked.method))
+        what = _("unknown method {method}").format(method=value_text(asked.method))
         raise InputError("sample", what, nearest(str(asked.method), METHODS))
     seed: object = asked.seed
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
@@ -343,7 +343,7 @@ def design_of(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> 
         )
     if len(given) > PATHS or not all(isinstance(path, str) for path in given):
         raise InputError("vary", _("give at most {most} paths, as texts").format(most=PATHS))
-    design = _resolved(mechanism, vary)
+    design = _resolve_design(mechanism, vary)
     if math.prod(design.shape) > MECHANISMS:
         what = _("{count} mechanisms were asked for").format(count=math.prod(design.shape))
         raise InputError("vary", what, _("ask for at most {most}").format(most=MECHANISMS))
@@ -354,11 +354,11 @@ def design_of(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> 
     return design
 
 
-def _resolved(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> Design:
+def _resolve_design(mechanism: Mechanism, vary: Mapping[str, Any] | Grid | Sample) -> Design:
     if isinstance(vary, Grid):
         return Crossed({path: _axis(mechanism, path, given) for path, given in vary.ranges.items()})
     if isinstance(vary, Sample):
-        return Listed(drawn(mechanism, vary))
+        return Listed(draw_sample(mechanism, vary))
     values = {path: numbers(mechanism, path, given) for path, given in vary.items()}
     sizes = {path: array.size for path, array in values.items()}
     if len(set(sizes.values())) > 1:
@@ -380,7 +380,7 @@ def _axis(mechanism: Mechanism, path: str, given: Any) -> Array:
     return np.linspace(low, high, count)
 
 
-def described(design: Design) -> dict[str, str]:
+def path_digests(design: Design) -> dict[str, str]:
     """The values by which two designs are told apart: path -> a digest of its values along the design."""
     told = {}
     for path, (dimension, values) in design.coordinates.items():
@@ -389,7 +389,7 @@ def described(design: Design) -> dict[str, str]:
     return told
 
 
-def counted(design: Design) -> str:
+def design_size_text(design: Design) -> str:
     """How many mechanisms there are, in words; the extents of a grid with them."""
     count = math.prod(design.shape)
     words = ngettext("{n} mechanism", "{n} mechanisms", count).format(n=count)

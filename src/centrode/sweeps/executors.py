@@ -9,11 +9,11 @@ import math
 from typing import Protocol
 
 from centrode.errors import InputError
-from centrode.kinematics.compiled.trace import Untraceable
+from centrode.kinematics.machine_code.trace import Untraceable
 from centrode.locale import _
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
-from centrode.numerics.executors import AUTO, MACHINE_CODE, chosen
+from centrode.numerics.executors import AUTO, MACHINE_CODE, choose_executor
 from centrode.structure.dimensions import Dimensions, dimensions_of
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import ArraysExecutor, Results, SweepTask
@@ -45,7 +45,7 @@ def check_executor(name: object) -> str:
     """The name of an executor, or "auto"; InputError for any other."""
     if not isinstance(name, str) or name not in KNOWN:
         raise InputError(
-            "executor", _("unknown executor {name}").format(name=shown(name)), nearest(str(name), KNOWN)
+            "executor", _("unknown executor {name}").format(name=value_text(name)), nearest(str(name), KNOWN)
         )
     return name
 
@@ -53,7 +53,7 @@ def check_executor(name: object) -> str:
 def check_threads(given: object) -> int:
     """A number of threads; InputError for any other than 1 to `designs.THREADS`."""
     if isinstance(given, bool) or not isinstance(given, int) or not 1 <= given <= designs.THREADS:
-        what = _("{count} is no number of threads").format(count=shown(given))
+        what = _("{count} is no number of threads").format(count=value_text(given))
         raise InputError(
             "threads", what, _("give a whole number from 1 to {most}").format(most=designs.THREADS)
         )
@@ -73,7 +73,7 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
     if name == arrays.name or (name == AUTO and positions < designs.WORTH_COMPILING):
         return arrays, arrays.name
     try:
-        found = _traced(task, design, threads, MACHINE_CODE)
+        found = _machine_code_executor(task, design, threads, MACHINE_CODE)
     except Untraceable as why:
         if name == AUTO:
             return arrays, f"{arrays.name} ({why.reason})"
@@ -82,7 +82,9 @@ def executor_of(name: str, task: SweepTask, design: Design, threads: int = 1) ->
     return found, found.name
 
 
-def _traced(task: SweepTask, design: Design, threads: int, kernels: str) -> MachineCodeExecutor:
+def _machine_code_executor(
+    task: SweepTask, design: Design, threads: int, kernels: str
+) -> MachineCodeExecutor:
     values = design.rows(0, 1)
     numbers = dimensions_of(task.ready.mechanism, values, ARRAYS)
     found = MachineCodeExecutor.of(task, numbers, values, threads, kernels)
@@ -92,9 +94,9 @@ def _traced(task: SweepTask, design: Design, threads: int, kernels: str) -> Mach
 
 def _with_slopes(name: str, task: SweepTask, design: Design, threads: int) -> tuple[Executor, str]:
     """Derivatives are those of expressions: on arrays these are computed by NumPy."""
-    kernels = chosen(name) if name == AUTO else name
+    kernels = choose_executor(name) if name == AUTO else name
     try:
-        found = _traced(task, design, threads, kernels)
+        found = _machine_code_executor(task, design, threads, kernels)
     except Untraceable as why:
         what = _("derivatives cannot be computed here: {reason}").format(reason=_(why.reason))
         raise InputError("gradient", what, _("leave gradient out")) from None

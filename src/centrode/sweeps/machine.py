@@ -1,8 +1,8 @@
 """Sweeps as machine code: what has no events is computed in one go, the rest as motions with events.
 
 A mechanism is judged on the mesh first, and again at its samples. Those that are clear have the status ok everywhere
-and the formulas of `traced`. The motions of all others have the bits of the arrays (`compiled.events`; with groups of
-higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does it.
+and the formulas of `trace_motion`. The motions of all others have the bits of the arrays (`machine_code.events`; with
+groups of higher class they are computed by arrays), and what is asked for is taken from them as `ArraysExecutor` does.
 """
 
 from __future__ import annotations
@@ -17,31 +17,31 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.compiled.event_screening import EventScreening
-from centrode.kinematics.compiled.events import Eventful
-from centrode.kinematics.compiled.path_following import SURE, Walk, Walking, Way, beginnings, way_of
-from centrode.kinematics.compiled.trace import Traced, Untraceable, traced
-from centrode.kinematics.compiled.variables import (
+from centrode.kinematics.machine_code.event_screening import EventScreening
+from centrode.kinematics.machine_code.events import Eventful
+from centrode.kinematics.machine_code.path_continuation import SURE, Walk, Walking, Way, beginnings, way_of
+from centrode.kinematics.machine_code.trace import Traced, Untraceable, trace_motion
+from centrode.kinematics.machine_code.variables import (
     ALONG,
     PARAMETER,
     SCALE,
     Pass,
     Varied,
     before_of,
-    boxed,
+    box_array,
     centre_of,
     greatest,
     inputs_of,
     least,
-    taken,
+    take_lanes,
     varied_of,
 )
-from centrode.kinematics.sampling import CLOSED
+from centrode.kinematics.samples import CLOSED
 from centrode.locale import mark
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE, streamer
 from centrode.numerics.expressions import EXPRESSIONS, Expressions, Node, Operand, as_node, variable
-from centrode.numerics.graphs import Graph, gradient, rebuilt, split
+from centrode.numerics.graphs import Graph, gradient, rebuilt, split_graph
 from centrode.numerics.operations import CONSTANT, VARIABLE
 from centrode.numerics.scans import Reduction, Scan, evaluate, room_of, together
 from centrode.structure.dimensions import Dimensions
@@ -178,7 +178,7 @@ class Slopes:
             for name, part in of_folds.items():
                 total = total + part * self.states_of(name).at_end[path]
             found[path] = total
-        return dict(Graph.of(found).substituted(self.standing).outputs)
+        return dict(Graph.of(found).substitute(self.standing).outputs)
 
     def of_fold(self, fold: Fold) -> Reduction:
         """The states of a fold's derivatives; at an extreme they are those of the first sample that has it."""
@@ -205,7 +205,7 @@ class Slopes:
     def _by_paths(self, fold: Fold) -> States:
         """A state for each path."""
         slopes = self.of_node(fold.value)
-        labels = {path: by(fold.name, path) for path in slopes}
+        labels = {path: derivative_name(fold.name, path) for path in slopes}
         parts = {labels[path]: slope for path, slope in slopes.items()}
         return States(parts, {path: variable(label) for path, label in labels.items()})
 
@@ -218,7 +218,7 @@ class Slopes:
         still = self._without_standing(fold.value)
         jumping = self.moving | self.standing.keys()
         variables = [x for x in Graph({"": still}).variables if x not in jumping]
-        parts, rest = split(Graph({"": still}), variables, f"{fold.name} part")
+        parts, rest = split_graph(Graph({"": still}), variables, f"{fold.name} part")
         standing = {**parts.outputs, **{x: variable(x) for x in rest.variables if x in variables}}
         factors = {x: self.of_node(node) for x, node in standing.items()}
         moved = [x for x, factor in factors.items() if any(map(_is_something, factor.values()))]
@@ -231,7 +231,7 @@ class Slopes:
                 ends[path] = (
                     ends[path] + variable(labels[x]) * factor if _is_something(factor) else ends[path]
                 )
-        outputs = found.substituted({**self.standing, **parts.outputs}).outputs
+        outputs = found.substitute({**self.standing, **parts.outputs}).outputs
         return States(outputs, {path: as_node(end) for path, end in ends.items()})
 
     def _without_standing(self, node: Node) -> Node:
@@ -252,7 +252,7 @@ def _is_something(factor: Node) -> bool:
     return factor.operation != CONSTANT or factor.detail != 0.0
 
 
-def by(name: str, path: str) -> str:
+def derivative_name(name: str, path: str) -> str:
     """Name of the derivative of a fold by the value at a path."""
     return f"{name} by {path}"
 
@@ -312,7 +312,7 @@ class Expressed:
     def columns(self) -> dict[str, list[Node]]:
         """Column -> its numbers: of a sample, or reduced."""
         asked, solved = self.task.asked, self.traced.solved
-        given = {path: boxed([variable(path)]) for path in self.task.paths}
+        given = {path: box_array([variable(path)]) for path in self.task.paths}
         if asked.formulas:
             return {
                 formula.name: [as_node(formula.traced(self.folds, solved, given))]
@@ -409,7 +409,7 @@ class Passing(Protocol):
     def reduced(self, reduction: Reduction, rows: PassedValues) -> dict[str, Array]:
         """The states when all samples are passed."""
 
-    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         """Write every sample; returns what mechanisms are judged by."""
 
 
@@ -430,7 +430,7 @@ class EachForItself:
         # where nothing moves the samples are counted all the same
         return over_samples.run(rows, asked.kernels, asked.threads, steps=asked.samples)
 
-    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         scan = self._scan
         along = np.stack([self.asked.inputs[name] for name in scan.parameters])
         take = streamer(scan, along, self.asked.kernels, self.asked.threads)
@@ -457,13 +457,13 @@ class Along:
         asked = self.asked
         return Walking(asked.judging.walk, reduction).reduced(asked.way, rows, asked.kernels, asked.threads)
 
-    def written(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
+    def write_samples(self, rows: PassedValues, rooms: Rooms) -> dict[str, Array]:
         asked = self.asked
         walking = Walking(asked.judging.walk, judging_states(asked), asked.outputs)
         parts = []
         for part, room in rooms:
             some = {name: row[part] for name, row in rows.items()}
-            parts.append(walking.written(asked.way, some, asked.kernels, asked.threads, room))
+            parts.append(walking.write_samples(asked.way, some, asked.kernels, asked.threads, room))
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
@@ -502,7 +502,7 @@ class StreamedColumns(dict[str, AnyArray]):
         return found
 
 
-def streamed(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
+def streamed_columns(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
     """The columns that have a float64 of every sample."""
     return [
         column for column in columns if column.dimensions[:1] == ("sample",) and column.kind == np.float64
@@ -511,7 +511,7 @@ def streamed(columns: Sequence[SweepColumn]) -> list[SweepColumn]:
 
 def columns_for(columns: Sequence[SweepColumn], mechanisms: int) -> StreamedColumns:
     """Fresh memory for columns, with streams where there is any."""
-    kept = streamed(columns)
+    kept = streamed_columns(columns)
     found = StreamedColumns(
         {x.name: np.empty((mechanisms, *x.shape), dtype=x.kind) for x in columns if x not in kept}
     )
@@ -617,7 +617,7 @@ class MachineCodeExecutor:
         asked = Expressed(
             task,
             varied,
-            traced(task.ready, task.span, varied, differentiable=bool(task.asked.slopes)),
+            trace_motion(task.ready, task.span, varied, differentiable=bool(task.asked.slopes)),
             kernels,
             threads,
         )
@@ -667,7 +667,7 @@ class MachineCodeExecutor:
         for lanes, solved in self._eventful.solved(numbers, left):
             parts = self._room(len(lanes))
             fill_columns(self.task, solved, _rows_at(values, lanes), parts)
-            _put(parts, lanes, results)
+            _put_columns(parts, lanes, results)
 
     def _on_arrays(
         self, left: Lanes, numbers: Dimensions, values: Rows, results: Mapping[str, AnyArray]
@@ -677,8 +677,8 @@ class MachineCodeExecutor:
         for first in range(0, len(left), most):
             lanes = left[first : first + most]
             parts = self._room(len(lanes))
-            self.arrays.run(self.task, taken(numbers, lanes), _rows_at(values, lanes), parts)
-            _put(parts, lanes, results)
+            self.arrays.run(self.task, take_lanes(numbers, lanes), _rows_at(values, lanes), parts)
+            _put_columns(parts, lanes, results)
 
     def _room(self, lanes: int) -> StreamedColumns:
         """Columns of mechanisms that do not stand side by side."""
@@ -693,7 +693,9 @@ class MachineCodeExecutor:
     def _without_events(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Mask:
         """Fill in clear mechanisms; returns which of them stay clear at their samples too."""
         found = (
-            self._reduced(rows, at, results) if self.task.asked.reduced else self._written(rows, at, results)
+            self._fill_reductions(rows, at, results)
+            if self.task.asked.reduced
+            else self._fill_samples(rows, at, results)
         )
         results["samples_ok"][at] = self.asked.samples
         results["worst_residual"][at] = found[RESIDUAL]
@@ -702,7 +704,7 @@ class MachineCodeExecutor:
             clear &= found[slack] > 0.0
         return clear
 
-    def _reduced(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_reductions(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
         """Fill in one number, or a few, of each motion; returns what mechanisms are judged by."""
         rows = dict(rows)
         columns = self.asked.final
@@ -726,17 +728,17 @@ class MachineCodeExecutor:
             parts.append(judging_states(self.asked))
         return together(*parts)
 
-    def _written(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
+    def _fill_samples(self, rows: Values, at: Any, results: Mapping[str, AnyArray]) -> Values:
         """Fill in every sample of the motions; returns what mechanisms are judged by."""
         results["status"][at] = Status.OK
         every = EverySample(self.asked.columns, results, at, self.asked.samples)
-        return self._passing.written(rows, every.rooms())
+        return self._passing.write_samples(rows, every.rooms())
 
 
 def _rows_at(values: Rows, lanes: Lanes) -> Rows:
     return {path: np.asarray(x)[lanes] for path, x in values.items()}
 
 
-def _put(parts: StreamedColumns, lanes: Lanes, results: Mapping[str, AnyArray]) -> None:
+def _put_columns(parts: StreamedColumns, lanes: Lanes, results: Mapping[str, AnyArray]) -> None:
     for name, part in parts.items():
         results[name][lanes] = part

@@ -16,7 +16,7 @@ from centrode.errors import InputError
 from centrode.kinematics.motion import by_time, kinds_of
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS, Arrays
 from centrode.numerics.operations import CONSTANTS, FUNCTIONS
 from centrode.numerics.text_formula import TEXT_LENGTH, TextFormula, compile_formula
@@ -95,7 +95,7 @@ def outputs_of(motion: xr.Dataset, asked: Sequence[str] | str) -> tuple[Output, 
     found: dict[str, Output] = {}
     for name in names:
         if name in found:
-            raise InputError("outputs", _("{name} is asked for twice").format(name=shown(name)))
+            raise InputError("outputs", _("{name} is asked for twice").format(name=value_text(name)))
         found[name] = _output(motion, name)
     return tuple(found.values())
 
@@ -127,12 +127,12 @@ def _output(motion: xr.Dataset, name: object) -> Output:
     quantity, _dot, rest = name.partition(".")
     known = quantities_of(motion)
     if quantity not in known:
-        what = _("there is no quantity {name}").format(name=shown(quantity))
+        what = _("there is no quantity {name}").format(name=value_text(quantity))
         raise InputError("outputs", what, nearest(quantity, known))
-    return numbered(motion, name, quantity, rest)
+    return output_of_quantity(motion, name, quantity, rest)
 
 
-def numbered(motion: xr.Dataset, name: str, quantity: str, rest: str) -> Output:
+def output_of_quantity(motion: xr.Dataset, name: str, quantity: str, rest: str) -> Output:
     """The output of a quantity, and of the labels in `rest`: "C", "C.x", or nothing for all."""
     variable = motion[quantity]
     where: list[int | slice] = []
@@ -146,7 +146,7 @@ def numbered(motion: xr.Dataset, name: str, quantity: str, rest: str) -> Output:
         label, rest = _label(name, rest, labels)
         where.append(labels.index(label))
     if rest:
-        what = _("{name} has nothing called {rest}").format(name=shown(name), rest=shown(rest))
+        what = _("{name} has nothing called {rest}").format(name=value_text(name), rest=value_text(rest))
         raise InputError("outputs", what, _("leave it out"))
     shape = tuple(motion.sizes[dimension] for dimension in left)
     return Output(name, quantity, tuple(where), tuple(left), shape, dict(variable.attrs))
@@ -158,7 +158,7 @@ def _label(name: str, rest: str, labels: list[str]) -> tuple[str, str]:
         if rest == label or rest.startswith(label + "."):
             return label, rest[len(label) + 1 :]
     word = rest.partition(".")[0]
-    what = _("there is no {word} in {name}").format(word=shown(word), name=shown(name))
+    what = _("there is no {word} in {name}").format(word=value_text(word), name=value_text(name))
     raise InputError("outputs", what, nearest(word, labels))
 
 
@@ -171,7 +171,7 @@ FOLDS = frozenset((*REDUCTIONS, "sum"))
 """What formulas may do over samples; those of REDUCTIONS also stand alone."""
 
 
-def folded(name: str, values: Array, ok: Mask) -> Array:
+def fold_samples(name: str, values: Array, ok: Mask) -> Array:
     """One number of the samples (axis 1) that are ok; NaN where none is.
 
     Parameters
@@ -210,9 +210,9 @@ class Folding(Arrays):
 
     def fold(self, name: str, values: Any) -> Array:
         """One number a mechanism of what may vary from sample to sample."""
-        return folded(name, np.broadcast_to(np.asarray(values, dtype=np.float64), self.ok.shape), self.ok)[
-            :, None
-        ]
+        return fold_samples(
+            name, np.broadcast_to(np.asarray(values, dtype=np.float64), self.ok.shape), self.ok
+        )[:, None]
 
 
 # Formulas of the motion: one number a mechanism, of anything the motion has at its samples.
@@ -304,7 +304,7 @@ def _formula(
 ) -> OutputFormula:
     taken = isinstance(name, str) and (name in RESERVED or name in motion.dims)
     if not isinstance(name, str) or not _NAME.fullmatch(name) or taken:
-        what = _("{name} cannot be the name of a result").format(name=shown(name))
+        what = _("{name} cannot be the name of a result").format(name=value_text(name))
         raise InputError("reduce", what, _("use letters, digits and underscores"))
     where = "reduce" if name == VALUE else f"reduce {name}"
     if not isinstance(text, str):
@@ -322,7 +322,7 @@ def _refuse_unknown(where: str, words: Iterable[str], known: Mapping[str, tuple[
     """A misspelt name is told with the nearest one: there may be hundreds."""
     for word in words:
         if word not in known and word not in CONSTANTS and word not in FUNCTIONS | FOLDS:
-            what = _("unknown name {name}").format(name=shown(word))
+            what = _("unknown name {name}").format(name=value_text(word))
             raise InputError(where, what, nearest(word, [*REDUCTIONS, *known]))
 
 
@@ -334,7 +334,7 @@ def _variable(motion: xr.Dataset, words: tuple[str, ...]) -> Variable:
     if words[0] == "varied":
         return Variable("varied", words[1])
     rest = ".".join(words[1:])
-    return Variable("output", ".".join(words), numbered(motion, ".".join(words), words[0], rest))
+    return Variable("output", ".".join(words), output_of_quantity(motion, ".".join(words), words[0], rest))
 
 
 def _refuse_varying(where: str, formula: TextFormula, variables: Mapping[str, Variable]) -> None:
@@ -411,7 +411,8 @@ class SweepOutputs:
             return {formula.name: formula.of(solved, values, ok) for formula in self.formulas}
         if self.reduction is not None:
             return {
-                output.name: folded(self.reduction, output.of(solved, values), ok) for output in self.outputs
+                output.name: fold_samples(self.reduction, output.of(solved, values), ok)
+                for output in self.outputs
             }
         return {"status": solved.status} | {output.name: output.of(solved, values) for output in self.outputs}
 
@@ -456,7 +457,7 @@ def asked_of(
             "reduce", _("it is one of {names}, or a formula").format(names=", ".join(REDUCTIONS))
         )
     if isinstance(reduce, str) and reduce.isidentifier():
-        what = _("unknown reduction {name}").format(name=shown(reduce))
+        what = _("unknown reduction {name}").format(name=value_text(reduce))
         raise InputError("reduce", what, nearest(reduce, REDUCTIONS))
     if outputs:
         raise InputError(

@@ -37,7 +37,7 @@ from centrode.files.locks import locked
 from centrode.locale import _, ngettext
 from centrode.sweeps import designs
 from centrode.sweeps.arrays import SweepTask
-from centrode.sweeps.designs import Design, described
+from centrode.sweeps.designs import Design, path_digests
 from centrode.sweeps.executors import bare
 from centrode.sweeps.machine import StreamedColumns, columns_for
 from centrode.sweeps.outputs import PATH, SweepColumn, SweepOutputs
@@ -309,10 +309,10 @@ class InMemory:
             )
             for column in self.frame.asked.columns
         }
-        return told(self.frame.empty.assign(variables), self.frame, self.tally)
+        return with_tally(self.frame.empty.assign(variables), self.frame, self.tally)
 
 
-def told(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
+def with_tally(data: xr.Dataset, frame: SweepFrame, tally: Tally) -> xr.Dataset:
     """The result with what it came to in its attributes."""
     data.attrs |= {
         "mechanisms": tally.mechanisms,
@@ -503,9 +503,9 @@ class Store:
             self.tally.add(done[block])
         self.done = set(done)
         if damaged:
-            warnings.warn(f"{path}: {self._told(damaged)}", DamageWarning, stacklevel=5)
+            warnings.warn(f"{path}: {self._damage_sentence(damaged)}", DamageWarning, stacklevel=5)
 
-    def _told(self, damaged: list[int]) -> str:
+    def _damage_sentence(self, damaged: list[int]) -> str:
         """A sentence that names damaged blocks."""
         named = []
         for block in damaged[:NAMED]:
@@ -544,7 +544,7 @@ class Store:
 
 
 @contextmanager
-def opened(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -> Iterator[Store]:
+def open_store(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -> Iterator[Store]:
     """The store of a sweep, made or found; nobody else writes into it while the block runs.
 
     Blocks that are damaged are named in a DamageWarning, and are not done. Raises InputError: zarr is not installed,
@@ -561,7 +561,7 @@ def opened(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -> It
     with locked(path / PROGRESS / LOCK, str(path)):
         with refusals(path):
             study = _study(frame, task)
-            found = _found(path)
+            found = _stored_study(path)
             if found is None:
                 _make(path, frame, blocks, study)
             else:
@@ -572,7 +572,7 @@ def opened(path: Path, frame: SweepFrame, blocks: Blocks, task: SweepTask) -> It
         yield Store(path, frame, blocks)
 
 
-def read(path: Path, frame: SweepFrame) -> xr.Dataset:
+def read_store(path: Path, frame: SweepFrame) -> xr.Dataset:
     """The result in a store; numbers are read when they are used, coordinates are those of the sweep."""
     coordinates = frame.empty.coords
     data = xr.open_zarr(str(path), chunks=None, drop_variables=list(map(str, coordinates)))
@@ -593,7 +593,7 @@ def _refuse_other_folders(path: Path) -> None:
         raise InputError(str(path), _("the folder holds something else"), _("name another place"))
 
 
-def _found(path: Path) -> dict[str, Any] | None:
+def _stored_study(path: Path) -> dict[str, Any] | None:
     """What the store says of its sweep; None where its making was cut short, or has not begun."""
     file = path / PROGRESS / STUDY
     if not file.exists():
@@ -602,7 +602,7 @@ def _found(path: Path) -> dict[str, Any] | None:
     try:
         return {"study": dict(told["study"]), "blocks": told["blocks"], "files": dict(told.get("files", {}))}
     except (ValueError, KeyError, TypeError):
-        raise _damaged(path) from None
+        raise _damage_error(path) from None
 
 
 def _blocks_of(found: Mapping[str, Any], path: Path, frame: SweepFrame) -> Blocks:
@@ -610,17 +610,17 @@ def _blocks_of(found: Mapping[str, Any], path: Path, frame: SweepFrame) -> Block
     try:
         axis, step = map(int, found["blocks"])
     except (ValueError, TypeError, OverflowError):
-        raise _damaged(path) from None
+        raise _damage_error(path) from None
     shape = frame.design.shape
     if not (0 <= axis < len(shape) and 1 <= step <= shape[axis]):
-        raise _damaged(path)
+        raise _damage_error(path)
     blocks = Blocks(shape, axis, step)
     if _too_great(blocks, frame):
-        raise _damaged(path)
+        raise _damage_error(path)
     return blocks
 
 
-def _damaged(path: Path, name: str = f"{PROGRESS}/{STUDY}") -> InputError:
+def _damage_error(path: Path, name: str = f"{PROGRESS}/{STUDY}") -> InputError:
     what = _("{file} in it is damaged").format(file=name)
     return InputError(str(path), what, _("delete the folder, or name another place"))
 
@@ -639,7 +639,7 @@ def _study(frame: SweepFrame, task: SweepTask) -> dict[str, Any]:
     return {
         "version": told["version"],
         "mechanism": told["mechanism"],
-        "vary": described(frame.design),
+        "vary": path_digests(frame.design),
         "samples": [len(parameter), float(parameter[0]), float(parameter[-1])],
         "outputs": [output.name for output in asked.outputs],
         "reduce": {formula.name: formula.text.text for formula in asked.formulas} or asked.reduction,
@@ -695,7 +695,7 @@ def _refuse_damaged_files(path: Path, files: Mapping[str, bytes], checksums: Map
     """InputError where metadata or labels are not those that the store was made with."""
     for name, content in files.items():
         if not _as_made(path / name, content, checksums.get(name)):
-            raise _damaged(path, name)
+            raise _damage_error(path, name)
 
 
 def _as_made(file: Path, content: bytes, checksum: object) -> bool:

@@ -13,12 +13,12 @@ import xarray as xr
 from centrode.dynamics.reduction import REDUCED, check_reducible, reduction_of
 from centrode.errors import InputError
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
-from centrode.model.examples.loading import load
+from centrode.model.examples.catalogue import load
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import nearest, read_file, shown
+from centrode.model.reading import nearest, read_file, value_text
 from centrode.model.toml import toml_tables
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.dimensions import dimensions_of
@@ -27,7 +27,17 @@ from centrode.sweeps.arrays import SweepTask
 from centrode.sweeps.designs import METHODS, Grid, Sample, design_of, grid, sample, unit_of
 from centrode.sweeps.executors import Executor, check_executor, check_threads, executor_of
 from centrode.sweeps.outputs import Reduce, asked_of, with_slopes
-from centrode.sweeps.store import Blocks, InMemory, Kept, SweepFrame, frame_of, opened, read, tally_of, told
+from centrode.sweeps.store import (
+    Blocks,
+    InMemory,
+    Kept,
+    SweepFrame,
+    frame_of,
+    open_store,
+    read_store,
+    tally_of,
+    with_tally,
+)
 
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -85,7 +95,7 @@ def sweep(
     name = check_executor(executor)
     design = design_of(mechanism, vary)
     prepared = ready(mechanism)
-    span = asked_span(prepared, samples, start, stop)
+    span = requested_grid(prepared, samples, start, stop)
     motion = _first(solve(prepared, span), outputs, reduce)
     paths = tuple(design.coordinates)
     asked = asked_of(motion, design, outputs, reduce)
@@ -97,10 +107,10 @@ def sweep(
     if store is None:
         return _in_memory(frame, blocks, task, chosen, progress)
     _check_size(frame, designs.IN_STORE, _("reduce it, or ask for fewer"))
-    with opened(Path(store), frame, blocks, task) as kept:
+    with open_store(Path(store), frame, blocks, task) as kept:
         found = kept.tally.mechanisms
         _compute(frame, kept, task, chosen, progress)
-    data = told(read(Path(store), frame), frame, kept.tally)
+    data = with_tally(read_store(Path(store), frame), frame, kept.tally)
     return data.assign_attrs(mechanisms_found=found)
 
 
@@ -219,7 +229,9 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
     near = folder / name
     samples = tables.get("samples")
     if samples is not None and (isinstance(samples, bool) or not isinstance(samples, int)):
-        raise InputError("samples", _("expected a whole number, got {value}").format(value=shown(samples)))
+        raise InputError(
+            "samples", _("expected a whole number, got {value}").format(value=value_text(samples))
+        )
     return SweepStudy(
         name,
         load(near if near.is_file() else name),
@@ -236,14 +248,14 @@ def _study(tables: Mapping[str, Any], folder: Path) -> SweepStudy:
 
 def _switch(key: str, value: Any) -> bool:
     if not isinstance(value, bool):
-        raise InputError(key, _("expected true or false, got {value}").format(value=shown(value)))
+        raise InputError(key, _("expected true or false, got {value}").format(value=value_text(value)))
     return value
 
 
 def _refuse_unknown(where: str, table: Mapping[str, Any], known: tuple[str, ...]) -> None:
     for key in table:
         if key not in known:
-            raise InputError(where, _("unknown key {key}").format(key=shown(key)), nearest(key, known))
+            raise InputError(where, _("unknown key {key}").format(key=value_text(key)), nearest(key, known))
 
 
 def _vary(tables: Mapping[str, Any]) -> Mapping[str, Any] | Grid | Sample:
@@ -254,7 +266,7 @@ def _vary(tables: Mapping[str, Any]) -> Mapping[str, Any] | Grid | Sample:
     way = given[0]
     table = tables[way]
     if not isinstance(table, dict):
-        raise InputError(way, _("expected a table, got {value}").format(value=shown(table)))
+        raise InputError(way, _("expected a table, got {value}").format(value=value_text(table)))
     if way == "vary":
         return dict(_paths(table, ()))
     if way == "grid":
@@ -328,7 +340,7 @@ def _end(key: str, given: object) -> float | str | None:
         return given
     if isinstance(given, bool) or not isinstance(given, int | float):
         raise InputError(
-            key, _("expected a number or a text with a unit, got {value}").format(value=shown(given))
+            key, _("expected a number or a text with a unit, got {value}").format(value=value_text(given))
         )
     return float(given)
 
@@ -343,5 +355,5 @@ def _reduce(given: object) -> Reduce:
 
 def _text(key: str, given: object) -> str:
     if not isinstance(given, str):
-        raise InputError(key, _("expected a text, got {value}").format(value=shown(given)))
+        raise InputError(key, _("expected a text, got {value}").format(value=value_text(given)))
     return given

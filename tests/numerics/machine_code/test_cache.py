@@ -189,9 +189,9 @@ def test_what_others_may_write_is_not_run(
     kernels.kernel_of(SCAN)
     (entry,) = entries(own_cache)
     forged(entry)
-    assert cache.read(entry.stem) == b"native code of somebody else"  # the checksum is right
+    assert cache.read_entry(entry.stem) == b"native code of somebody else"  # the checksum is right
     open_to_others(own_cache, entry)
-    assert cache.read(entry.stem) is None
+    assert cache.read_entry(entry.stem) is None
     kernels.forget()
     assert works()
     assert len(compiled) == 2
@@ -289,8 +289,8 @@ def test_the_newest_are_kept(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -
         for i, entry in enumerate(sorted(own_cache.glob("*"))):
             os.utime(entry, (1000 + i, 1000 + i))
     assert [entry.stem for entry in entries(own_cache)] == ["entry3", "entry4", "entry5"]
-    assert cache.read("entry5") == b"payload"
-    assert cache.read("entry0") is None
+    assert cache.read_entry("entry5") == b"payload"
+    assert cache.read_entry("entry0") is None
 
 
 def test_memory_keeps_the_last_asked_for(compiled: list[str], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,7 +13,7 @@ import pytest
 
 import centrode as ct
 from centrode.kinematics.plan_evaluation import FixedSigns
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.numerics.expressions import EXPRESSIONS, variable
 from centrode.numerics.graphs import Graph
 from centrode.numerics.jets import Jet, JetFunctions
@@ -38,7 +38,7 @@ def traced(name: str) -> tuple[Scan, np.ndarray]:
         return variable(f"dimension {len(values) - 1}")
 
     kinematics = prepared.kinematics
-    numbers = kinematics.numbers.mapped(vary)
+    numbers = kinematics.numbers.map_numbers(vary)
     jets = JetFunctions(EXPRESSIONS)
     parameter = Jet.variable(variable("drive"), 2)
     at = replace(kinematics, numbers=numbers).positions(

@@ -12,14 +12,14 @@ from dataclasses import replace
 from centrode.analysis.graphic.loci import (
     Ray,
     RayLeg,
-    carrying,
+    carrying_ray,
     letter,
     meshed_rate,
     ray_of,
     rolled_rate,
     solve_by_trials,
     train_rates,
-    turning,
+    turning_ray,
     wheel_equations,
 )
 from centrode.analysis.graphic.stage import (
@@ -113,7 +113,7 @@ def _image(stage: ConstructionStage, link: str, point: str) -> list[str]:
         stage.points[point] = stage.rate(base)
         return [f"{letter(stage)}_{point} = {letter(stage)}_{base}"]
     others = [name for name in stage.drawing.numbers.local[link] if name in stage.points and name != point]
-    ray = turning(stage, arm, point, base, link)
+    ray = turning_ray(stage, arm, point, base, link)
     rate = stage.points[point] = stage.rate(base) + stage.about(link, arm)
     if len(others) >= 2:
         first, second = others[:2]
@@ -148,10 +148,10 @@ def _aim(stage: ConstructionStage, group: Aim) -> tuple[list[str], Triangle | No
         direction, guide = numbers.direction[group.guide], group.guide
     arm = drawing.arm(drawing.point(group.pivot), drawing.point(group.target))
     under = f"{group.target}′"
-    first = turning(stage, arm, under, group.pivot, group.link)
+    first = turning_ray(stage, arm, under, group.pivot, group.link)
     heading = drawing.heading(group.link, direction)
-    second = carrying(stage, group.link, group.target, heading, guide)
-    rate, triangle = crossing(stage, under, first, second)
+    second = carrying_ray(stage, group.link, group.target, heading, guide)
+    rate, triangle = draw_crossing(stage, under, first, second)
     stage.hidden[under] = rate
     stage.bases[group.link] = group.pivot
     stage.turns[group.link] = stage.read(first.length(rate)) / abs(arm)
@@ -168,8 +168,10 @@ def _meet(stage: ConstructionStage, group: Meet) -> tuple[list[str], Triangle | 
     if group.carriage is not None and group.turning is not None:
         stage.turns[group.carriage] = _turn_of(stage, group.turning, group.carriage)
         stage.bases[group.carriage] = reference
-    rays = [_moved(stage, ray_of(stage, locus, group.carriage), group, reference) for locus in group.loci]
-    rate, triangle = crossing(stage, reference, *rays)
+    rays = [
+        _ray_of_point(stage, ray_of(stage, locus, group.carriage), group, reference) for locus in group.loci
+    ]
+    rate, triangle = draw_crossing(stage, reference, *rays)
     (stage.points if group.points else stage.hidden)[reference] = rate
     for point in group.points[1:]:
         if group.carriage is not None:
@@ -179,17 +181,17 @@ def _meet(stage: ConstructionStage, group: Meet) -> tuple[list[str], Triangle | 
             stage.bases[locus.link] = locus.centre
             stage.turns[locus.link] = stage.read(ray.length(rate)) / ray.arm
     if any(isinstance(locus, Stop) for locus in group.loci):
-        return [f"{letter(stage)}_{reference} = {_given(rays)}"], None
+        return [f"{letter(stage)}_{reference} = {_drive_words(rays)}"], None
     return [ray.equation(letter(stage), reference) for ray in rays], triangle
 
 
-def _given(rays: Sequence[Ray]) -> str:
+def _drive_words(rays: Sequence[Ray]) -> str:
     """What a drive gives along its guide, in words."""
     parts = [leg.text for ray in rays for leg in ray.legs if leg.kind == "driven"]
     return _("{part}, given by the drive").format(part=" + ".join(parts))
 
 
-def _moved(stage: ConstructionStage, ray: Ray, group: Meet, reference: str) -> Ray:
+def _ray_of_point(stage: ConstructionStage, ray: Ray, group: Meet, reference: str) -> Ray:
     """The equation of another place of the carriage, as one of the point that is looked for."""
     place = stage.drawing.point(reference)
     if group.carriage is None or ray.at == place:
@@ -200,7 +202,9 @@ def _moved(stage: ConstructionStage, ray: Ray, group: Meet, reference: str) -> R
     return replace(ray, legs=(*ray.legs, shift))
 
 
-def crossing(stage: ConstructionStage, name: str, first: Ray, second: Ray) -> tuple[complex, Triangle | None]:
+def draw_crossing(
+    stage: ConstructionStage, name: str, first: Ray, second: Ray
+) -> tuple[complex, Triangle | None]:
     """Where two equations meet, drawn; with the triangle of their directions, where it is one."""
     rate = meet(first.start, first.direction, second.start, second.direction)
     stage.edges += [*first.edges(rate), *second.edges(rate)]

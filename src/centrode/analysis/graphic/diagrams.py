@@ -23,9 +23,9 @@ from centrode.analysis.graphic.stage import (
 from centrode.errors import InputError, MotionError, Status
 from centrode.geometry.plane import pose_with_point
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import JETS, SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.solve import asked_span, solve
+from centrode.kinematics.path import JETS, SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.solve import requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
@@ -259,16 +259,16 @@ def diagrams(
         )
     board = DrawingBoard(_step(angle_step, "angle"), _step(length_step, "length"))
     prepared = ready(mechanism)
-    span = span_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
+    span = grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64))
     exact = dataset_of(solve(prepared, span))
     _refuse_where_it_is_not(exact, at)
-    found = _constructed(prepared, exact, span, board, scales or {})
+    found = _construct_diagrams(prepared, exact, span, board, scales or {})
     if board.paper_step is None:
         return found
     # scales are chosen by the exact drawing, then lengths on paper are read
     coarse = replace(board, length_step=1e3 * board.paper_step * found.scale)
     grains = tuple(1e3 * board.paper_step * one.scale for one in (found.velocity, found.acceleration))
-    again = _constructed(prepared, exact, span, coarse, {}, (grains[0], grains[1]))
+    again = _construct_diagrams(prepared, exact, span, coarse, {}, (grains[0], grains[1]))
     return replace(
         again,
         scale=found.scale,
@@ -299,7 +299,7 @@ def _refuse_where_it_is_not(exact: xr.Dataset, at: float) -> None:
         )
 
 
-def _constructed(
+def _construct_diagrams(
     prepared: Ready,
     exact: xr.Dataset,
     span: SampleGrid,
@@ -317,7 +317,7 @@ def _constructed(
     return Diagrams(
         prepared.mechanism,
         exact,
-        _course(prepared, exact),
+        _trajectory(prepared, exact),
         board,
         _diagram(velocity, chosen_scale("velocity", 0.0 if rests else moving, DIAGRAM, scales)),
         _diagram(acceleration, chosen_scale("acceleration", speeding, DIAGRAM, scales)),
@@ -327,10 +327,10 @@ def _constructed(
     )
 
 
-def _course(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
+def _trajectory(prepared: Ready, exact: xr.Dataset) -> xr.Dataset:
     """The motion as far as it is asked for by default; the instant alone where nothing says how far."""
     try:
-        return dataset_of(solve(prepared, asked_span(prepared, COURSE, None, None)))
+        return dataset_of(solve(prepared, requested_grid(prepared, COURSE, None, None)))
     except InputError:
         return exact
 

@@ -43,6 +43,7 @@ from centrode.structure.groups import (
     AngleEquation,
     AngleGiven,
     Arm,
+    CylinderCircle,
     Group,
     Locus,
     Meshed,
@@ -53,7 +54,6 @@ from centrode.structure.groups import (
     Rolloff,
     Slot,
     Stop,
-    Stroke,
     Touch,
     Train,
 )
@@ -119,7 +119,7 @@ def letter(stage: ConstructionStage) -> str:
     return "v" if stage.order == 1 else "a"
 
 
-def told(stage: ConstructionStage, point: str) -> str:
+def rate_symbol(stage: ConstructionStage, point: str) -> str:
     """Symbol of the rate of a point; nothing of one at rest."""
     return "" if stage.rate(point) == 0 else f"{letter(stage)}_{point}"
 
@@ -128,10 +128,10 @@ def around(stage: ConstructionStage, point: str, centre: str, link: str, known: 
     """A point on a circle about another one: known normal part, unknown part square to the arm."""
     drawing = stage.drawing
     arm = drawing.arm(drawing.point(centre), drawing.point(point), known)
-    return turning(stage, arm, point, centre, link)
+    return turning_ray(stage, arm, point, centre, link)
 
 
-def turning(stage: ConstructionStage, arm: complex, point: str, centre: str, link: str) -> Ray:
+def turning_ray(stage: ConstructionStage, arm: complex, point: str, centre: str, link: str) -> Ray:
     """What turns with a link about a point of it that is known, at the end of an arm."""
     symbol, name = letter(stage), f"{point}{centre}"
     legs: tuple[RayLeg, ...] = ()
@@ -141,7 +141,7 @@ def turning(stage: ConstructionStage, arm: complex, point: str, centre: str, lin
     text = f"{symbol if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
     return Ray(
         stage.rate(centre),
-        told(stage, centre),
+        rate_symbol(stage, centre),
         legs,
         1j * arm / abs(arm),
         kind,
@@ -154,7 +154,7 @@ def turning(stage: ConstructionStage, arm: complex, point: str, centre: str, lin
     )
 
 
-def sliding(
+def sliding_ray(
     stage: ConstructionStage, on: str, at: complex, direction: complex, point: str, guide: str
 ) -> Ray:
     """A point of the unknown that slides on a known body: the body's own rate there, Coriolis, along the guide."""
@@ -193,7 +193,7 @@ def _along(
     )
 
 
-def carrying(stage: ConstructionStage, link: str, point: str, direction: complex, guide: str) -> Ray:
+def carrying_ray(stage: ConstructionStage, link: str, point: str, direction: complex, guide: str) -> Ray:
     """The place of an unknown link of known turning under a known point that slides on it."""
     at, under = stage.drawing.point(point), f"{point}′"
     legs: tuple[RayLeg, ...] = ()
@@ -202,7 +202,9 @@ def carrying(stage: ConstructionStage, link: str, point: str, direction: complex
         legs = (RayLeg("coriolis", turned, f"{under}{point}", f"aᵏ_{under}{point}"),)
     text = f"{letter(stage)}ʳ_{under}{point} (∥ {guide})"
     origin, name = stage.points[point], f"{under}{point}"
-    return Ray(origin, told(stage, point), legs, direction, "sliding", name, text, at, under, link=link)
+    return Ray(
+        origin, rate_symbol(stage, point), legs, direction, "sliding", name, text, at, under, link=link
+    )
 
 
 def ray_of(stage: ConstructionStage, locus: Locus, carriage: str | None) -> Ray:
@@ -211,17 +213,17 @@ def ray_of(stage: ConstructionStage, locus: Locus, carriage: str | None) -> Ray:
     numbers = drawing.numbers
     if isinstance(locus, Rod):
         return around(stage, locus.point, locus.centre, locus.link)
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return cylinder(stage, locus)
     if isinstance(locus, Rail):
         direction = drawing.heading(locus.on, numbers.direction[locus.guide])
-        return sliding(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
+        return sliding_ray(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
     if isinstance(locus, Slot):
         direction = drawing.heading(carriage or "", numbers.direction[locus.guide])
-        return carrying(stage, carriage or "", locus.point, direction, locus.guide)
+        return carrying_ray(stage, carriage or "", locus.point, direction, locus.guide)
     if isinstance(locus, Stop):
         direction = drawing.heading(locus.on, numbers.direction[locus.guide])
-        ray = sliding(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
+        ray = sliding_ray(stage, locus.on, drawing.point(locus.point), direction, locus.point, locus.guide)
         return _driven(ray, stage.driven[locus.drive])
     return _of_wheel(stage, locus)
 
@@ -233,7 +235,7 @@ def _driven(ray: Ray, rate: float) -> Ray:
     return replace(ray, legs=(*ray.legs, driven), direction=1j * ray.direction, text=free)
 
 
-def cylinder(stage: ConstructionStage, locus: Stroke) -> Ray:
+def cylinder(stage: ConstructionStage, locus: CylinderCircle) -> Ray:
     """A point at the end of a cylinder: the stroke's rate along it, Coriolis, and unknown turning about its foot."""
     drawing, name = stage.drawing, f"{locus.point}{locus.centre}"
     arm = drawing.arm(drawing.point(locus.centre), drawing.point(locus.point), known=True)
@@ -249,7 +251,7 @@ def cylinder(stage: ConstructionStage, locus: Stroke) -> Ray:
     kind: Kind = "relative" if stage.order == 1 else "tangential"
     origin = stage.points[locus.centre]
     at = drawing.point(locus.point)
-    first = told(stage, locus.centre)
+    first = rate_symbol(stage, locus.centre)
     return Ray(origin, first, tuple(legs), 1j * along, kind, name, text, at, locus.point, abs(arm))
 
 
@@ -263,10 +265,10 @@ def _of_wheel(stage: ConstructionStage, locus: Touch | Rolloff) -> Ray:
     assert isinstance(track, Straight)
     direction = drawing.heading(contact.on, track.direction)
     if locus.carried:
-        ray = carrying(stage, contact.on, locus.point, direction, contact.rolling)
+        ray = carrying_ray(stage, contact.on, locus.point, direction, contact.rolling)
     else:
         at = drawing.point(locus.point)
-        ray = sliding(stage, contact.on, at, direction, locus.point, contact.rolling)
+        ray = sliding_ray(stage, contact.on, at, direction, locus.point, contact.rolling)
     if isinstance(locus, Touch):
         return ray
     # rolling: the centre goes back along the track by the radius times the wheel's turn against it
@@ -290,7 +292,7 @@ def _about_track(stage: ConstructionStage, locus: Touch | Rolloff, on: str, trac
         legs = (RayLeg("normal", -(spin**2) * sense * arm, name, f"aⁿ_{name} (∥ {name})"),)
     kind: Kind = "relative" if stage.order == 1 else "tangential"
     text = f"{letter(stage) if stage.order == 1 else 'aᵗ'}_{name} (⊥ {name})"
-    first = told(stage, wheel) if locus.carried else ("" if on == FRAME else f"{letter(stage)}_K")
+    first = rate_symbol(stage, wheel) if locus.carried else ("" if on == FRAME else f"{letter(stage)}_K")
     place = centre if locus.carried else drawing.point(wheel)
     of = "K" if locus.carried else wheel
     return Ray(origin, first, legs, 1j * arm / abs(arm), kind, name, text, place, of)
@@ -314,7 +316,10 @@ def wheel_equations(stage: ConstructionStage, turning: object) -> list[str]:
     if isinstance(turning, GearRatio):
         weights = turning.weights(stage.drawing.numbers)
         ratio = -weights[turning.first] / weights[turning.second]
-        first, second = (_seen(letter, link, turning.carrier) for link in (turning.first, turning.second))
+        first, second = (
+            _relative_turning_symbol(letter, link, turning.carrier)
+            for link in (turning.first, turning.second)
+        )
         return [f"{second} = {ratio:.5g}·{first}"]
     if isinstance(turning, Rolled) and turning.rolling.on == FRAME:
         wheel, centre = turning.rolling.link, turning.rolling.centre
@@ -323,7 +328,7 @@ def wheel_equations(stage: ConstructionStage, turning: object) -> list[str]:
     return []
 
 
-def _seen(letter: str, link: str, carrier: str) -> str:
+def _relative_turning_symbol(letter: str, link: str, carrier: str) -> str:
     """Turning of a link as its gear's carrier sees it."""
     parts = ["0" if name == FRAME else f"{letter}_{name}" for name in (link, carrier)]
     return parts[0] if carrier == FRAME else f"({parts[0]} − {parts[1]})"
@@ -434,13 +439,13 @@ def solve_by_trials(
     size = _trial_size(stage)
     count = len(opened.turned)
     values = [tuple(size * (k == j + 1) for j in range(count)) for k in range(count + 1)]
-    misfits = [_misfits(_tried(stage, opened, trial, construct), opened) for trial in values]
-    found = tuple(_corrected(np.array(values), np.array(misfits)).tolist())
+    misfits = [_misfits(_construct_trial(stage, opened, trial, construct), opened) for trial in values]
+    found = tuple(_interpolate_trial(np.array(values), np.array(misfits)).tolist())
     trial = ConstructionTrial(
         opened.turned, tuple(values), tuple(misfits), found, tuple(cut.name for cut in opened.cuts)
     )
     stage.steps.append(ConstructionStep(step_of(group), (), trial=trial))
-    _adopt(stage, _tried(stage, opened, found, construct))
+    _adopt(stage, _construct_trial(stage, opened, found, construct))
     for cut in opened.cuts:
         _put_back(stage, cut)
 
@@ -455,7 +460,7 @@ def _trial_size(stage: ConstructionStage) -> float:
     return max(sizes) or 1.0
 
 
-def _corrected(values: Array, misfits: Array) -> Array:
+def _interpolate_trial(values: Array, misfits: Array) -> Array:
     """The trial that fits: misfits are linear in it."""
     slopes = (misfits[1:] - misfits[0]).T / (values[1:] - values[0]).max(axis=1)
     sizes = np.abs(slopes).max(axis=1, keepdims=True)
@@ -468,10 +473,10 @@ def _corrected(values: Array, misfits: Array) -> Array:
     return np.asarray(values[0] - np.linalg.solve(slopes, misfits[0]))
 
 
-def _tried(
+def _construct_trial(
     stage: ConstructionStage, opened: Opened, trial: Sequence[float], construct: Construct
 ) -> ConstructionStage:
-    tried = stage.copied()
+    tried = stage.copy()
     tried.driven.update(zip(map(_drive, opened.turned), trial, strict=True))
     construct(opened.groups, tried)
     return tried

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from centrode.errors import InputError, MotionError
-from centrode.geometry.plane import place, turned
+from centrode.geometry.plane import place, rotate_vector
 from centrode.locale import _
 from centrode.structure.constraints import FRAME, Positions
 from centrode.structure.dimensions import Dimensions
@@ -192,7 +192,7 @@ class VectorDrawing:
 
     def heading(self, link: str, direction: tuple[float, float]) -> complex:
         """A direction in a link's axes, as it is read off the drawing."""
-        vector = complex(*turned(direction, self.at.poses[link].rotor))
+        vector = complex(*rotate_vector(direction, self.at.poses[link].rotor))
         # the frame's own directions are given, not read
         return vector if link == FRAME else self.board.direction(vector)
 
@@ -262,7 +262,7 @@ class ConstructionStage:
         """The length of an edge as it is read off the diagram."""
         return self.grain * round(length / self.grain) if self.grain else length
 
-    def copied(self) -> ConstructionStage:
+    def copy(self) -> ConstructionStage:
         """The same, to be gone on with apart."""
         return ConstructionStage(
             self.drawing,

@@ -23,7 +23,7 @@ from centrode.kinematics.motion import BATCH
 from centrode.locale import _
 from centrode.model.files import parse_mechanism, with_value
 from centrode.model.mechanism import FRAME, Guide, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.values import unit_vector
 from centrode.structure.dimensions import dimensions_of
 
@@ -60,7 +60,7 @@ class Named:
         """Number of a body; raises InputError for a name that is none."""
         if name in self.names:
             return self.names.index(name)
-        what = _("there is no link {name}").format(name=shown(name))
+        what = _("there is no link {name}").format(name=value_text(name))
         raise InputError("pair", what, nearest(name, self.names))
 
 
@@ -118,7 +118,7 @@ class BodyMotions(Named):
         return complex(self.place[body] + arm * np.exp(1j * self.turn[body]))
 
 
-def described(motion: xr.Dataset) -> Mechanism:
+def mechanism_of_motion(motion: xr.Dataset) -> Mechanism:
     """The mechanism of a motion; of one taken out of a batch, with the dimensions that it was given."""
     mechanism = parse_mechanism(str(motion.attrs["mechanism"]))
     for path in map(str, motion.coords):
@@ -134,7 +134,7 @@ def is_spherical(motion: xr.Dataset) -> bool:
 
 def bodies_of(motion: xr.Dataset) -> BodyMotions:
     """The bodies of a planar motion."""
-    mechanism = described(motion)
+    mechanism = mechanism_of_motion(motion)
     sliders = sliders_of(mechanism)
     names = (FRAME, *mechanism.link_names, *sliders)
     values = {
@@ -271,7 +271,7 @@ def turning_bodies_of(motion: xr.Dataset) -> TurningBodies:
 
 
 def _of_one(motion: xr.Dataset) -> TurningBodies:
-    mechanism = described(motion)
+    mechanism = mechanism_of_motion(motion)
     sliders = sliders_of(mechanism)
     names = (FRAME, *mechanism.link_names, *sliders)
     samples = motion.sizes["sample"]
@@ -287,7 +287,7 @@ def _of_one(motion: xr.Dataset) -> TurningBodies:
         base = names.index(guide.on)
         slides = [motion[v].sel(guide=guide.id).to_numpy() / math.sin(guide.arc) for v in _slides(orders)]
         pole = axes[:, base] @ np.array(unit_vector(pole_of(mechanism, guide)))
-        axes[:, number] = _turned(pole, slides[0]) @ axes[:, base]
+        axes[:, number] = _rotations_about(pole, slides[0]) @ axes[:, base]
         spin[:, number] = spin[:, base] + slides[1][:, None] * pole
         carried = slides[2][:, None] * pole + slides[1][:, None] * np.cross(spin[:, base], pole)
         spin_rate[:, number] = spin_rate[:, base] + carried
@@ -346,7 +346,7 @@ def pole_of(mechanism: Mechanism, guide: Guide) -> tuple[float, float]:
     return pole
 
 
-def _turned(axis: Array, angle: Array) -> Array:
+def _rotations_about(axis: Array, angle: Array) -> Array:
     """Rotations about unit vectors (samples, 3) by angles (samples)."""
     x, y, z = np.moveaxis(axis, -1, 0)
     zero = np.zeros_like(x)

@@ -26,7 +26,7 @@ from centrode.analysis.instant_centres.bodies import (
     vectors,
 )
 from centrode.errors import InputError
-from centrode.kinematics.motion import labels_of, named
+from centrode.kinematics.motion import labels_of, vocabulary_variable
 from centrode.kinematics.solve import GREATEST_RESULT
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism, Rolling
@@ -61,13 +61,16 @@ def joints_of(mechanism: Mechanism, bodies: Named) -> tuple[PrimaryJoint, ...]:
     found: list[PrimaryJoint] = []
     for point in mechanism.points:
         found += [
-            PrimaryJoint("hinge", point, ordered(pair)) for pair in combinations(carriers(bodies, point), 2)
+            PrimaryJoint("hinge", point, order_pair(pair))
+            for pair in combinations(carriers(bodies, point), 2)
         ]
     for guide in mechanism.guides:
         slid = guide.link if guide.link is not None else slider_of(bodies, guide)
-        found.append(PrimaryJoint("guide", guide.id, ordered((bodies.number(slid), bodies.number(guide.on)))))
+        found.append(
+            PrimaryJoint("guide", guide.id, order_pair((bodies.number(slid), bodies.number(guide.on))))
+        )
     for wheel in mechanism.rolling:
-        pair = ordered((bodies.number(wheel.link), bodies.number(wheel.on)))
+        pair = order_pair((bodies.number(wheel.link), bodies.number(wheel.on)))
         found.append(PrimaryJoint("rolling", wheel.id, pair))
     return tuple(found)
 
@@ -86,7 +89,7 @@ def gearings_of(mechanism: Mechanism, bodies: Named) -> tuple[PrimaryGearing, ..
     )
 
 
-def ordered(pair: Pair) -> Pair:
+def order_pair(pair: Pair) -> Pair:
     """A pair as it is named: the later body against the earlier one."""
     return max(pair), min(pair)
 
@@ -149,9 +152,9 @@ def contact_of(wheel: Rolling, bodies: BodyMotions) -> complex:
 def rolling_pairs(mechanism: Mechanism, bodies: Named) -> Iterator[Pair]:
     """Pairs that roll on each other: wheels on their tracks, and geared links on their pitch circles."""
     for wheel in mechanism.rolling:
-        yield ordered((bodies.number(wheel.link), bodies.number(wheel.on)))
+        yield order_pair((bodies.number(wheel.link), bodies.number(wheel.on)))
     for gear in mechanism.gears:
-        yield ordered((bodies.number(gear.links[0]), bodies.number(gear.links[1])))
+        yield order_pair((bodies.number(gear.links[0]), bodies.number(gear.links[1])))
 
 
 # How the instant centre of a body is located: the cases of the textbooks, recognised and named.
@@ -213,9 +216,9 @@ class Recogniser:
         slow = ROUNDED * bodies.rate
         still = np.abs(spin) * bodies.scale <= slow
         found = self._by_velocities(pair, moving, spin, slow)
-        if ordered(pair) in self.rolling:
+        if order_pair(pair) in self.rolling:
             found[:] = Case.ROLLING
-        if ordered(pair) in self.hinged:
+        if order_pair(pair) in self.hinged:
             found[:] = Case.HINGE
         found[still] = Case.TRANSLATION
         found[still & (np.abs(moving) <= slow)] = Case.REST
@@ -278,9 +281,9 @@ def axis_cases(bodies: TurningBodies, pair: Pair) -> Kinds:
     found[parallel & (product <= 0.0)] = Case.OPPOSITE_SENSE
     found[(sizes[0] <= slow) | (sizes[1] <= slow)] = Case.STANDSTILL
     mechanism = bodies.mechanism
-    if ordered(pair) in set(rolling_pairs(mechanism, bodies)):
+    if order_pair(pair) in set(rolling_pairs(mechanism, bodies)):
         found[:] = Case.ROLLING
-    if ordered(pair) in {
+    if order_pair(pair) in {
         joint.pair for joint in joints_of(mechanism, bodies)
     }:  # a guide's pole is a hinge too
         found[:] = Case.HINGE
@@ -324,14 +327,14 @@ def instant_centres(motion: xr.Dataset, pairs: Sequence[tuple[str, str]] | None 
     centre is then at infinity. A centre is as exact as the velocities over the relative spin.
     """
     bodies = turning_bodies_of(motion) if is_spherical(motion) else bodies_of(motion)
-    numbers = numbered(bodies, pairs)
+    numbers = number_pairs(bodies, pairs)
     _check_size(bodies, len(numbers))
     spherical = isinstance(bodies, TurningBodies)
     found = _axes(bodies, numbers) if isinstance(bodies, TurningBodies) else _centres(bodies, numbers)
     front = tuple(map(str, motion["status"].dims))
     labels = [f"{bodies.names[first]},{bodies.names[second]}" for first, second in numbers]
     variables = {
-        name: named(
+        name: vocabulary_variable(
             name, (*front, "pair", "axis")[: values.ndim], values, length_unit="rad" if spherical else "m"
         )
         for name, values in found.items()
@@ -350,7 +353,7 @@ def _centres(bodies: BodyMotions, numbers: Sequence[Pair]) -> dict[str, Array]:
     cases = np.zeros(shape, dtype=np.int8)
     for column, pair in enumerate(numbers):
         cases[..., column] = recogniser.cases(pair)
-        centre[..., column, :], direction[..., column, :] = _located(bodies, pair, cases[..., column])
+        centre[..., column, :], direction[..., column, :] = _locate_centres(bodies, pair, cases[..., column])
     return {"centre": centre, "centre_direction": direction, "centre_case": cases}
 
 
@@ -366,7 +369,7 @@ def _axes(bodies: TurningBodies, numbers: Sequence[Pair]) -> dict[str, Array]:
     }
 
 
-def _located(bodies: BodyMotions, pair: Pair, cases: Array) -> tuple[Array, Array]:
+def _locate_centres(bodies: BodyMotions, pair: Pair, cases: Array) -> tuple[Array, Array]:
     """Places of centres, and directions of those at infinity."""
     moving, spin = bodies.relative(pair)
     finite = (cases != Case.ABSENT) & (cases != Case.REST) & (cases != Case.TRANSLATION)
@@ -385,13 +388,13 @@ def upward(direction: Places) -> Places:
     return np.asarray(np.where(down, -direction, direction))
 
 
-def bearing(direction: Sequence[float]) -> float:
+def line_direction(direction: Sequence[float]) -> float:
     """Angle [deg] of the line in a direction, at least 0 and less than 180; rounding is taken off."""
     angle = float(np.degrees(np.arctan2(direction[1], direction[0]))) % 180.0
     return 0.0 if min(angle, 180.0 - angle) < 1e-9 else angle
 
 
-def numbered(bodies: Named, pairs: Sequence[tuple[str, str]] | None) -> list[Pair]:
+def number_pairs(bodies: Named, pairs: Sequence[tuple[str, str]] | None) -> list[Pair]:
     """Pairs by the numbers of their bodies; all of them, the later body against the earlier one, if left out."""
     if pairs is None:
         return [(second, first) for first, second in combinations(range(len(bodies.names)), 2)]

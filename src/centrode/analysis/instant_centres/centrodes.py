@@ -22,9 +22,9 @@ from centrode.analysis.instant_centres.bodies import (
     turning_bodies_of,
     vectors,
 )
-from centrode.analysis.instant_centres.centres import axis_of, numbered
+from centrode.analysis.instant_centres.centres import axis_of, number_pairs
 from centrode.errors import Status
-from centrode.kinematics.motion import named
+from centrode.kinematics.motion import vocabulary_variable
 from centrode.model.motion_parameter import parameter_values
 
 # Polodes on the sphere: what the end of the instantaneous axis describes in the axes of either body.
@@ -114,11 +114,11 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
     front, unit = tuple(map(str, motion["status"].dims)), "rad" if spherical else "m"
     along = (*front, "axis")
     variables = {
-        "fixed_centrode": named("fixed_centrode", along, found.fixed, length_unit=unit),
-        "moving_centrode": named("moving_centrode", along, found.moving, length_unit=unit),
-        "centrode_piece": named("centrode_piece", front, pieces),
-        "fixed_arc": named("fixed_arc", front, arcs[0], length_unit=unit),
-        "moving_arc": named("moving_arc", front, arcs[1], length_unit=unit),
+        "fixed_centrode": vocabulary_variable("fixed_centrode", along, found.fixed, length_unit=unit),
+        "moving_centrode": vocabulary_variable("moving_centrode", along, found.moving, length_unit=unit),
+        "centrode_piece": vocabulary_variable("centrode_piece", front, pieces),
+        "fixed_arc": vocabulary_variable("fixed_arc", front, arcs[0], length_unit=unit),
+        "moving_arc": vocabulary_variable("moving_arc", front, arcs[1], length_unit=unit),
     }
     kept = motion[["status"]].assign_coords(axis=motion["axis"], drive_value=motion["drive_value"])
     return kept.assign(variables).assign_attrs(link=link, against=against)
@@ -127,7 +127,7 @@ def centrodes(motion: xr.Dataset, link: str, against: str = "frame") -> xr.Datas
 def _in_plane(motion: xr.Dataset, link: str, against: str) -> Polodes:
     """Both centrodes of a planar motion."""
     bodies = bodies_of(motion)
-    (pair,) = numbered(bodies, [(link, against)])
+    (pair,) = number_pairs(bodies, [(link, against)])
     seen = seen_by(bodies, pair)
     none = ~(np.abs(seen.w[0]) * bodies.scale > ROUNDED * bodies.rate)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -139,7 +139,7 @@ def _in_plane(motion: xr.Dataset, link: str, against: str) -> Polodes:
 
 def _on_sphere(motion: xr.Dataset, link: str, against: str) -> Polodes:
     bodies = turning_bodies_of(motion)
-    (pair,) = numbered(bodies, [(link, against)])
+    (pair,) = number_pairs(bodies, [(link, against)])
     return polodes_of(bodies, pair)
 
 
@@ -159,7 +159,7 @@ def _steps(motion: xr.Dataset) -> Array:
     return np.asarray(np.gradient(parameter_values(motion)) if motion.sizes["sample"] > 1 else np.zeros(1))
 
 
-def _tamed(chord: Array, first: Array, last: Array) -> tuple[Array, Array]:
+def _limit_tangents(chord: Array, first: Array, last: Array) -> tuple[Array, Array]:
     """Tangents of cubics, no longer than thrice the chord where all three point the same way.
 
     Next to infinity the pole covers nearly all of a step at one of its ends: with such a tangent the cubic would run
@@ -182,7 +182,7 @@ def _arc(curve: Array, rate: Array, pieces: npt.NDArray[np.int32]) -> Array:
     """Length of a curve from the beginning of each piece: that of cubics through its places with its tangents."""
     with np.errstate(divide="ignore", invalid="ignore"):
         chord = curve[..., 1:, :] - curve[..., :-1, :]
-        first, last = _tamed(chord, rate[..., :-1, :], rate[..., 1:, :])
+        first, last = _limit_tangents(chord, rate[..., :-1, :], rate[..., 1:, :])
         steps = np.zeros_like(chord[..., 0])
         for node, weight in zip(NODES, WEIGHTS, strict=True):
             t = 0.5 * (node + 1.0)

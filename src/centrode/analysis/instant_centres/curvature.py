@@ -13,23 +13,23 @@ from centrode.analysis.instant_centres.bodies import (
     ROUNDED,
     Array,
     Seen,
-    described,
+    mechanism_of_motion,
     refuse_batch,
     sliders_of,
     vectors,
 )
 from centrode.errors import InputError, NotComputedYet, Status
-from centrode.geometry.plane import Pose, Vector, reversed_rotor, subtract, turned
+from centrode.geometry.plane import PlanePose, Vector, reversed_rotor, rotate_vector, subtract
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.motion import coordinates_of, judgements_of, labels_of, named
-from centrode.kinematics.path import JETS, SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import start_of
+from centrode.kinematics.motion import coordinates_of, judgements_of, labels_of, vocabulary_variable
+from centrode.kinematics.path import JETS, SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import start_of
 from centrode.kinematics.solve import fit_for, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
 
@@ -80,7 +80,7 @@ def curvature(
     pole the curvature, on the inflection circle the centre of curvature; Ball's point where every point of
     the inflection circle is one.
     """
-    mechanism, places = _asked(source, at)
+    mechanism, places = _source_mechanism(source, at)
     if mechanism.space == "sphere":
         raise NotComputedYet(
             "space", _("curvature is not computed on the sphere"), _("ask for a planar mechanism")
@@ -93,11 +93,11 @@ def curvature(
     if places is None:
         assert isinstance(source, xr.Dataset)
         places = prepared.parameter.instants(source)
-    span = span_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64))
+    span = grid_at(prepared.kinematics.path, np.asarray(places, dtype=np.float64))
     solved = solve(prepared, span)
     positions = jet_positions(prepared, span)
     present = np.isin(solved.status[0], (Status.OK, Status.CUT_OFF))
-    seen = _seen(mechanism, positions, link, against, present)
+    seen = _pose_derivatives(mechanism, positions, link, against, present)
     own = _local_points(mechanism, link) | dict(points or {})
     scale = float(prepared.kinematics.numbers.scale)
     with np.errstate(all="ignore"):
@@ -109,7 +109,7 @@ def curvature(
     return xr.Dataset(variables, coords=kept | coordinate, attrs={"link": link, "against": against})
 
 
-def _asked(
+def _source_mechanism(
     source: Mechanism | xr.Dataset, at: npt.ArrayLike | None
 ) -> tuple[Mechanism, npt.ArrayLike | None]:
     if isinstance(source, Mechanism):
@@ -117,13 +117,13 @@ def _asked(
             raise InputError("at", _("it needs values of the drive"), _("give one or more"))
         return source, at
     refuse_batch(source)
-    return described(source), at
+    return mechanism_of_motion(source), at
 
 
 def _check_body(mechanism: Mechanism, name: str) -> None:
     names = (FRAME, *mechanism.link_names, *sliders_of(mechanism))
     if name not in names:
-        what = _("there is no link {name}").format(name=shown(name))
+        what = _("there is no link {name}").format(name=value_text(name))
         raise InputError("link", what, nearest(name, names))
 
 
@@ -139,15 +139,15 @@ def jet_positions(prepared: Ready, span: SampleGrid) -> Positions:
         )
 
 
-def _seen(
+def _pose_derivatives(
     mechanism: Mechanism, at: Positions, link: str, against: str, present: npt.NDArray[np.bool_]
 ) -> Seen:
     """Three derivatives of the pose of a link in the axes of another."""
     pose, base = _pose(mechanism, at, link), _pose(mechanism, at, against)
     back = reversed_rotor(base.rotor)
-    origin, rotor = turned(subtract(pose.origin, base.origin), back), turned(pose.rotor, back)
+    origin, rotor = rotate_vector(subtract(pose.origin, base.origin), back), rotate_vector(pose.rotor, back)
     x, y, cosine, sine = (_jet(number) for number in (*origin, *rotor))
-    spin = cosine.lowered() * sine.slope() - sine.lowered() * cosine.slope()
+    spin = cosine.lower_order() * sine.slope() - sine.lower_order() * cosine.slope()
 
     def along(number: object) -> Array:
         values = np.broadcast_to(np.asarray(number, dtype=np.float64), (1, len(present)))[0]
@@ -161,12 +161,12 @@ def _seen(
     )
 
 
-def _pose(mechanism: Mechanism, at: Positions, name: str) -> Pose:
+def _pose(mechanism: Mechanism, at: Positions, name: str) -> PlanePose:
     guide = sliders_of(mechanism).get(name)
     if guide is None:
-        return Pose(*at.poses[name])
+        return PlanePose(*at.poses[name])
     x, y = at.points[guide.point]
-    return Pose((x, y), Pose(*at.poses[guide.on]).rotor)
+    return PlanePose((x, y), PlanePose(*at.poses[guide.on]).rotor)
 
 
 def _jet(number: object) -> Jet:
@@ -196,14 +196,14 @@ def _of_pole(seen: Seen, scale: float) -> dict[str, object]:
     ball = np.where(told, pole + square * (square * np.conj(to_inflection)).real, np.nan)
     tangent = np.angle(-1j * normal * seen.rotor)
     return {
-        "pole": named("pole", ("sample", "axis"), vectors(seen.outside(pole))),
-        "inflection_pole": named(
+        "pole": vocabulary_variable("pole", ("sample", "axis"), vectors(seen.outside(pole))),
+        "inflection_pole": vocabulary_variable(
             "inflection_pole", ("sample", "axis"), vectors(seen.outside(pole + to_inflection))
         ),
-        "inflection_diameter": named("inflection_diameter", ("sample",), diameter),
-        "pole_tangent": named("pole_tangent", ("sample",), tangent),
-        "stationary_cubic": named("stationary_cubic", ("sample", "coefficient"), cubic),
-        "ball_point": named("ball_point", ("sample", "axis"), vectors(seen.outside(ball))),
+        "inflection_diameter": vocabulary_variable("inflection_diameter", ("sample",), diameter),
+        "pole_tangent": vocabulary_variable("pole_tangent", ("sample",), tangent),
+        "stationary_cubic": vocabulary_variable("stationary_cubic", ("sample", "coefficient"), cubic),
+        "ball_point": vocabulary_variable("ball_point", ("sample", "axis"), vectors(seen.outside(ball))),
     }
 
 
@@ -225,7 +225,9 @@ def _of_points(seen: Seen, points: Local, scale: float) -> dict[str, object]:
     centre = place + 1j * first / speed / np.where(np.abs(curved) * scale > ROUNDED, curved, np.nan)
     outside = seen.origin[:, None] + seen.rotor[:, None] * centre
     return {
-        "path_curvature": named("path_curvature", ("sample", "point"), curved),
-        "path_curvature_slope": named("path_curvature_slope", ("sample", "point"), slope),
-        "curvature_centre": named("curvature_centre", ("sample", "point", "axis"), vectors(outside)),
+        "path_curvature": vocabulary_variable("path_curvature", ("sample", "point"), curved),
+        "path_curvature_slope": vocabulary_variable("path_curvature_slope", ("sample", "point"), slope),
+        "curvature_centre": vocabulary_variable(
+            "curvature_centre", ("sample", "point", "axis"), vectors(outside)
+        ),
     }

@@ -36,8 +36,8 @@ from centrode.analysis.instant_centres.centres import (
     PrimaryJoint,
     gearings_of,
     joints_of,
-    numbered,
-    ordered,
+    number_pairs,
+    order_pair,
     place_of,
     upward,
 )
@@ -100,12 +100,12 @@ class Construction:
 
     def needed(self, pairs: Sequence[Pair]) -> Construction:
         """The same with the steps alone that lead to some pairs."""
-        wanted: set[Pair] = {ordered(pair) for pair in pairs}
+        wanted: set[Pair] = {order_pair(pair) for pair in pairs}
         kept: list[KennedyStep] = []
         for step in reversed(self.steps):
             if step.pair in wanted:
                 kept.append(step)
-                wanted.update(ordered((one, by)) for by in step.by for one in step.pair)
+                wanted.update(order_pair((one, by)) for by in step.by for one in step.pair)
         steps = tuple(reversed(kept))
         return replace(self, steps=steps, mismatch={step.pair: self.mismatch[step.pair] for step in steps})
 
@@ -154,7 +154,7 @@ def length(a: Triple) -> float:
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
-def crossing(first: ProjectivePoint, second: ProjectivePoint) -> ProjectivePoint | None:
+def join_or_meet(first: ProjectivePoint, second: ProjectivePoint) -> ProjectivePoint | None:
     """The line through two places, or the place where two lines meet; nothing if they cannot be told apart."""
     normal = cross(first.vector, second.vector)
     sine = length(normal)
@@ -166,7 +166,7 @@ def crossing(first: ProjectivePoint, second: ProjectivePoint) -> ProjectivePoint
 
 def differ(first: ProjectivePoint, second: ProjectivePoint) -> bool:
     """Whether two places are told apart by more than their errors."""
-    return crossing(first, second) is not None
+    return join_or_meet(first, second) is not None
 
 
 def best_crossing(
@@ -175,7 +175,7 @@ def best_crossing(
     """Where the two lines meet that tell the place best, and which they are; nothing if it may be off by `worst`."""
     best: tuple[ProjectivePoint, tuple[int, int]] | None = None
     for (one, first), (other, second) in combinations(lines, 2):
-        place = crossing(one, other)
+        place = join_or_meet(one, other)
         if place is not None and place.error < (worst if best is None else best[0].error):
             best = place, (first, second)
     return best
@@ -206,7 +206,7 @@ class Spots(Protocol):
     def read(self, where: ProjectivePoint) -> tuple[Where | None, Where | None]:
         """Place of a spot, or the direction in which it lies at infinity."""
 
-    def geared(
+    def gear_centre(
         self, gear: PrimaryGearing, wanted: str, known: Sequence[ProjectivePoint]
     ) -> ProjectivePoint | None:
         """The third centre of a gear: of the "first" or the "second" wheel against the carrier, or where they "mesh".
@@ -248,7 +248,7 @@ class PlaneSpots:
         at = self.middle + self.size * x / w
         return (at.real, at.imag), None
 
-    def geared(
+    def gear_centre(
         self, gear: PrimaryGearing, wanted: str, known: Sequence[ProjectivePoint]
     ) -> ProjectivePoint | None:
         """With A, B of the wheels on the carrier, P - A = i (P - B)."""
@@ -316,7 +316,7 @@ class SphereSpots:
         vector *= (1.0 if where.vector[2] >= 0.0 else -1.0) / np.linalg.norm(vector)
         return tuple(map(float, vector)), None
 
-    def geared(
+    def gear_centre(
         self, gear: PrimaryGearing, wanted: str, known: Sequence[ProjectivePoint]
     ) -> ProjectivePoint | None:
         """With A, B where the wheels are hinged to the carrier, the wheels turn about A - i B against each other."""
@@ -393,7 +393,7 @@ def construct_centres(
     """
     refuse_batch(motion)
     everything = turning_bodies_of(motion) if is_spherical(motion) else bodies_of(motion)
-    wanted = None if pairs is None else numbered(everything, pairs)
+    wanted = None if pairs is None else number_pairs(everything, pairs)
     if len(everything.names) > MOST_BODIES:
         raise InputError(
             "pair",
@@ -429,11 +429,11 @@ class _Constructing:
         for joint in joints_of(self.bodies.mechanism, self.bodies):
             self._see(joint)
         self._lock()
-        everything = [ordered(pair) for pair in combinations(range(len(self.bodies.names)), 2)]
+        everything = [order_pair(pair) for pair in combinations(range(len(self.bodies.names)), 2)]
         unknown = [pair for pair in everything if pair not in self.known]
         while unknown:
-            found = [step for step in map(self._derived, unknown) if step is not None]
-            for pair, where, how, name, by in found or [self._borrowed(unknown)]:
+            found = [step for step in map(self._derive_centre, unknown) if step is not None]
+            for pair, where, how, name, by in found or [self._centre_of_velocities(unknown)]:
                 if where is None:
                     self._rest(pair, by)
                 else:
@@ -455,7 +455,7 @@ class _Constructing:
         """Three bodies whose joints show centres that are not on a line cannot move against each other."""
         rigid: set[Pair] = set()
         for triple in combinations(range(len(self.bodies.names)), 3):
-            pairs = [ordered(pair) for pair in combinations(triple, 2)]
+            pairs = [order_pair(pair) for pair in combinations(triple, 2)]
             one, other, third = (self.known.get(pair) for pair in pairs)
             if one is None or other is None or third is None:
                 continue
@@ -484,7 +484,7 @@ class _Constructing:
         self.steps = [step for step in self.steps if step.pair != pair]
         self.steps.append(KennedyStep(pair, "rest", "", by, None, None, self.start))
 
-    def _derived(self, pair: Pair) -> Derived | None:
+    def _derive_centre(self, pair: Pair) -> Derived | None:
         """A centre from what is known: a gear, a body at rest against one of the two, lines that meet."""
         for gear in self.gears:
             where, third = self._by_gear(gear, pair)
@@ -496,7 +496,7 @@ class _Constructing:
             if one is None or other is None:
                 moving = other if one is None else one
                 return pair, moving, "together" if moving is not None else "rest", "", (third,)
-            line = crossing(one, other)
+            line = join_or_meet(one, other)
             if line is None:
                 together.append((min(one, other, key=lambda s: s.error), third))
             else:
@@ -513,16 +513,16 @@ class _Constructing:
         for third in range(len(self.bodies.names)):
             if third in pair:
                 continue
-            legs = [ordered((one, third)) for one in pair]
+            legs = [order_pair((one, third)) for one in pair]
             if all(leg in self.known for leg in legs):
                 yield third, self.known[legs[0]], self.known[legs[1]]
 
     def _by_gear(self, gear: PrimaryGearing, pair: Pair) -> tuple[ProjectivePoint | None, int]:
         """The third centre of a gear, from those of the other two pairs."""
         legs = {
-            "first": ordered((gear.first, gear.carrier)),
-            "second": ordered((gear.second, gear.carrier)),
-            "mesh": ordered((gear.first, gear.second)),
+            "first": order_pair((gear.first, gear.carrier)),
+            "second": order_pair((gear.second, gear.carrier)),
+            "mesh": order_pair((gear.first, gear.second)),
         }
         wanted = next((name for name, leg in legs.items() if leg == pair), None)
         third = next((n for n in (gear.first, gear.second, gear.carrier) if n not in pair), gear.carrier)
@@ -530,9 +530,9 @@ class _Constructing:
         known = [one for one in others if one is not None]
         if wanted is None or len(known) < 2:
             return None, third
-        return self.spots.geared(gear, wanted, known), third
+        return self.spots.gear_centre(gear, wanted, known), third
 
-    def _borrowed(self, unknown: Sequence[Pair]) -> Derived:
+    def _centre_of_velocities(self, unknown: Sequence[Pair]) -> Derived:
         """A centre from the velocity field, the frame's first, where one line is known already if there is such."""
         lines = {pair: sum(1 for _third in self._thirds(pair)) for pair in unknown}
         pair = min(unknown, key=lambda pair: (pair[1] != 0, lines[pair] == 0, pair))

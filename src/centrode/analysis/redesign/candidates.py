@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import InputError
-from centrode.geometry.plane import Vector, add, cross, reversed_rotor, rotor_of, subtract, turned
+from centrode.geometry.plane import Vector, add, cross, reversed_rotor, rotate_vector, rotor_of, subtract
 from centrode.kinematics.assembly_mode import side_names, side_words, stated_side
 from centrode.kinematics.dyads import solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.model.files import value_at, with_value
 from centrode.model.mechanism import FRAME, Mechanism
@@ -82,7 +82,7 @@ def varyings(prepared: Ready, vary: Sequence[str] | None, bounds: Bounds | None)
             _("{n} numbers were named").format(n=len(paths)),
             _("name {least} to {most}").format(least=1, most=MOST_PATHS),
         )
-    return tuple(_varying(prepared, path, (bounds or {}).get(path)) for path in paths)
+    return tuple(_varying_value(prepared, path, (bounds or {}).get(path)) for path in paths)
 
 
 def default_paths(mechanism: Mechanism) -> list[str]:
@@ -106,7 +106,7 @@ def places_anew(mechanism: Mechanism) -> bool:
     return points or any(isinstance(guide.through, Placed) for guide in mechanism.guides)
 
 
-def _varying(prepared: Ready, path: str, bounds: tuple[Value, Value] | None) -> Varying:
+def _varying_value(prepared: Ready, path: str, bounds: tuple[Value, Value] | None) -> Varying:
     mechanism = prepared.mechanism
     try:
         before = value_at(mechanism, path)
@@ -233,7 +233,7 @@ class Candidates:
             placed = placed_numbers(mechanism, numbers, angles)
             whole = {path: np.broadcast_to(x, size).astype(np.float64) for path, x in placed.items()}
             numbers = dimensions_of(mechanism, {**varied, **whole}, ARRAYS)
-        upright = numbers.mapped(lambda x: x if isinstance(x, float) else np.asarray(x)[:, None])
+        upright = numbers.map_numbers(lambda x: x if isinstance(x, float) else np.asarray(x)[:, None])
         kinematics = replace(self.prepared.kinematics, numbers=upright)
         signs = signs_at_start(self.prepared, kinematics, angles, len(changes))
         return Batch(kinematics, signs, len(changes))
@@ -271,7 +271,7 @@ def placed_numbers(
     for guide in mechanism.guides:
         if isinstance(guide.through, Placed):
             origin, rotor = poses[guide.on]
-            inside = turned(subtract(points[guide.point], origin), reversed_rotor(rotor))
+            inside = rotate_vector(subtract(points[guide.point], origin), reversed_rotor(rotor))
             found |= {f"guides.{guide.id}.through.{axis}": x for axis, x in zip("xy", inside, strict=True)}
     return found
 
@@ -291,10 +291,10 @@ def _pose(
     if angle is None or known is None:
         return False
     rotor = rotor_of(ARRAYS, angle)
-    origin = subtract(points[known], turned(local[known], rotor))
+    origin = subtract(points[known], rotate_vector(local[known], rotor))
     poses[name] = origin, rotor
     for point, coordinates in local.items():
-        points.setdefault(point, add(origin, turned(coordinates, rotor)))
+        points.setdefault(point, add(origin, rotate_vector(coordinates, rotor)))
     return True
 
 
@@ -335,7 +335,7 @@ def _nearer(
     """The sign whose angles are nearer to the hints."""
     off = []
     for sign in (1.0, -1.0):
-        trial = at.copied()
+        trial = at.copy()
         solve_group(
             group, ARRAYS, kinematics.numbers, trial, SideChoices(_Clamped(ARRAYS, {index: sign}), index)
         )

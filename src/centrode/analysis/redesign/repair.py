@@ -23,10 +23,10 @@ from centrode.analysis.redesign.candidates import (
 )
 from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
 from centrode.errors import CentrodeError, InputError, NotComputedYet
-from centrode.geometry.plane import Circle, dot, subtract
+from centrode.geometry.plane import PlaneCircle, dot, subtract
 from centrode.kinematics.dyads import loci_of, solve_group
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.model.units import to_si
@@ -94,9 +94,9 @@ def _greatest(kinematics: Kinematics, group: Group, at: Positions, choices: Side
     one, other = loci_of(group, ARRAYS, numbers, at, choices)
     if hasattr(one, "half"):
         return _sine(one) ** 2 * _sine(other) ** 2
-    if not isinstance(one, Circle):
+    if not isinstance(one, PlaneCircle):
         return 1.0
-    if not isinstance(other, Circle):
+    if not isinstance(other, PlaneCircle):
         return one.radius**2
     return (2.0 * one.radius * other.radius) ** 2
 
@@ -205,7 +205,7 @@ class RepairSearch:
         starts = self._apart(changes[good], np.linalg.norm(changes[good], axis=1))
         if not starts:
             starts = self._apart(changes, -margins)
-        found = [self.improved(start) for start in starts]
+        found = [self.improve(start) for start in starts]
         reached = [change for change in found if change is not None]
         if self.progress is not None:
             self.progress(self.total, self.total)
@@ -240,18 +240,18 @@ class RepairSearch:
                 break
         return kept
 
-    def improved(self, start: Array) -> Array | None:
+    def improve(self, start: Array) -> Array | None:
         """The least change near a start that is good enough on the fine nodes; None if there is none."""
         options = []
-        drawn = self._drawn(start)
+        drawn = self._shorten(start)
         for first in (start,) if drawn is None else (drawn, start):
-            found = self._minimised(first)
+            found = self._minimise(first)
             if found is not None:
                 options.append(found)
         options += [] if drawn is None else [drawn]
         return min(options, key=lambda change: float(np.linalg.norm(change)), default=None)
 
-    def _drawn(self, start: Array) -> Array | None:
+    def _shorten(self, start: Array) -> Array | None:
         """The least part of a change that is good enough, if the whole of it is."""
         if self.margins(start[None, :], FINE)[0] < self.target:
             return None
@@ -259,7 +259,7 @@ class RepairSearch:
         good = self.margins(shares * start, FINE) >= self.target
         return np.asarray(start * shares[int(np.nonzero(good)[0][0])])
 
-    def _minimised(self, start: Array) -> Array | None:
+    def _minimise(self, start: Array) -> Array | None:
         """Sequential quadratic programming from a start, on the conditions of all sectors."""
         result: Any = _optimize().minimize(
             lambda x: float(x @ x),
@@ -277,10 +277,10 @@ class RepairSearch:
             lack = self.target - float(self.margins(change[None, :], FINE)[0])
             if lack <= 0.0:
                 return change
-            change = self.raised(change, lack)
+            change = self.raise_sines(change, lack)
         return None
 
-    def raised(self, change: Array, lack: float) -> Array:
+    def raise_sines(self, change: Array, lack: float) -> Array:
         """A change moved as little as lifts its least squared sines by what they lack (and a little more)."""
         values, slopes = self._sectors(change[None, :])[0], self._slopes(change) * self.target
         lowest = values <= float(values.min()) + ACTIVE * self.target
@@ -417,20 +417,20 @@ def repair(
     before = rotatability(mechanism)
     asked = Repair(False, None, (), 0.0, varying, least_angle, None, 0, 0, 0, "", before, None)
     if turns_well(before, least_angle):
-        return replace(asked, found=True, mechanism=mechanism, reached=_reached(before), after=before)
+        return replace(asked, found=True, mechanism=mechanism, reached=_least_angle(before), after=before)
     candidates = Candidates(prepared, varying)
     reason = impossible(candidates, least_angle)
     if reason:
         return replace(asked, impossible=reason)
-    return _searched(candidates, asked, progress)
+    return _search_repair(candidates, asked, progress)
 
 
 def turns_well(found: Rotatability, least_angle: float) -> bool:
     """Whether a mechanism turns fully with at least a transmission angle in every dyad."""
-    return found.turns_fully is True and _reached(found) >= least_angle - ENOUGH
+    return found.turns_fully is True and _least_angle(found) >= least_angle - ENOUGH
 
 
-def _reached(found: Rotatability) -> float:
+def _least_angle(found: Rotatability) -> float:
     return min((one.least for one in found.one.transmissions), default=pi / 2)
 
 
@@ -477,14 +477,14 @@ def _check_repairable(prepared: Ready) -> None:
             )
 
 
-def _searched(candidates: Candidates, asked: Repair, progress: Progress | None) -> Repair:
+def _search_repair(candidates: Candidates, asked: Repair, progress: Progress | None) -> Repair:
     """The smallest change that the geometry confirms."""
     least_angle = asked.least_transmission_angle
     search = RepairSearch(candidates, sin(least_angle + ENOUGH) ** 2, progress)
     options = search.run(CANDIDATES)
     effort = replace(asked, spread=search.spread, turning=search.turning)
     for change in options:
-        confirmed = _confirmed(search, change, least_angle)
+        confirmed = _confirm_change(search, change, least_angle)
         if confirmed is not None:
             change, mechanism, after = confirmed
             return replace(
@@ -493,14 +493,14 @@ def _searched(candidates: Candidates, asked: Repair, progress: Progress | None) 
                 mechanism=mechanism,
                 changes=_changes(candidates.varying, change),
                 size=float(np.linalg.norm(change)),
-                reached=_reached(after),
+                reached=_least_angle(after),
                 tried=search.tried,
                 after=after,
             )
     return replace(effort, tried=search.tried)
 
 
-def _confirmed(
+def _confirm_change(
     search: RepairSearch, change: Any, least_angle: float
 ) -> tuple[Any, Mechanism, Rotatability] | None:
     """A change whose mechanism turns as asked by its geometry, corrected by what the exact least angle lacks."""
@@ -512,8 +512,8 @@ def _confirmed(
             return None
         if turns_well(after, least_angle):
             return change, mechanism, after
-        lack = search.target - sin(_reached(after)) ** 2 if after.turns_fully else 0.1 * search.target
-        change = search.raised(change, max(lack, 0.0) + 1e-9 * search.target)
+        lack = search.target - sin(_least_angle(after)) ** 2 if after.turns_fully else 0.1 * search.target
+        change = search.raise_sines(change, max(lack, 0.0) + 1e-9 * search.target)
     return None
 
 

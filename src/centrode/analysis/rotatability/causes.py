@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from centrode.analysis.rotatability.tours import DriveSweep, MonitoredFunction, Pair, Watched
-from centrode.geometry.plane import Vector, place, subtract, turned
+from centrode.geometry.plane import Vector, place, rotate_vector, subtract
 from centrode.geometry.plane import cross as plane_cross
 from centrode.geometry.plane import dot as plane_dot
 from centrode.geometry.sphere import cross, dot, tangent
@@ -23,7 +23,7 @@ from centrode.quantities import display_unit
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
-from centrode.structure.groups import Aim, Group, Locus, Meet, Rail, Rod, Slot, Stop, Stroke
+from centrode.structure.groups import Aim, CylinderCircle, Group, Locus, Meet, Rail, Rod, Slot, Stop
 
 # Conditions in symbols: the angle phi of each link by its number in the description, and what vanishes of
 # them.
@@ -148,7 +148,7 @@ class _About:
         return f"{value * factor:.6g} {shown}"
 
 
-def _one(x: Number) -> float:
+def _as_float(x: Number) -> float:
     return float(np.reshape(x, -1)[0])
 
 
@@ -156,7 +156,7 @@ def body_of(locus: Locus) -> str:
     """A locus by what draws it: a link, a cylinder or a guide."""
     if isinstance(locus, Rod):
         return locus.link
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return _("cylinder {name}").format(name=locus.drive)
     if isinstance(locus, (Rail, Slot, Stop)):
         return _("guide {name}").format(name=locus.guide)
@@ -169,7 +169,7 @@ def bearing_of_locus(
     """Bearing of a rod, or of a line on which a point moves; None where a wheel draws it."""
     if isinstance(locus, Rod):
         return bearing_between(mechanism, numbers, locus.link, locus.centre, locus.point)
-    if isinstance(locus, Stroke):
+    if isinstance(locus, CylinderCircle):
         return PivotSymbol(("psi_" + locus.drive.replace("-", ""),))
     if isinstance(locus, Rail):
         return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
@@ -190,7 +190,7 @@ def _conditions(about: _About, group: Meet) -> tuple[PivotSymbol | None, PivotSy
 def _of_two_rods(about: _About, group: Meet) -> Cause:
     """The centres and the point where the rods meet lie on one line: stretched out, or folded."""
     one, other = (body_of(locus) for locus in group.loci)
-    stretched, apart = _stretched(about, group)
+    stretched, apart = _circle_contact(about, group)
     first, second = (getattr(locus, "centre", "") for locus in group.loci)
     if about.on_sphere:
         condition = f"sin(angle {first}-{group.points[0]}-{second}) = 0"
@@ -210,14 +210,14 @@ def _of_two_rods(about: _About, group: Meet) -> Cause:
     return Cause(sentence, condition)
 
 
-def _stretched(about: _About, group: Meet) -> tuple[bool, float]:
+def _circle_contact(about: _About, group: Meet) -> tuple[bool, float]:
     """Whether two circles touch from outside, and how far apart their centres are."""
-    at = about.tour.stopped(about.value, ARRAYS)
+    at = about.tour.positions_at(about.value, ARRAYS)
     choices = SideChoices(FixedSigns(ARRAYS, {about.index: 0.0}), about.index)
     space = about.numbers.space
     with np.errstate(all="ignore"):
         one, other = loci_of(group, ARRAYS, about.numbers, at, choices)
-        apart = _one(space.distance(ARRAYS, one.centre, other.centre))
+        apart = _as_float(space.distance(ARRAYS, one.centre, other.centre))
     radii = [_radius(circle) for circle in (one, other)]
     total, difference = sum(radii), abs(radii[0] - radii[1])
     total = min(total, 2.0 * np.pi - total) if about.on_sphere else total
@@ -227,9 +227,9 @@ def _stretched(about: _About, group: Meet) -> tuple[bool, float]:
 def _radius(circle: Any) -> float:
     """Radius [m], on the sphere the arc [rad], of a circle."""
     if hasattr(circle, "half"):
-        sine, cosine = (_one(x) for x in circle.half)
+        sine, cosine = (_as_float(x) for x in circle.half)
         return 2.0 * float(np.arctan2(abs(sine), abs(cosine)))
-    return abs(_one(circle.radius))
+    return abs(_as_float(circle.radius))
 
 
 def _of_rod_and_line(about: _About, group: Meet) -> Cause:
@@ -313,7 +313,7 @@ def watched_dyads(tour: DriveSweep, guides: bool = False) -> list[tuple[Watched,
     kinematics = tour.continuation.kinematics
     found = []
     for index, group in enumerate(kinematics.structure.groups):
-        watched = _watched(kinematics, group)
+        watched = _watched_angle(kinematics, group)
         if watched is None and guides:
             watched = _watched_guides(kinematics, group)
         if watched is not None:
@@ -321,7 +321,7 @@ def watched_dyads(tour: DriveSweep, guides: bool = False) -> list[tuple[Watched,
     return found
 
 
-def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
+def _watched_angle(kinematics: Kinematics, group: Group) -> Watched | None:
     """RRR: between the two rods; RRP: between the rod and the normal of the line; RPR: between arm and normal."""
     name = name_of(group)
     sphere = kinematics.numbers.space.name == "sphere"
@@ -330,7 +330,7 @@ def _watched(kinematics: Kinematics, group: Group) -> Watched | None:
         return Watched(name, "rad", lambda at: of_aim(kinematics, group, at))
     if not isinstance(group, Meet):
         return None
-    centres = [locus for locus in group.loci if isinstance(locus, (Rod, Stroke))]
+    centres = [locus for locus in group.loci if isinstance(locus, (Rod, CylinderCircle))]
     if len(centres) == 2:
         return Watched(name, "rad", lambda at: _between_rods(sphere, centres, at))
     line = next((locus for locus in group.loci if isinstance(locus, (Rail, Slot))), None)
@@ -362,7 +362,7 @@ def _between_guides(
 ) -> Pair:
     bodies = [line.on if isinstance(line, Rail) else carriage for line in lines]
     one, other = (
-        turned(kinematics.numbers.direction[line.guide], at.poses[body or "frame"].rotor)
+        rotate_vector(kinematics.numbers.direction[line.guide], at.poses[body or "frame"].rotor)
         for line, body in zip(lines, bodies, strict=True)
     )
     return plane_dot(one, other), plane_cross(one, other)
@@ -409,7 +409,7 @@ def _to_normal(kinematics: Kinematics, rod: Any, line: Locus, carriage: str | No
     assert isinstance(line, (Rail, Slot))
     body = line.on if isinstance(line, Rail) else carriage
     rotor = at.poses[body or "frame"].rotor
-    direction = turned(kinematics.numbers.direction[line.guide], rotor)
+    direction = rotate_vector(kinematics.numbers.direction[line.guide], rotor)
     arm = subtract(at.points[rod.point], at.points[rod.centre])
     return plane_cross(direction, arm), plane_dot(direction, arm)
 
@@ -419,7 +419,7 @@ def _of_aim(kinematics: Kinematics, group: Aim, at: Positions) -> Pair:
     _through, direction = aim_curve(group, kinematics.numbers)
     pose = at.poses[group.link]
     pivot = place(pose, kinematics.numbers.local[group.link][group.pivot])
-    along = turned(direction, pose.rotor)
+    along = rotate_vector(direction, pose.rotor)
     arm = subtract(at.points[group.target], pivot)
     return plane_cross(along, arm), plane_dot(along, arm)
 
@@ -471,7 +471,7 @@ def transmission_at_ends(course: MonitoredFunction, k: int) -> list[tuple[float,
     """The acute angle at the ends of the stretch: the drive's limits, or the initial position."""
     found = []
     for at in (end for end in course.tour.span if np.isfinite(end)):
-        value = float(course.watched[k].value(course.tour.stopped(at, ARRAYS), 1)[0])
+        value = float(course.watched[k].value(course.tour.positions_at(at, ARRAYS), 1)[0])
         if np.isfinite(value):
             between = _between(value)
             found.append((min(between, pi - between), at))

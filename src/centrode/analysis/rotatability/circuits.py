@@ -24,7 +24,7 @@ from centrode.kinematics.change_points import BranchedPlan
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.path import OFF_GRID
 from centrode.kinematics.plan_evaluation import Branches, Event
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _, mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
 from centrode.model.reading import body_word
@@ -66,16 +66,17 @@ class Combinations:
         length = tau if tour.angular else 2.0 * tour.extent
         self.nodes = _with_own(np.asarray(first + (np.arange(NODES) + OFF_GRID) * (length / NODES)), tour)
         self.length = length
-        self.closed, self.events = self._followed()
+        self.closed, self.events = self._follow_combinations()
         self.limits: dict[tuple[int, int], list[float]] = {}
         for event in self.events:
             if event.kind == "limit":
                 self.limits.setdefault((event.lane, self.cells(event)[0]), []).append(event.at)
         self.runs = [
-            _numbered(row, cut, tour.angular) for row, cut in zip(self.closed, self._cut(), strict=True)
+            _number_runs(row, cut, tour.angular)
+            for row, cut in zip(self.closed, self._limit_cells(), strict=True)
         ]
 
-    def _followed(self) -> tuple[Mask, list[Event]]:
+    def _follow_combinations(self) -> tuple[Mask, list[Event]]:
         """Where every combination closes at the nodes, and all events."""
         tour = self.tour
         lanes = len(self.signs)
@@ -101,7 +102,7 @@ class Combinations:
             return before % len(self.nodes), behind % len(self.nodes)
         return max(before, 0), min(behind, len(self.nodes) - 1)
 
-    def _cut(self) -> Mask:
+    def _limit_cells(self) -> Mask:
         """Cells, by the node before them, that hold a limit."""
         cut = np.zeros((len(self.signs), len(self.nodes)), dtype=bool)
         for event in self.events:
@@ -129,7 +130,7 @@ def _numbers(at: Positions) -> list[Array]:
     return [np.atleast_2d(np.asarray(x, dtype=np.float64)) for place in at.points.values() for x in place]
 
 
-def _numbered(closed: Mask, cut: Mask, round_: bool) -> npt.NDArray[np.intp]:
+def _number_runs(closed: Mask, cut: Mask, round_: bool) -> npt.NDArray[np.intp]:
     """Number of the run of closed nodes that each node belongs to, -1 where it does not close."""
     numbers = np.full(len(closed), -1, dtype=np.intp)
     run = -1
@@ -270,10 +271,10 @@ class _Search:
         way = np.abs(self.combinations.nodes - self.tour.initial)
         if self.tour.angular:
             way = np.minimum(way, tau - way)
-        inside = self.combinations.closed[lane] & self._reached()
+        inside = self.combinations.closed[lane] & self._reachable_nodes()
         return int(np.argmin(np.where(inside, way, np.inf)))
 
-    def _reached(self) -> Mask:
+    def _reachable_nodes(self) -> Mask:
         low, high = self.tour.low, self.tour.high
         turns = (0.0, -tau) if self.tour.angular else (0.0,)
         reached: Mask = np.any(
@@ -375,7 +376,7 @@ class FourBar:
 def four_bars_of(prepared: Ready) -> tuple[FourBar, ...]:
     """Every loop of four hinged links, and of three with a slider on a guide, in the order of the description."""
     mechanism, numbers = prepared.mechanism, prepared.kinematics.numbers
-    found = [_hinged(mechanism, numbers, bodies, pins) for bodies, pins in _loops(mechanism)]
+    found = [_hinged_four_bar(mechanism, numbers, bodies, pins) for bodies, pins in _loops(mechanism)]
     if mechanism.space == "plane":
         found += [loop for guide in mechanism.guides for loop in _slider_loops(mechanism, numbers, guide)]
     return tuple(found)
@@ -412,7 +413,7 @@ def _loops(mechanism: Mechanism) -> Iterator[tuple[tuple[str, ...], tuple[str, .
                         yield loop, tuple(pin[0] for pin in pins)
 
 
-def _hinged(
+def _hinged_four_bar(
     mechanism: Mechanism, numbers: Dimensions, bodies: tuple[str, ...], pins: tuple[str, ...]
 ) -> FourBar:
     lengths = tuple(_distance(numbers, body, pins[k - 1], pins[k]) for k, body in enumerate(bodies))
@@ -420,11 +421,14 @@ def _hinged(
     order = sorted(range(4), key=lambda k: reduced[k])
     shortest, longest = order[0], order[3]
     short, long = reduced[shortest] + reduced[longest], reduced[order[1]] + reduced[order[2]]
-    verdict = _compared(short, long)
+    verdict = _is_smaller_sum(short, long)
     sign = "=" if verdict is None else "<" if verdict else ">"
-    inequality = f"{_shown(mechanism, numbers, short)} {sign} {_shown(mechanism, numbers, long)}: " + _(
-        "shortest and longest ({one}, {other}) against the others"
-    ).format(one=body_word(bodies[shortest]), other=body_word(bodies[longest]))
+    inequality = (
+        f"{_length_text(mechanism, numbers, short)} {sign} {_length_text(mechanism, numbers, long)}: "
+        + _("shortest and longest ({one}, {other}) against the others").format(
+            one=body_word(bodies[shortest]), other=body_word(bodies[longest])
+        )
+    )
     kind = _kind(mechanism, bodies, shortest, verdict)
     return FourBar(bodies, lengths, reduced, verdict, bodies[shortest], kind, inequality)
 
@@ -439,13 +443,13 @@ def reduced_arcs(arcs: Sequence[float]) -> tuple[float, ...]:
         found[first], found[second] = pi - found[first], pi - found[second]
 
 
-def _shown(mechanism: Mechanism, numbers: Dimensions, length: float) -> str:
+def _length_text(mechanism: Mechanism, numbers: Dimensions, length: float) -> str:
     """A length, on the sphere an arc, in the units of the reader."""
     factor, unit = display_unit(numbers.space.unit, mechanism.display.length, mechanism.display.angle)
     return f"{length * factor:.6g} {unit}"
 
 
-def _compared(short: float, long: float) -> bool | None:
+def _is_smaller_sum(short: float, long: float) -> bool | None:
     """Whether a sum is the smaller one; None where both are equal but for rounding."""
     if abs(short - long) <= ROUNDING * (abs(short) + abs(long)):
         return None
@@ -489,7 +493,7 @@ def _slider_loops(mechanism: Mechanism, numbers: Dimensions, guide: Guide) -> It
             pins = [p for p in points[crank] if p in points[coupler] and p != guide.point]
             if len(pivots) == 1 and len(pins) == 1 and pivots[0] != pins[0]:
                 loop = (carrier, crank, coupler)
-                yield _sliding(mechanism, numbers, guide, loop, (pivots[0], pins[0]))
+                yield _sliding_four_bar(mechanism, numbers, guide, loop, (pivots[0], pins[0]))
 
 
 def _frame_end(points: Mapping[str, tuple[str, ...]], guide: Guide, carrier: str) -> list[str]:
@@ -497,7 +501,7 @@ def _frame_end(points: Mapping[str, tuple[str, ...]], guide: Guide, carrier: str
     return [FRAME] if guide.point in points[FRAME] and carrier != FRAME else []
 
 
-def _sliding(
+def _sliding_four_bar(
     mechanism: Mechanism,
     numbers: Dimensions,
     guide: Guide,
@@ -510,12 +514,13 @@ def _sliding(
     offset = abs(float(cross(numbers.direction[guide.id], subtract(local[pivot], numbers.through[guide.id]))))
     one, other = _distance(numbers, crank, pivot, pin), _distance(numbers, coupler, pin, guide.point)
     short, long = min(one, other) + offset, max(one, other)
-    verdict = _compared(short, long)
+    verdict = _is_smaller_sum(short, long)
     shortest = crank if one <= other else coupler
     sign = "=" if verdict is None else "<" if verdict else ">"
-    inequality = f"{_shown(mechanism, numbers, short)} {sign} {_shown(mechanism, numbers, long)}: " + _(
-        "shorter link {one} and offset against the longer one"
-    ).format(one=shortest)
+    inequality = (
+        f"{_length_text(mechanism, numbers, short)} {sign} {_length_text(mechanism, numbers, long)}: "
+        + _("shorter link {one} and offset against the longer one").format(one=shortest)
+    )
     bodies, lengths = (carrier, crank, coupler, f"{guide.id}"), (offset, one, other)
     kind = _slider_kind(loop, shortest, verdict)
     return FourBar(bodies, lengths, lengths, verdict, shortest, kind, inequality)

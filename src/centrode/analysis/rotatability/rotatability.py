@@ -16,14 +16,14 @@ from centrode.analysis.rotatability.causes import Transmission, cause_of, transm
 from centrode.analysis.rotatability.circuits import Circuits, FourBar, circuits_of, four_bars_of
 from centrode.analysis.rotatability.tours import (
     DriveSweep,
-    Swing,
-    course_of,
-    swings_of,
+    LinkStroke,
+    monitored_function,
+    strokes_of,
     tour_of,
     watched_members,
 )
 from centrode.kinematics.plan_evaluation import Event
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.several_inputs.limits import initial_values
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -110,7 +110,7 @@ class LinkTurning:
     period: int | None
     limits: tuple[LimitFound, ...]
     change_points: tuple[ChangePoint, ...]
-    swings: tuple[Swing, ...]
+    swings: tuple[LinkStroke, ...]
     dead_points: tuple[DeadPoint, ...]
     transmissions: tuple[Transmission, ...]
     circuits: Circuits | None
@@ -169,7 +169,7 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
     for drive in mechanism.drives:
         held = {name: value for name, value in values.items() if name != drive.id}
         with np.errstate(all="ignore"):  # places may go to infinity at a limit
-            turnings.append(_turning(prepared, tour_of(prepared, drive.id, held)))
+            turnings.append(_link_turning(prepared, tour_of(prepared, drive.id, held)))
     alone = len(turnings) == 1
     return Rotatability(
         turnings[0].turns_fully if alone else None,
@@ -179,10 +179,10 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
     )
 
 
-def _turning(prepared: Ready, tour: DriveSweep) -> LinkTurning:
+def _link_turning(prepared: Ready, tour: DriveSweep) -> LinkTurning:
     members, dyads = watched_members(tour), watched_dyads(tour)
-    course = course_of(tour, [*(one for one, _kind in members), *(one for one, _group in dyads)])
-    swings = swings_of(course, [kind for _one, kind in members])
+    course = monitored_function(tour, [*(one for one, _kind in members), *(one for one, _group in dyads)])
+    swings = strokes_of(course, [kind for _one, kind in members])
     circuits, missing = circuits_of(tour)
     return LinkTurning(
         tour.drive.id,
@@ -236,7 +236,7 @@ def _change_points(prepared: Ready, tour: DriveSweep) -> tuple[ChangePoint, ...]
     return tuple(found)
 
 
-def _dead_points(swings: list[Swing]) -> list[DeadPoint]:
+def _dead_points(swings: list[LinkStroke]) -> list[DeadPoint]:
     return [
         DeadPoint(swing.name, extreme.value, extreme.at, extreme.in_line)
         for swing in swings

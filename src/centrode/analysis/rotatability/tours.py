@@ -18,8 +18,8 @@ from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import JETS, OFF_GRID
 from centrode.kinematics.plan_evaluation import Event, rotor_of_angle, slide_of
-from centrode.kinematics.prepared import Ready
-from centrode.kinematics.sampling import start_of
+from centrode.kinematics.preparation import Ready
+from centrode.kinematics.samples import start_of
 from centrode.kinematics.several_inputs.limits import check_closed, held_path, starting_at
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.model.mechanism import Drive, Mechanism
@@ -76,19 +76,19 @@ class DriveSweep:
         return self.drive.kind == "angle"
 
     @property
-    def unlimited(self) -> bool:
+    def is_unlimited(self) -> bool:
         """Whether no limit was found on either side."""
         return not isfinite(self.low) and not isfinite(self.high)
 
     @cached_property
     def turns_fully(self) -> bool:
         """Whether the drive is an angle without limits, and every point has its place all over the stretch."""
-        return self.angular and self.unlimited and bool(np.isfinite(self.places(self.nodes())).all())
+        return self.angular and self.is_unlimited and bool(np.isfinite(self.places(self.nodes())).all())
 
     @cached_property
     def turns(self) -> int | None:
         """Turns of the drive after which every point is back; None where it is limited or not back after two."""
-        if not (self.angular and self.unlimited):
+        if not (self.angular and self.is_unlimited):
             return None
         at = self.places(np.array([self.initial + tau * k for k in range(int(TURNS) + 1)]))
         scale = float(self.continuation.kinematics.numbers.scale)
@@ -101,7 +101,7 @@ class DriveSweep:
     @property
     def span(self) -> tuple[float, float]:
         """The stretch that is looked at: whole turns in the drive's sense until it is back, or between the limits."""
-        if self.angular and self.unlimited:
+        if self.angular and self.is_unlimited:
             way = tau * (self.turns or int(TURNS))
             backwards = self.continuation.kinematics.path.forward < 0.0
             return (self.initial - way, self.initial) if backwards else (self.initial, self.initial + way)
@@ -115,7 +115,7 @@ class DriveSweep:
     def nodes(self) -> Array:
         """Values at which functions of the drive are looked at: even over turns, denser towards limits."""
         first, last = self.span
-        if self.angular and self.unlimited:
+        if self.angular and self.is_unlimited:
             count = NODES_PER_TURN * round((last - first) / tau)
             return np.asarray(first + (np.arange(count + 1) + OFF_GRID) * ((last - first) / count))
         share = 0.5 - 0.5 * np.cos(pi * (np.arange(NODES_PER_TURN) + 0.5) / NODES_PER_TURN)
@@ -129,7 +129,7 @@ class DriveSweep:
                 JETS, Jet.variable(along, order), self.continuation.hooks(JETS, along, None)
             )
 
-    def stopped(self, value: float, m: Namespace) -> Positions:
+    def positions_at(self, value: float, m: Namespace) -> Positions:
         """Positions (1, 1) at any value; of groups that have an event there, the root is zero and not its rounding."""
         along = np.array([[value]])
         margin = ULPS * float(np.spacing(abs(value) + self.continuation.branches.unit))
@@ -253,11 +253,11 @@ class MonitoredFunction:
     turned: tuple[tuple[Array, Array], ...]
 
 
-def course_of(tour: DriveSweep, watched: Sequence[Watched]) -> MonitoredFunction:
+def monitored_function(tour: DriveSweep, watched: Sequence[Watched]) -> MonitoredFunction:
     """Watch numbers along a tour."""
     nodes = tour.nodes()
     at = tour.at(nodes, 1)
-    values = np.array([_unwrapped(one, one.value(at, len(nodes))) for one in watched])
+    values = np.array([_unwrap(one, one.value(at, len(nodes))) for one in watched])
     rates = np.array([one.rate(at, len(nodes))[0] for one in watched])
     if not len(watched):
         return MonitoredFunction(tour, (), nodes, np.zeros((0, len(nodes))), ())
@@ -276,7 +276,7 @@ def course_of(tour: DriveSweep, watched: Sequence[Watched]) -> MonitoredFunction
     return MonitoredFunction(tour, tuple(watched), nodes, values, tuple(turned))
 
 
-def _unwrapped(one: Watched, values: Array) -> Array:
+def _unwrap(one: Watched, values: Array) -> Array:
     return np.unwrap(values) if one.unit == "rad" and np.isfinite(values).all() else values
 
 
@@ -300,7 +300,7 @@ def _roots(
     tour: DriveSweep, watched: Sequence[Watched], which: npt.NDArray[np.intp], low: Array, high: Array
 ) -> Array:
     def rate(values: Array) -> tuple[Array, Array]:
-        return _chosen(tour, watched, which, values, lambda one, at: one.rate(at, len(values)))
+        return _evaluate_each(tour, watched, which, values, lambda one, at: one.rate(at, len(values)))
 
     return newton_roots(rate, low, high)
 
@@ -310,13 +310,13 @@ def _values_at(
 ) -> Array:
     if not len(which):
         return np.zeros(0)
-    found = _chosen(
+    found = _evaluate_each(
         tour, watched, which, places, lambda one, at: (one.value(at, len(places)), np.zeros(len(places)))
     )
     return found[0]
 
 
-def _chosen(
+def _evaluate_each(
     tour: DriveSweep,
     watched: Sequence[Watched],
     which: npt.NDArray[np.intp],
@@ -426,7 +426,7 @@ def in_line(tour: DriveSweep, values: Array) -> list[Pairs]:
     if not len(values):
         return []
     places = _places(tour, values)
-    for pair, a, pin, b in _hinged(mechanism):
+    for pair, a, pin, b in _hinged_pairs(mechanism):
         flat = _flat(mechanism, places[a], places[pin], places[b])
         for k in np.nonzero(flat)[0]:
             found[k][pair] = None
@@ -444,7 +444,7 @@ def _places(tour: DriveSweep, values: Array) -> dict[str, Array]:
     return {name: np.array([plain(x) for x in place]) for name, place in at.points.items()}
 
 
-def _hinged(mechanism: Mechanism) -> list[tuple[tuple[str, str], str, str, str]]:
+def _hinged_pairs(mechanism: Mechanism) -> list[tuple[tuple[str, str], str, str, str]]:
     """Two links with a hinge between them, and another joint of each: (links, joint, hinge, joint)."""
     joints = _joints(mechanism)
     at_point: dict[str, list[str]] = {}
@@ -505,7 +505,7 @@ class StrokeExtreme:
 
 
 @dataclass(frozen=True)
-class Swing:
+class LinkStroke:
     """How one link, or one slider along its guide, moves over a tour.
 
     Attributes
@@ -552,20 +552,22 @@ def watched_members(tour: DriveSweep) -> list[tuple[Watched, Literal["link", "gu
     return [*((one, "link") for one in links), *((one, "guide") for one in guides)]
 
 
-def swings_of(
+def strokes_of(
     course: MonitoredFunction, members: Sequence[Literal["link", "guide"]], first: int = 0
-) -> list[Swing]:
+) -> list[LinkStroke]:
     """The swings of the watched numbers from number `first` on, one for each kind of member."""
     chosen = range(first, first + len(members))
     places = [course.turned[k][0] for k in chosen]
     lined = iter(in_line(course.tour, np.concatenate([np.zeros(0), *places])))
     pairs = [[next(lined) for _place in some] for some in places]
-    return [_swing(course, k, member, mine) for k, member, mine in zip(chosen, members, pairs, strict=True)]
+    return [
+        _stroke_of(course, k, member, mine) for k, member, mine in zip(chosen, members, pairs, strict=True)
+    ]
 
 
-def _swing(
+def _stroke_of(
     course: MonitoredFunction, k: int, member: Literal["link", "guide"], lined: Sequence[Pairs]
-) -> Swing:
+) -> LinkStroke:
     tour, one = course.tour, course.watched[k]
     values = course.values[k]
     shift = _shift(course, k, member)
@@ -576,7 +578,7 @@ def _swing(
     if tour.comes_round and one.unit != "rad":
         turns = 0
     if moved <= STILL * scale:
-        return Swing(one.name, member, "still", one.unit, turns, None, None, 0.0, None, (), ())
+        return LinkStroke(one.name, member, "still", one.unit, turns, None, None, 0.0, None, (), ())
     extremes = [
         StrokeExtreme(float(value) + shift, float(place), pairs)
         for place, value, pairs in zip(*course.turned[k], lined, strict=True)
@@ -585,10 +587,12 @@ def _swing(
     extremes = sorted([*extremes, *(end for end in ends if end is not None)], key=lambda extreme: extreme.at)
     if turns or None in ends or not extremes:
         kind: Literal["turns", "swings"] = "swings" if None in ends else "turns"
-        return Swing(one.name, member, kind, one.unit, turns, None, None, None, None, tuple(extremes), ())
+        return LinkStroke(
+            one.name, member, kind, one.unit, turns, None, None, None, None, tuple(extremes), ()
+        )
     least, greatest = (pick(extremes, key=lambda e: e.value) for pick in (min, max))
     stroke = greatest.value - least.value
-    return Swing(
+    return LinkStroke(
         one.name,
         member,
         "swings",
@@ -620,7 +624,7 @@ def _ends(course: MonitoredFunction, k: int, shift: float) -> list[StrokeExtreme
     for limit, node in ((tour.low, 0), (tour.high, -1)):
         if not np.isfinite(limit):
             continue
-        value = float(one.value(tour.stopped(limit, ARRAYS), 1)[0])
+        value = float(one.value(tour.positions_at(limit, ARRAYS), 1)[0])
         near = float(course.values[k][node])
         if _goes_to_infinity(tour, limit) or not (np.isfinite(value) and np.isfinite(near)):
             found.append(None)

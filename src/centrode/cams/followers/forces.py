@@ -15,11 +15,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from centrode.cams.contact_stress import ContactMaterial, Pressed, contact_modulus, line_contact
+from centrode.cams.followers.base_circle import follower_cam
 from centrode.cams.followers.geometry import FollowerCam, Oscillating
-from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.roller_path import angles_of
 from centrode.errors import Status
-from centrode.kinematics.motion import Variable, named
+from centrode.kinematics.motion import Variable, vocabulary_variable
 from centrode.model.cam import Material as DescribedMaterial
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
@@ -289,7 +289,7 @@ def on_centre(rows: Array, offset: float, rise: float, sense: float, rolling: bo
     height = rise + rows[0]
     place = np.stack([np.full_like(height, offset), height], axis=1)
     normal = _unit(np.stack([offset - sense * rows[1], height], axis=1))
-    slip = np.zeros_like(normal) if rolling else sense * _left(normal)
+    slip = np.zeros_like(normal) if rolling else sense * _quarter_turn(normal)
     return Meeting(place, normal, slip, _along_y(height), sense)
 
 
@@ -298,7 +298,7 @@ def on_face(rows: Array, base: float, sense: float) -> Meeting:
     height = base + rows[0]
     place = np.stack([sense * rows[1], height], axis=1)
     normal = _along_y(height)
-    return Meeting(place, normal, sense * _left(normal), normal, sense)
+    return Meeting(place, normal, sense * _quarter_turn(normal), normal, sense)
 
 
 def on_arm(rows: Array, arm: float, distance: float, start: float, sense: float, rolling: bool) -> Meeting:
@@ -319,8 +319,8 @@ def on_arm(rows: Array, arm: float, distance: float, start: float, sense: float,
     reach = arm * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     place = reach + np.array([distance, 0.0])
     ray = _unit(_from_pole(place, rows, distance, sense))
-    slip = np.zeros_like(ray) if rolling else sense * _left(ray)
-    return Meeting(place, _turned_out(ray, reach), slip, _turning(reach), sense)
+    slip = np.zeros_like(ray) if rolling else sense * _quarter_turn(ray)
+    return Meeting(place, _turned_out(ray, reach), slip, _unit_force_moments(reach), sense)
 
 
 def on_turning_face(rows: Array, distance: float, start: float, shift: float, sense: float) -> Meeting:
@@ -339,14 +339,14 @@ def on_turning_face(rows: Array, distance: float, start: float, shift: float, se
     """
     angle = math.pi - (start + rows[0])
     along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    normal = -_left(along)
+    normal = -_quarter_turn(along)
     foot = np.array([distance, 0.0]) - shift * normal
     turn = sense * rows[1]
     pole = np.stack([distance * turn / (1 + turn), np.zeros_like(turn)], axis=1)
     place = foot + along * np.sum((pole - foot) * along, axis=1, keepdims=True)
     above = np.sign(np.sum(normal * _from_pole(place, rows, distance, sense), axis=1, keepdims=True))
     reach = place - np.array([distance, 0.0])
-    return Meeting(place, normal, sense * above * _left(normal), _turning(reach), sense)
+    return Meeting(place, normal, sense * above * _quarter_turn(normal), _unit_force_moments(reach), sense)
 
 
 def _from_pole(place: Array, rows: Array, distance: float, sense: float) -> Array:
@@ -360,11 +360,11 @@ def _from_pole(place: Array, rows: Array, distance: float, sense: float) -> Arra
 
 def _turned_out(normal: Array, reach: Array) -> Array:
     """The normal in the sense that lifts the follower."""
-    lifts = np.sum(normal * _turning(reach), axis=1, keepdims=True)
+    lifts = np.sum(normal * _unit_force_moments(reach), axis=1, keepdims=True)
     return np.where(lifts < 0, -normal, normal)
 
 
-def _turning(reach: Array) -> Array:
+def _unit_force_moments(reach: Array) -> Array:
     """What forces of one along x and y do clockwise about the pivot, at a reach from it."""
     return np.stack([reach[:, 1], -reach[:, 0]], axis=1)
 
@@ -373,7 +373,7 @@ def _along_y(height: Array) -> Array:
     return np.stack([np.zeros_like(height), np.ones_like(height)], axis=1)
 
 
-def _left(vectors: Array) -> Array:
+def _quarter_turn(vectors: Array) -> Array:
     """Vectors turned by a quarter counter-clockwise: the way the surface of a cam that turns so slides."""
     return np.stack([-vectors[:, 1], vectors[:, 0]], axis=1)
 
@@ -609,9 +609,9 @@ def dataset_of_forces(cam: PlateCam, forces: FollowerForces, phi: Array) -> xr.D
             "contact_depth": found.strip.depth,
             "contact_half_width": found.strip.half_width,
         }
-    data = {name: named(name, ("sample",), one) for name, one in values.items()}
+    data = {name: vocabulary_variable(name, ("sample",), one) for name, one in values.items()}
     data["status"] = _status(forces, found)
-    coordinates = {"cam_angle": named("cam_angle", ("sample",), phi)}
+    coordinates = {"cam_angle": vocabulary_variable("cam_angle", ("sample",), phi)}
     return xr.Dataset(data, coords=coordinates, attrs=_facts(cam, forces))
 
 
@@ -619,7 +619,7 @@ def _status(forces: FollowerForces, found: ActingForces) -> Variable:
     lost = (found.push < 0) & (not forces.led)
     status = np.where(np.isnan(found.normal), np.int8(Status.SINGULAR), np.int8(Status.OK))
     status = np.where(lost, np.int8(Status.OPEN), status).astype(np.int8)
-    dimensions, values, attributes = named("status", ("sample",), status)
+    dimensions, values, attributes = vocabulary_variable("status", ("sample",), status)
     attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
     attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
     return dimensions, values, attributes

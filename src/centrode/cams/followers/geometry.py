@@ -106,7 +106,7 @@ class Oscillating:
 Guidance: TypeAlias = Translating | Oscillating
 
 
-def translating(path_radius: float, offset: float = 0.0) -> Translating:
+def translating_follower(path_radius: float, offset: float = 0.0) -> Translating:
     """A translating follower whose roller's centre (edge) starts at a distance [m] from the cam's centre.
 
     Raises
@@ -122,7 +122,7 @@ def translating(path_radius: float, offset: float = 0.0) -> Translating:
     return Translating(math.sqrt((path_radius - offset) * (path_radius + offset)), offset)
 
 
-def oscillating(path_radius: float, arm: float, distance: float) -> Oscillating:
+def oscillating_follower(path_radius: float, arm: float, distance: float) -> Oscillating:
     """An oscillating follower whose roller's centre (edge) starts at a distance [m] from the cam's centre.
 
     Raises
@@ -248,7 +248,7 @@ def jet_of(derivatives: Array) -> Jet:
     return Jet([row / math.factorial(k) for k, row in enumerate(derivatives)])
 
 
-def turned(vector: Vector, phi: Jet, sense: float) -> tuple[Jet, Jet]:
+def rotate_into_cam(vector: Vector, phi: Jet, sense: float) -> tuple[Jet, Jet]:
     """A vector of the frame in the axes of a cam that has turned by phi."""
     x, y = vector
     cosine, sine = JETS.cos(phi), JETS.sin(phi) * sense
@@ -263,15 +263,15 @@ class Point:
 
     def contact(self, guide: Guidance, phi: Array, lift: Array, sense: float) -> FollowerContact:
         rise, angle = jet_of(lift), Jet.variable(phi, ORDER)
-        x, y = turned(guide.centre(JETS, rise), angle, sense)
-        across, up = (one.lowered() for one in turned(guide.direction(JETS, rise), angle, sense))
+        x, y = rotate_into_cam(guide.centre(JETS, rise), angle, sense)
+        across, up = (one.lower_order() for one in rotate_into_cam(guide.direction(JETS, rise), angle, sense))
         u, v = x.slope(), y.slope()
         pressure = JETS.atan2(u * across + v * up, (u * up - v * across) * sense)
         length = JETS.sqrt(u * u + v * v)
         omega = JETS.atan2(-v * sense, u * sense)
-        curvature = omega.slope() * sense / length.lowered()
+        curvature = omega.slope() * sense / length.lower_order()
         stretch = -curvature * self.roller + 1.0
-        centre, normal = _stacked(x.value, y.value), _direction(omega.value)
+        centre, normal = _stack(x.value, y.value), _direction(omega.value)
         bend = 1.0 / curvature.value - self.roller
         return FollowerContact(
             phi,
@@ -306,10 +306,10 @@ class Face:
         omega = normal_in_frame + Jet.variable(phi, ORDER) * sense
         turning = omega.slope()
         foot = distance.slope() / turning
-        bend = distance.lowered().lowered() + foot.slope() / turning.lowered()
+        bend = distance.lower_order().lower_order() + foot.slope() / turning.lower_order()
         normal, ahead = _direction(omega.value), _ahead(omega.value)
         place = distance.value[:, None] * normal + foot.value[:, None] * ahead
-        along, pressure = _on_face(guide, normal_in_frame.lowered(), foot, sense)
+        along, pressure = _on_face(guide, normal_in_frame.lower_order(), foot, sense)
         return FollowerContact(
             phi,
             lift[0],
@@ -341,16 +341,16 @@ def _on_face(guide: Guidance, psi: Jet, foot: Jet, sense: float) -> tuple[Jet, J
     return along, JETS.atan2(along * 0.0 - sense * guide.face_offset, along)
 
 
-def _stacked(x: Array, y: Array) -> Array:
+def _stack(x: Array, y: Array) -> Array:
     return np.stack([x, y], axis=-1)
 
 
 def _direction(angle: Array) -> Array:
-    return _stacked(np.sin(angle), np.cos(angle))
+    return _stack(np.sin(angle), np.cos(angle))
 
 
 def _ahead(angle: Array) -> Array:
-    return _stacked(np.cos(angle), -np.sin(angle))
+    return _stack(np.cos(angle), -np.sin(angle))
 
 
 # A plate cam with its follower: the closed profile, its corners, where it is undercut, and its extremes.
@@ -469,7 +469,7 @@ class FollowerCam:
 
     def _backwards(self) -> Iterator[tuple[float, float]]:
         """Stretches between cusps and edges on which the profile runs back."""
-        values, _slopes = self._watched("stretch")
+        values, _slopes = self._value_and_slope("stretch")
         # cusps lie on both sides of the lowest places, however near
         lowest = self.turns("stretch")
         found = roots(values, nodes_of(sorted({*self.edges, *lowest.tolist()})))
@@ -502,13 +502,13 @@ class FollowerCam:
 
     def _extremes(self, name: str) -> Extremes:
         """Over the stretches between edges, with what holds before and behind each."""
-        return extremes(*self._watched(name), nodes_of(self.edges))
+        return extremes(*self._value_and_slope(name), nodes_of(self.edges))
 
     def turns(self, name: str) -> Array:
         """Angles [rad] between edges at which a value of `WATCHED` is least or greatest, growing."""
-        return roots(self._watched(name)[1], nodes_of(self.edges))
+        return roots(self._value_and_slope(name)[1], nodes_of(self.edges))
 
-    def _watched(self, name: str) -> tuple[Function, Function]:
+    def _value_and_slope(self, name: str) -> tuple[Function, Function]:
         """A value of the contact and its slope as functions of the angle."""
         value, slope = WATCHED[name]
 

@@ -10,12 +10,12 @@ from itertools import pairwise
 import numpy as np
 import xarray as xr
 
+from centrode.cams.followers.base_circle import follower_cam
 from centrode.cams.followers.geometry import Array, Corner, Face, FollowerCam, FollowerContact
-from centrode.cams.followers.sizing import follower_cam
 from centrode.cams.nodes import inside
 from centrode.cams.profiles import CamOutline, Layer
 from centrode.errors import InputError
-from centrode.kinematics.motion import Variable, named
+from centrode.kinematics.motion import Variable, vocabulary_variable
 from centrode.locale import _
 from centrode.model.cam_files import AnyCam, with_follower
 
@@ -192,7 +192,7 @@ def _before(cam: FollowerCam, at: float) -> FollowerContact:
     return cam.contact(np.array([inside(cam.edges[0], end)[1]]))
 
 
-def joined(outlines: list[CamOutline], layer: Layer) -> Array:
+def join_outlines(outlines: list[CamOutline], layer: Layer) -> Array:
     """All points (n, 2) [m] of a layer in their order, those where pieces meet once."""
     found: list[Array] = []
     for one in outlines:
@@ -225,22 +225,24 @@ def follower_profile(body: FollowerCam, phi: Array, cutter: float | None = None)
     found = body.contact(phi)
     x, y = found.place.T
     variables: dict[str, Variable] = {
-        "cam_angle": named("cam_angle", ("sample",), phi),
-        "profile": named("profile", PLACED, found.place),
-        "profile_radius": named("profile_radius", ("sample",), np.hypot(x, y)),
-        "profile_angle": named("profile_angle", ("sample",), np.unwrap(np.arctan2(x, y))),
-        "profile_normal": named("profile_normal", PLACED, found.normal),
-        "cam_pressure_angle": named("cam_pressure_angle", ("sample",), found.pressure_angle),
-        "profile_bend": named("profile_bend", ("sample",), found.bend),
+        "cam_angle": vocabulary_variable("cam_angle", ("sample",), phi),
+        "profile": vocabulary_variable("profile", PLACED, found.place),
+        "profile_radius": vocabulary_variable("profile_radius", ("sample",), np.hypot(x, y)),
+        "profile_angle": vocabulary_variable("profile_angle", ("sample",), np.unwrap(np.arctan2(x, y))),
+        "profile_normal": vocabulary_variable("profile_normal", PLACED, found.normal),
+        "cam_pressure_angle": vocabulary_variable("cam_pressure_angle", ("sample",), found.pressure_angle),
+        "profile_bend": vocabulary_variable("profile_bend", ("sample",), found.bend),
     }
     if isinstance(body.touch, Face):
-        variables["face_place"] = named("face_place", ("sample",), found.along)
+        variables["face_place"] = vocabulary_variable("face_place", ("sample",), found.along)
     elif body.touch.roller > 0.0:
-        variables["roller_centre"] = named("roller_centre", PLACED, found.centre)
-        variables["path_curvature"] = named("path_curvature", ("sample",), found.path_curvature)
+        variables["roller_centre"] = vocabulary_variable("roller_centre", PLACED, found.centre)
+        variables["path_curvature"] = vocabulary_variable("path_curvature", ("sample",), found.path_curvature)
     if cutter is not None:
         check_cutter(body, cutter)
-        variables["cutter_centre"] = named("cutter_centre", PLACED, cutter_centres(found, cutter))
+        variables["cutter_centre"] = vocabulary_variable(
+            "cutter_centre", PLACED, cutter_centres(found, cutter)
+        )
     attributes = {"roller": body.touch.roller, "base_radius": body.base_radius}
     return xr.Dataset(variables, coords={"axis": AXES}, attrs=attributes)
 
@@ -278,9 +280,9 @@ def points_dataset(outlines: Sequence[CamOutline]) -> xr.Dataset:
         normals.append(np.asarray(one.normals)[fresh])
     variables: dict[str, Variable] = {
         "curve": (("sample",), np.array(curves), {}),
-        "cam_angle": named("cam_angle", ("sample",), np.concatenate(angles)),
-        "curve_point": named("curve_point", PLACED, np.concatenate(places)),
-        "curve_normal": named("curve_normal", PLACED, np.concatenate(normals)),
+        "cam_angle": vocabulary_variable("cam_angle", ("sample",), np.concatenate(angles)),
+        "curve_point": vocabulary_variable("curve_point", PLACED, np.concatenate(places)),
+        "curve_normal": vocabulary_variable("curve_normal", PLACED, np.concatenate(normals)),
     }
     return xr.Dataset(variables, coords={"axis": AXES})
 

@@ -16,12 +16,12 @@ import xarray as xr
 
 from centrode.cams.nodes import mesh
 from centrode.errors import InputError, Status
-from centrode.kinematics.motion import Variable, labels_of, named
-from centrode.laws import CURVES, Segment, SegmentedLaw
+from centrode.kinematics.motion import Variable, labels_of, vocabulary_variable
+from centrode.laws import CURVES, LawSegment, SegmentedLaw
 from centrode.locale import _, mark
 from centrode.model.cam_files import AnyCam, cam_text, with_follower
 from centrode.model.follower_cam import PlateCam
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
@@ -316,7 +316,7 @@ def compare_laws(
     angle: float = 1.0,
     speed: float | None = None,
     curves: Sequence[str] = tuple(CURVES),
-    own: Segment | None = None,
+    own: LawSegment | None = None,
     samples: int = SAMPLES,
 ) -> xr.Dataset:
     """Laws of motion beside each other, for one rise.
@@ -329,7 +329,7 @@ def compare_laws(
     speed : float [rad/s]
         Of the cam; with it the peaks are also told in time.
     curves : names of curves
-    own : Segment
+    own : LawSegment
         A further law, from 0 to `rise` over `angle`.
     samples : int
         Of each curve.
@@ -351,17 +351,17 @@ def compare_laws(
     for name in names:
         if name not in CURVES:
             raise InputError(
-                "curves", _("there is no curve {name}").format(name=shown(name)), nearest(name, CURVES)
+                "curves", _("there is no curve {name}").format(name=value_text(name)), nearest(name, CURVES)
             )
     if not (math.isfinite(rise) and rise and math.isfinite(angle) and angle > 0):
         raise InputError("", _("a rise needs a height that is not 0 and a positive angle"), _("correct them"))
-    laws = {name: SegmentedLaw((Segment(1.0, 1.0, name),)) for name in names}
+    laws = {name: SegmentedLaw((LawSegment(1.0, 1.0, name),)) for name in names}
     if own is not None:
         laws[ITS_OWN] = SegmentedLaw((own,))
-    return _labelled(laws, rise, angle, speed, samples)
+    return _motion_dataset(laws, rise, angle, speed, samples)
 
 
-def _labelled(
+def _motion_dataset(
     laws: Mapping[str, SegmentedLaw], rise: float, angle: float, speed: float | None, samples: int
 ) -> xr.Dataset:
     if not laws:
@@ -370,17 +370,19 @@ def _labelled(
     peaks = [peaks_of(law) for law in laws.values()]
     curves = [_over(law, share, rise if name == ITS_OWN else 1.0) for name, law in laws.items()]
     data = {
-        "peak_coefficient": named(
+        "peak_coefficient": vocabulary_variable(
             "peak_coefficient", ("law", "derivative"), [[np.nan, *one.coefficients] for one in peaks]
         ),
-        "torque_coefficient": named("torque_coefficient", ("law",), [one.torque for one in peaks]),
-        "first_jump": named("first_jump", ("law",), [one.first_jump or 0 for one in peaks]),
-        "rise_share": named("rise_share", ("law", "derivative", "sample"), np.stack(curves)),
+        "torque_coefficient": vocabulary_variable(
+            "torque_coefficient", ("law",), [one.torque for one in peaks]
+        ),
+        "first_jump": vocabulary_variable("first_jump", ("law",), [one.first_jump or 0 for one in peaks]),
+        "rise_share": vocabulary_variable("rise_share", ("law", "derivative", "sample"), np.stack(curves)),
     }
     coordinates = {
         "law": labels_of(tuple(laws)),
         "derivative": [0, *ORDERS],
-        "share": named("share", ("sample",), share),
+        "share": vocabulary_variable("share", ("sample",), share),
     }
     facts = {"rise": rise, "angle": angle, "version": __version__}
     return xr.Dataset(data, coords=coordinates, attrs=facts | ({} if speed is None else {"speed": speed}))
@@ -449,13 +451,16 @@ def dataset_of_motion(cam: PlateCam, motion: FollowerMotion, phi: Array) -> xr.D
     by_angle, in_time = motion_names(motion.swings)
     values = motion.lift(phi, len(by_angle) - 1)
     data: dict[str, Variable] = {
-        name: named(name, ("sample",), one) for name, one in zip(by_angle, values, strict=True)
+        name: vocabulary_variable(name, ("sample",), one) for name, one in zip(by_angle, values, strict=True)
     }
     if motion.speed is not None:
         for order, name in enumerate(in_time, 1):
-            data[name] = named(name, ("sample",), values[order] * motion.speed**order)
+            data[name] = vocabulary_variable(name, ("sample",), values[order] * motion.speed**order)
     data["status"] = _all_right(len(phi))
-    coordinates = {"cam_angle": named("cam_angle", ("sample",), phi), "derivative": list(range(ORDER + 1))}
+    coordinates = {
+        "cam_angle": vocabulary_variable("cam_angle", ("sample",), phi),
+        "derivative": list(range(ORDER + 1)),
+    }
     return xr.Dataset(data | _joints(motion) | _curve(motion), coords=coordinates, attrs=_facts(cam, motion))
 
 
@@ -465,10 +470,13 @@ def _joints(motion: FollowerMotion) -> dict[str, Variable]:
     units = {"units": ", ".join(QUANTITIES[name].unit for name in motion_names(motion.swings)[0])}
     sides = {"joint_before": [one.before for one in joints], "joint_after": [one.after for one in joints]}
     data = {
-        name: (("joint", "derivative"), np.array(values), {**named(name, (), None)[2], **units})
+        name: (("joint", "derivative"), np.array(values), {**vocabulary_variable(name, (), None)[2], **units})
         for name, values in sides.items()
     }
-    return {"joint_angle": named("joint_angle", ("joint",), [one.angle for one in joints]), **data}
+    return {
+        "joint_angle": vocabulary_variable("joint_angle", ("joint",), [one.angle for one in joints]),
+        **data,
+    }
 
 
 def _curve(motion: FollowerMotion) -> dict[str, Variable]:
@@ -482,13 +490,19 @@ def _curve(motion: FollowerMotion) -> dict[str, Variable]:
     units = {"units": ", ".join(QUANTITIES[name].unit for name in motion_names(motion.swings)[0])}
     drawn = np.concatenate(values, axis=1).T
     return {
-        "drawn_angle": named("drawn_angle", ("place",), np.concatenate(angles)),
-        "drawn_motion": (("place", "derivative"), drawn, {**named("drawn_motion", (), None)[2], **units}),
+        "drawn_angle": vocabulary_variable("drawn_angle", ("place",), np.concatenate(angles)),
+        "drawn_motion": (
+            ("place", "derivative"),
+            drawn,
+            {**vocabulary_variable("drawn_motion", (), None)[2], **units},
+        ),
     }
 
 
 def _all_right(count: int) -> Variable:
-    dimensions, values, attributes = named("status", ("sample",), np.full(count, Status.OK, dtype=np.int8))
+    dimensions, values, attributes = vocabulary_variable(
+        "status", ("sample",), np.full(count, Status.OK, dtype=np.int8)
+    )
     attributes["flag_values"] = np.array([s.value for s in Status], dtype=np.int8)
     attributes["flag_meanings"] = " ".join(s.name.lower() for s in Status)
     return dimensions, values, attributes

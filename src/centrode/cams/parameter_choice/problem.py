@@ -115,10 +115,10 @@ def paths_of(trials: Sequence[PathTrial], mesh: Mesh, phi: Array) -> BatchPaths:
     panels = mesh.panels
     nodes = [first + (last - first) * _unit_nodes() for first, last in panels]
     everywhere = np.concatenate([*nodes, phi])
-    curvature = np.stack([_held(trial, everywhere) for trial in trials], axis=1)
+    curvature = np.stack([_limit_curvature(trial, everywhere) for trial in trials], axis=1)
     for number, (first, last) in enumerate(panels):
         bent = curvature[number * (DEGREE + 1) : (number + 1) * (DEGREE + 1)]
-        u, angle = _solved(states[first], bent, last - first)
+        u, angle = _solve_panel(states[first], bent, last - first)
         states[last] = np.stack([u[-1], angle[-1]])
         inside = (phi >= min(first, last)) & (phi <= max(first, last))
         matrix = _between((phi[inside] - first) / (last - first))
@@ -129,7 +129,7 @@ def paths_of(trials: Sequence[PathTrial], mesh: Mesh, phi: Array) -> BatchPaths:
     return BatchPaths(phi, rho, gamma, curvature[len(panels) * (DEGREE + 1) :], rollers, mesh.mirrored)
 
 
-def _held(trial: PathTrial, phi: Array) -> Array:
+def _limit_curvature(trial: PathTrial, phi: Array) -> Array:
     """The curvature of a design: 0, which no cam has, where it is none; not beyond what any cam has."""
     with np.errstate(all="ignore"):
         found = trial.curvature(phi)
@@ -140,7 +140,7 @@ def _starts(trials: Sequence[PathTrial]) -> Array:
     return np.array([[math.log(one.radius) for one in trials], [one.gamma for one in trials]])
 
 
-def _solved(start: Array, curvature: Array, length: float) -> tuple[Array, Array]:
+def _solve_panel(start: Array, curvature: Array, length: float) -> tuple[Array, Array]:
     """Logarithm of rho, and gamma (nodes, designs) over a panel, from their values at its beginning."""
     matrix = length * _integration()
     u = np.broadcast_to(start[0], curvature.shape)

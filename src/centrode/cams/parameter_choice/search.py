@@ -27,7 +27,7 @@ from centrode.cams.path_series import law_of, path_of
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.cam import CONSTANT, POINT, Cam, varied
-from centrode.model.cam_files import AnyCam, curved
+from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.reading import FrozenMap
 
 # The search for the best design: sequential quadratic programming from several starts, then more angles.
@@ -74,13 +74,13 @@ def search(
     spread = qmc.Halton(len(first), scramble=False).random(starts) if starts else np.empty((0, len(first)))
     found: list[SearchResult] = []
     for start in [first, *warm, *spread[1:]]:
-        inner = _run(problem, np.asarray(start, float), elastic=True)
+        inner = _run_search(problem, np.asarray(start, float), elastic=True)
         ends = [inner]
         if _worst(problem, inner) <= ACTIVE:
-            ends.append(_run(problem, inner, elastic=False))
-        found += [_judged(problem, end) for end in ends]
-    ranked = _ranked(found)
-    return _ranked([_exchanged(problem, ranked[0]), *ranked])
+            ends.append(_run_search(problem, inner, elastic=False))
+        found += [_judge(problem, end) for end in ends]
+    ranked = _rank(found)
+    return _rank([_exchange_angles(problem, ranked[0]), *ranked])
 
 
 def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str, float]]:
@@ -120,7 +120,7 @@ def kkt_residual(problem: ChoiceProblem, share: Array) -> tuple[float, dict[str,
     }
 
 
-def _run(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
+def _run_search(problem: ChoiceProblem, start: Array, elastic: bool) -> Array:
     """One run: of the value made best, or (`elastic`) of the excess over the bounds."""
     count = len(start)
     values, _slopes = problem.measured(start)
@@ -169,20 +169,20 @@ def _worst(problem: ChoiceProblem, share: Array) -> float:
     return max(problem.excess(share).values())
 
 
-def _judged(problem: ChoiceProblem, share: Array) -> SearchResult:
+def _judge(problem: ChoiceProblem, share: Array) -> SearchResult:
     best = problem.extremes(share)[problem.best][0]
     sign = problem._measures[problem.best].sign
     return SearchResult(share, _worst(problem, share), sign * best / problem.scale(problem.best))
 
 
-def _ranked(found: Sequence[SearchResult]) -> list[SearchResult]:
+def _rank(found: Sequence[SearchResult]) -> list[SearchResult]:
     best = found[0]
     for one in found[1:]:
         best = one if one.better_than(best) else best
     return [best, *(one for one in found if one is not best)]
 
 
-def _exchanged(problem: ChoiceProblem, found: SearchResult) -> SearchResult:
+def _exchange_angles(problem: ChoiceProblem, found: SearchResult) -> SearchResult:
     """The search goes on with the worst angles between those looked at, until none is worse."""
     best = replace(found, excess=np.inf)
     share = found.share
@@ -193,8 +193,8 @@ def _exchanged(problem: ChoiceProblem, found: SearchResult) -> SearchResult:
         first, last = problem.family.mesh.ends
         near = [at + shift * step for at in places for shift in (-1, 0, 1)]
         problem.more = sorted({*problem.more, *(at for at in near if first <= at <= last)})
-        share = _run(problem, share, elastic=not admissible)
-        now = _judged(problem, share)
+        share = _run_search(problem, share, elastic=not admissible)
+        now = _judge(problem, share)
         settled = abs(now.value - best.value) <= 1e-12 and now.excess <= KEPT
         best = now if now.better_than(best) or np.isinf(best.excess) else best
         if settled:
@@ -214,7 +214,7 @@ class JudgedDesign:
     angle: float
     bound: float | None = None
 
-    def missed(self, measure: Measure) -> float:
+    def relative_miss(self, measure: Measure) -> float:
         """By which part of the bound it is missed; 0 where it is kept."""
         if self.bound is None:
             return 0.0
@@ -232,12 +232,12 @@ class CamDesign:
     @property
     def misses(self) -> dict[str, float]:
         """The bounds that are not kept, each with the part of it that is missed."""
-        found = {name: judged.missed(MEASURES[name]) for name, judged in self.measures.items()}
+        found = {name: judged.relative_miss(MEASURES[name]) for name, judged in self.measures.items()}
         return {name: by for name, by in found.items() if by > 0}
 
 
 @dataclass(frozen=True)
-class Choice:
+class ParameterChoice:
     """What a search chose.
 
     Attributes
@@ -279,7 +279,7 @@ def choose(
     bounds: Mapping[str, float],
     starts: int = STARTS,
     warm: Sequence[Array] = (),
-) -> Choice:
+) -> ParameterChoice:
     """Choose the parameters of a family of designs.
 
     Parameters
@@ -310,7 +310,7 @@ def choose(
     ends = [
         name for name, place in zip(family.names, first.share, strict=True) if min(place, 1 - place) <= ACTIVE
     ]
-    return Choice(
+    return ParameterChoice(
         best=best,
         chosen=design(family, first.share, best, bounds),
         start=design(family, family.share(start), best, bounds),
@@ -319,7 +319,7 @@ def choose(
         at_ends=tuple(ends),
         residual=residual,
         searches=1 + len(warm) + max(starts - 1, 0),
-        agreeing=_agreeing(found[1:], first, admissible),
+        agreeing=_count_agreeing(found[1:], first, admissible),
     )
 
 
@@ -332,7 +332,7 @@ def design(family: Family, share: Array, best: str, bounds: Mapping[str, float])
     return CamDesign(parameters, {name: JudgedDesign(*found[name], bounds.get(name)) for name in asked})
 
 
-def _agreeing(found: Sequence[SearchResult], first: SearchResult, admissible: bool) -> int:
+def _count_agreeing(found: Sequence[SearchResult], first: SearchResult, admissible: bool) -> int:
     same = [
         abs(one.value - first.value) <= SAME * max(abs(first.value), 1.0)
         if admissible
@@ -403,7 +403,10 @@ def trade_off(
     `against`; each point starts from its neighbour too. Without an admissible design the front is empty.
     """
     others = {name: bound for name, bound in bounds.items() if name not in (best, against)}
-    ends = [_tidied(family, start, (against, best), others), _tidied(family, start, (best, against), others)]
+    ends = [
+        _choose_among_equals(family, start, (against, best), others),
+        _choose_among_equals(family, start, (best, against), others),
+    ]
     if not all(end.admissible for end in ends):
         return TradeOff(best, against, ())
     low, high = (end.chosen.measures[against].value for end in ends)
@@ -417,7 +420,9 @@ def trade_off(
     return TradeOff(best, against, (*found, ends[1].chosen))
 
 
-def _tidied(family: Family, start: Array, order: tuple[str, str], bounds: Mapping[str, float]) -> Choice:
+def _choose_among_equals(
+    family: Family, start: Array, order: tuple[str, str], bounds: Mapping[str, float]
+) -> ParameterChoice:
     """The best in the first measure, and among its equals in the second."""
     first, second = order
     made = choose(family, start, first, bounds)
@@ -492,7 +497,7 @@ def bounds_of(cam: Cam) -> dict[str, float]:
     return {name: bound for name, bound in found.items() if bound is not None}
 
 
-def chosen_cam(cam: Cam, choice: Choice) -> Cam:
+def chosen_cam(cam: Cam, choice: ParameterChoice) -> Cam:
     """The description with the chosen parameters."""
     return varied(cam, choice.chosen.parameters)
 
@@ -681,7 +686,7 @@ class CamChoice:
     ----------
     cam : Cam
         The description with them.
-    choice : Choice
+    choice : ParameterChoice
     proof : Proof
         Its bounds and its neighbours along the path itself.
     front : TradeOff or None
@@ -689,7 +694,7 @@ class CamChoice:
     """
 
     cam: Cam
-    choice: Choice
+    choice: ParameterChoice
     proof: Proof
     front: TradeOff | None
 
@@ -731,7 +736,7 @@ def choose_cam(
     InputError
         Nothing to choose, or ranges that hold no design.
     """
-    cam = curved(cam)
+    cam = require_curvature_cam(cam)
     family = family_of(cam)
     assert cam.choose is not None
     start, best, bounds = start_of(cam, family), cam.choose.minimise, bounds_of(cam)

@@ -29,7 +29,7 @@ from centrode.dynamics.balancing.methods import (
     shares_of,
     with_discs,
 )
-from centrode.dynamics.balancing.shaking import (
+from centrode.dynamics.balancing.shaking_forces import (
     ORDERS,
     About,
     ShakingTurning,

@@ -10,12 +10,20 @@ from typing import TypeAlias
 
 import numpy as np
 
-from centrode.dynamics.balancing.shaking import Array, Complex, Effects, ShaftMotion, cross, orders, track
+from centrode.dynamics.balancing.shaking_forces import (
+    Array,
+    Complex,
+    Effects,
+    ShaftMotion,
+    cross,
+    orders,
+    track,
+)
 from centrode.dynamics.state import Mass, State
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.mechanism import Link, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.units import to_si
 
 # How counterweights are made: mass, radius and inertia that go with a product of mass and radius.
@@ -79,7 +87,7 @@ class Making:
         """Mass of a disc over the square of its radius [kg/m^2]."""
         return pi * self.density * (self.thickness or 0.0)
 
-    def made(self, product: float, floor: float = 0.0) -> Made:
+    def counterweight_for(self, product: float, floor: float = 0.0) -> Made:
         """The counterweight of a product of mass and radius [kg m]; slopes are those at `floor` if it is less."""
         if self.radius is not None:
             mass, slope, inertia = product / self.radius, self.radius, 0.0
@@ -161,7 +169,7 @@ class Counterweight:
 def counterweight(mechanism: Mechanism, spot: CounterweightPlace, product: complex) -> Counterweight:
     """The counterweight of a product of mass and radius, as a vector in the link's axes [kg m]."""
     product = _straight(complex(product))
-    made = spot.making.made(abs(product))
+    made = spot.making.counterweight_for(abs(product))
     x, y = mechanism.links[spot.link].coordinates[spot.base]
     at = complex(x, y) + made.radius * (product / abs(product) if product else 1.0)
     return Counterweight(
@@ -235,10 +243,10 @@ def with_counterweights(
     for one in counterweights:
         if one.mass > 0.0:
             links[one.link] = _heavier(links[one.link], own.get(one.link), one)
-    return replaced(mechanism, links=links)
+    return replace_parts(mechanism, links=links)
 
 
-def replaced(mechanism: Mechanism, **parts: object) -> Mechanism:
+def replace_parts(mechanism: Mechanism, **parts: object) -> Mechanism:
     """The description with other parts, checked anew."""
     return Mechanism(**{name: getattr(mechanism, name) for name in type(mechanism).model_fields} | parts)
 
@@ -258,7 +266,7 @@ def _heavier(link: Link, own: Mass | None, added: Counterweight) -> Link:
     return link.model_copy(update={**changes, "shape": None, "radius": None})
 
 
-def stiffened(link: Link, own: Mass | None, inertia: float) -> Link:
+def add_inertia(link: Link, own: Mass | None, inertia: float) -> Link:
     """A link with so much more inertia; what its shape tells of it becomes numbers."""
     if own is None:
         return link.model_copy(update={"inertia": inertia})
@@ -351,7 +359,7 @@ def positive(value: object, where: str, kind: str) -> float:
     """The same, greater than zero."""
     found = number(value, where, kind)
     if not found > 0.0:
-        raise InputError(where, _("it must be positive, got {value}").format(value=shown(value)))
+        raise InputError(where, _("it must be positive, got {value}").format(value=value_text(value)))
     return found
 
 
@@ -376,18 +384,20 @@ def _places(mechanism: Mechanism, on: Sequence[str] | None, to: str) -> list[tup
     links = [link for link, _base in places]
     twice = next((link for link in links if links.count(link) > 1), None)
     if twice is not None:
-        raise InputError("on", _("{name} is given twice").format(name=shown(twice)), _("keep one of them"))
+        raise InputError(
+            "on", _("{name} is given twice").format(name=value_text(twice)), _("keep one of them")
+        )
     return places
 
 
 def _place(mechanism: Mechanism, name: str) -> tuple[str, str]:
     link, sign, base = (part.strip() for part in str(name).partition("@"))
     if link not in mechanism.links:
-        what = _("there is no link {name}").format(name=shown(link))
+        what = _("there is no link {name}").format(name=value_text(link))
         raise InputError("on", what, nearest(link, list(mechanism.links)))
     points = list(mechanism.links[link].coordinates)
     if sign and base not in points:
-        what = _("link {link} has no point {name}").format(link=shown(link), name=shown(base))
+        what = _("link {link} has no point {name}").format(link=value_text(link), name=value_text(base))
         raise InputError("on", what, nearest(base, points))
     return link, base or base_of(mechanism, link)
 
@@ -401,7 +411,7 @@ def _by_link(given: Lengths | Masses, links: Sequence[str], where: str, kind: st
         return dict.fromkeys(links, one)
     for link in given:
         if link not in links:
-            what = _("there is no counterweight on {name}").format(name=shown(link))
+            what = _("there is no counterweight on {name}").format(name=value_text(link))
             raise InputError(where, what, nearest(str(link), list(links)))
     return {link: positive(value, f"{where} {link}", kind) for link, value in given.items()}
 
@@ -411,6 +421,6 @@ def _half_way(mechanism: Mechanism, link: str, base: str) -> float:
     places = mechanism.links[link].coordinates
     out = 0.5 * max(dist(places[base], place) for place in places.values())
     if not out > 0.0:
-        what = _("link {name} has one point, which tells no radius").format(name=shown(link))
+        what = _("link {name} has one point, which tells no radius").format(name=value_text(link))
         raise InputError("radius", what, _("give the radius of its counterweight"))
     return out

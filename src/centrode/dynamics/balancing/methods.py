@@ -13,16 +13,16 @@ from centrode.dynamics.balancing.counterweights import (
     PARAMETERS,
     Counterweight,
     CounterweightPlace,
+    add_inertia,
     columns_of,
     hinged_from,
     mass_moments,
     number,
     parameters,
-    replaced,
-    stiffened,
+    replace_parts,
 )
 from centrode.dynamics.balancing.minimax import CLOSED, MinimaxSolution, MinimaxTerm, least
-from centrode.dynamics.balancing.shaking import (
+from centrode.dynamics.balancing.shaking_forces import (
     Array,
     Complex,
     Effects,
@@ -88,26 +88,30 @@ def full_balance(turning: ShakingTurning, spots: Sequence[CounterweightPlace]) -
     values = turning.values(INSTANTS * turning.turns)
     state, tracks = turning.at(values)
     mass = np.array([one.mass for one in turning.masses])
-    own = _swing(mass @ tracks.places[0])
+    own = _remove_mean(mass @ tracks.places[0])
     pairs = [mass_moments(state, spot) for spot in spots]
-    bases = np.array([_swing(base) for base, _rotor in pairs]).reshape(len(spots), len(values))
-    rotors = np.array([_swing(rotor) for _base, rotor in pairs]).reshape(len(spots), len(values))
+    bases = np.array([_remove_mean(base) for base, _rotor in pairs]).reshape(len(spots), len(values))
+    rotors = np.array([_remove_mean(rotor) for _base, rotor in pairs]).reshape(len(spots), len(values))
     products = np.zeros(len(spots), dtype=np.complex128)
     rank = len(spots)
     for _round in range(MOST_ROUNDS):
-        masses = np.array([spot.making.made(abs(s)).mass for spot, s in zip(spots, products, strict=True)])
+        masses = np.array(
+            [spot.making.counterweight_for(abs(s)).mass for spot, s in zip(spots, products, strict=True)]
+        )
         before = products
         if len(spots):
             products, _rest, rank, _sizes = np.linalg.lstsq(rotors.T, -(own + masses @ bases), rcond=SAME)
         if np.max(np.abs(products - before), initial=0.0) <= SETTLED * float(mass.sum()) * state.scale:
             break
-    masses = np.array([spot.making.made(abs(s)).mass for spot, s in zip(spots, products, strict=True)])
+    masses = np.array(
+        [spot.making.counterweight_for(abs(s)).mass for spot, s in zip(spots, products, strict=True)]
+    )
     rest = own + masses @ bases + products @ rotors
     whole = float(mass.sum() + masses.sum()) * state.scale
     return FullBalance(products, float(np.max(np.abs(rest))) / whole, int(rank) == len(spots))
 
 
-def _swing(places: Complex) -> Complex:
+def _remove_mean(places: Complex) -> Complex:
     """Places less their mean."""
     return np.asarray(places - places.mean())
 
@@ -346,12 +350,12 @@ def with_discs(mechanism: Mechanism, discs: Sequence[CounterweightDisc]) -> Mech
     own = {mass.link: mass for mass in heavy(mechanism)}
     for disc in discs:
         if disc.base is None:
-            links[disc.link] = stiffened(links[disc.link], own.get(disc.link), disc.inertia)
+            links[disc.link] = add_inertia(links[disc.link], own.get(disc.link), disc.inertia)
             continue
         name = disc_name(mechanism, disc.link)
         links[name] = Link(points={disc.base: (0.0, 0.0)}, inertia=disc.inertia)
         gears.append(Gear(links=(disc.link, name), ratio=-1.0))
-    return replaced(mechanism, links=links, gears=tuple(gears))
+    return replace_parts(mechanism, links=links, gears=tuple(gears))
 
 
 def disc_name(mechanism: Mechanism, link: str) -> str:
@@ -449,7 +453,7 @@ class BalanceProblem:
         """Effects of links and counterweights."""
         whole = own
         for spot, product, column in zip(self.spots, self.products(x), columns, strict=True):
-            whole = whole + column.times(parameters(spot.making.made(abs(product)), product))
+            whole = whole + column.times(parameters(spot.making.counterweight_for(abs(product)), product))
         return whole
 
     def terms(self, x: Array, lengths: Sequence[bool]) -> list[MinimaxTerm]:
@@ -475,7 +479,7 @@ class BalanceProblem:
 
     def _slopes(self, spot: CounterweightPlace, product: complex, length: bool) -> Array:
         """Derivatives of the parameters by the product's components and its length (3, PARAMETERS)."""
-        made = spot.making.made(abs(product), LEAST * self.unit)
+        made = spot.making.counterweight_for(abs(product), LEAST * self.unit)
         towards = product / abs(product) if product else 0j
         by_length = np.array([made.mass_slope, 0.0, 0.0, made.inertia_slope])
         slopes = np.zeros((3, PARAMETERS))
@@ -559,18 +563,18 @@ def lightest(
     )
     most = [spot.making.greatest for spot in spots]
     limits = np.array([WIDE if one is None else min(WIDE, one / problem.unit) for one in most])
-    x, bound = _solved(problem, limits, None)
+    x, bound = _solve_problem(problem, limits, None)
     for _exchange in range(EXCHANGES):
         finer = problem.with_tops(x)
         if finer is None:
             break
         problem = finer
-        x, bound = _solved(problem, limits, x)
+        x, bound = _solve_problem(problem, limits, x)
     x = _without_crumbs(problem, x)
     return Lightest(problem.products(x), problem.value(x), bound)
 
 
-def _solved(problem: BalanceProblem, limits: Array, near: Array | None) -> tuple[Array, float | None]:
+def _solve_problem(problem: BalanceProblem, limits: Array, near: Array | None) -> tuple[Array, float | None]:
     """The answer, with what no answer goes below where that is proved; `near` is one for a few instants less."""
     zero = np.zeros(2 * len(problem.spots))
     if problem.convex:
@@ -581,14 +585,14 @@ def _solved(problem: BalanceProblem, limits: Array, near: Array | None) -> tuple
             return x, bound
         # more inertia than the products have would be better: what was proved is not reached
     if near is not None:
-        return _descended(problem, near, limits, CONVERGED, NEARBY), None
+        return _descend(problem, near, limits, CONVERGED, NEARBY), None
     full = full_balance(problem.turning, problem.spots).products / problem.unit
     resting = np.stack([full.real, full.imag], axis=1).reshape(-1)
     longest = np.repeat(np.maximum(np.hypot(resting[::2], resting[1::2]) / limits, 1.0), 2)
     resting = resting / longest
     beginnings = [zero, resting, 0.5 * resting, -0.5 * resting]
-    looked = [_descended(problem, x, limits, ROUGHLY, WIDE) for x in beginnings]
-    return _descended(problem, min(looked, key=problem.value), limits, CONVERGED, 10.0 * NEARBY), None
+    looked = [_descend(problem, x, limits, ROUGHLY, WIDE) for x in beginnings]
+    return _descend(problem, min(looked, key=problem.value), limits, CONVERGED, 10.0 * NEARBY), None
 
 
 def _linear(
@@ -601,7 +605,7 @@ def _linear(
     return least(problem.terms(x, lengths), low, high, closed)
 
 
-def _descended(problem: BalanceProblem, x: Array, limits: Array, converged: float, trust: float) -> Array:
+def _descend(problem: BalanceProblem, x: Array, limits: Array, converged: float, trust: float) -> Array:
     """Linear problems one after the other.
 
     The length of a product bends where it is zero: there, and only there, it is an unknown of its own.

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from centrode.dynamics.balancing.shaking import Array, Complex
+from centrode.dynamics.balancing.shaking_forces import Array, Complex
 
 # slower to import than NumPy
 _optimize = functools.partial(importlib.import_module, "scipy.optimize")
@@ -82,11 +82,11 @@ def least(terms: Sequence[MinimaxTerm], low: Array, high: Array, closed: float =
         bound = max(bound, float(np.dot(weights, heights)))
         tried = [x]
         if round_ % POLISHED == POLISHED - 1:
-            tried.append(_polished(terms, best, low, high))
+            tried.append(_polish(terms, best, low, high))
         for x in tried:
             for number, term in enumerate(terms):
                 _touch_tops(planes, number, term, x)
-            pairs, lengths = _split(x)
+            pairs, lengths = _split_unknowns(x)
             for k in np.flatnonzero(np.abs(pairs) > lengths * (1.0 - 1e-6)).tolist():
                 if pairs[k]:
                     planes.widen(k, complex(pairs[k] / abs(pairs[k])))
@@ -99,7 +99,7 @@ def least(terms: Sequence[MinimaxTerm], low: Array, high: Array, closed: float =
     return MinimaxSolution(best, value, min(bound, value))
 
 
-def _split(x: Array) -> tuple[Complex, Array]:
+def _split_unknowns(x: Array) -> tuple[Complex, Array]:
     """Pairs as complex numbers, and lengths."""
     count = len(x) // 3
     return np.asarray(x[: 2 * count : 2] + 1j * x[1 : 2 * count : 2]), x[2 * count :]
@@ -107,7 +107,7 @@ def _split(x: Array) -> tuple[Complex, Array]:
 
 def _inside(x: Array, high: Array) -> Array:
     """Pairs that are too long made as long as they may be, lengths that are too short as long as their pairs."""
-    pairs, lengths = _split(x)
+    pairs, lengths = _split_unknowns(x)
     most = high[2 * len(pairs) :]
     own = np.abs(pairs)
     share = np.where(own > most, most / np.where(own > 0.0, own, 1.0), 1.0)
@@ -171,7 +171,7 @@ def _tops(sizes: Array) -> list[int]:
     return [int(instant) for instant in peaks[order]]
 
 
-def _polished(terms: Sequence[MinimaxTerm], x: Array, low: Array, high: Array) -> Array:
+def _polish(terms: Sequence[MinimaxTerm], x: Array, low: Array, high: Array) -> Array:
     """Unknowns nearer to the answer by sequential quadratic programming: tangents alone close in slowly on a curve."""
     for _round in range(POLISHES):
         corners = [(k, i) for k, term in enumerate(terms) for i in _near(term.at(x))]
@@ -199,7 +199,7 @@ def _by_quadratics(
     rows = np.array([terms[k].rows[i] for k, i in corners])
 
     def room(y: Array) -> Array:
-        pairs, lengths = _split(y[:unknowns])
+        pairs, lengths = _split_unknowns(y[:unknowns])
         heights = y[unknowns + owners] - np.abs(constant + rows @ y[:unknowns])
         return np.concatenate([heights, lengths - np.abs(pairs)])
 
@@ -208,7 +208,7 @@ def _by_quadratics(
         found = np.zeros((len(corners) + count, len(y)))
         found[: len(corners), :unknowns] = -(np.conj(units)[:, None] * rows).real
         found[np.arange(len(corners)), unknowns + owners] = 1.0
-        towards = _units(_split(y[:unknowns])[0])
+        towards = _units(_split_unknowns(y[:unknowns])[0])
         for pair in range(count):
             line = len(corners) + pair
             found[line, 2 * pair], found[line, 2 * pair + 1] = -towards[pair].real, -towards[pair].imag

@@ -257,7 +257,7 @@ def solve_dyad(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> DyadReactions:
 
 def _by_hinge(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> tuple[complex, complex, list[Action]]:
     """RRR, RRP, PRP: the unknown parts of both outer reactions close the polygon of the group."""
-    parts = [split(side, dyad.inner, ledger, words) for side in (dyad.first, dyad.second)]
+    parts = [split_reaction(side, dyad.inner, ledger, words) for side in (dyad.first, dyad.second)]
     (one, along), (other, beside) = parts
     known = dyad.first.known(ledger) + dyad.second.known(ledger) + one + other
     sine = across(along, beside)
@@ -272,7 +272,9 @@ def _by_hinge(dyad: Dyad, ledger: Ledger, words: WorkedSteps) -> tuple[complex, 
     return one + normal, other + thrust, chain
 
 
-def split(side: ForceSide, inner: StaticJoint, ledger: Ledger, words: WorkedSteps) -> tuple[complex, complex]:
+def split_reaction(
+    side: ForceSide, inner: StaticJoint, ledger: Ledger, words: WorkedSteps
+) -> tuple[complex, complex]:
     """The known part of an outer reaction and the unit vector of what is left of it."""
     if side.joint.letter == "P":
         return 0j, 1j * side.joint.along
@@ -417,7 +419,7 @@ def solve_triad(triad: Triad, ledger: Ledger, words: WorkedSteps) -> DyadReactio
     told = WorkedSteps()
     legs = []
     for leg in triad.legs:
-        part, along = split(leg.side, leg.inner, ledger, told)
+        part, along = split_reaction(leg.side, leg.inner, ledger, told)
         legs.append(TriadLeg(leg.side, leg.inner, part, along))
     first, second = max(
         combinations(range(3), 2), key=lambda pair: abs(cross(legs[pair[0]].along, legs[pair[1]].along))
@@ -441,7 +443,7 @@ def solve_triad(triad: Triad, ledger: Ledger, words: WorkedSteps) -> DyadReactio
     sizes[second] = cross(known, one.along) / sine
     words.lines += told.lines
     _tell_triad(triad, ledger, words, (one, other, last), (turning, reach, sizes[third]))
-    return replace(_found(triad, ledger, legs, sizes), marks=(("S", point),))
+    return replace(_triad_reactions(triad, ledger, legs, sizes), marks=(("S", point),))
 
 
 def _tell_triad(
@@ -473,7 +475,7 @@ def _tell_triad(
     words.say(_("the polygon of the group closes along {one} and {other}").format(one=one, other=other))
 
 
-def _found(triad: Triad, ledger: Ledger, legs: list[TriadLeg], sizes: list[float]) -> DyadReactions:
+def _triad_reactions(triad: Triad, ledger: Ledger, legs: list[TriadLeg], sizes: list[float]) -> DyadReactions:
     """Reactions of all joints, and the polygon of the group."""
     forces: list[tuple[StaticJoint, complex, float]] = []
     chain: list[Action] = []
@@ -586,7 +588,7 @@ def solve_together(cell: Cell, ledger: Ledger, words: WorkedSteps) -> DyadReacti
         count = 2 if body in ledger.bodies.pins else 3
         rows += [[column[row] for column in columns] for row in range(count)]
         right += sides[:count]
-    values = _solved(np.array(rows), np.array(right))
+    values = _solve_scaled(np.array(rows), np.array(right))
     words.say(
         _("solved together: {equations} equations of equilibrium of {links}").format(
             equations=len(rows), links=", ".join(str(ledger.bodies.number(body)) for body in cell.bodies)
@@ -619,7 +621,7 @@ def _column(
     return share * unit.real, share * unit.imag, share * moment
 
 
-def _solved(matrix: Array, right: Array) -> Array:
+def _solve_scaled(matrix: Array, right: Array) -> Array:
     """The solution, with columns and rows of one size; refuses what is singular to rounding."""
     across = np.abs(matrix).max(axis=0)
     if not (across > 0).all():

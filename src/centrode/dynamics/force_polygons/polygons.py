@@ -37,12 +37,12 @@ from centrode.dynamics.force_polygons.statics import (
     outer_actions,
 )
 from centrode.dynamics.loads import MassesAndLoads
-from centrode.dynamics.reduction import Reducer, reduced
-from centrode.dynamics.state import Moving, State
+from centrode.dynamics.reduction import Reducer, reduce_state
+from centrode.dynamics.state import DriveMotion, State
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.motion import dataset_of
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, solve
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Drive, Mechanism
@@ -133,7 +133,7 @@ class Polygon:
         raise KeyError(name)
 
 
-def chained(actions: Iterable[Action]) -> tuple[PolygonVector, ...]:
+def chain_actions(actions: Iterable[Action]) -> tuple[PolygonVector, ...]:
     """Actions one behind the other, from the origin."""
     found: list[PolygonVector] = []
     at = 0j
@@ -154,7 +154,7 @@ def polygon_of(
     bodies: Sequence[str], actions: Iterable[Action], chords: Iterable[PolygonVector], room: Size
 ) -> Polygon:
     """A polygon with the finest round scale at which it goes into a room [mm]."""
-    vectors = chained(actions)
+    vectors = chain_actions(actions)
     return Polygon(tuple(bodies), vectors, tuple(chords), scale_of(vectors, room))
 
 
@@ -397,7 +397,7 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
     room = room_of(paper)
     burden = MassesAndLoads.in_plane(mechanism)
     prepared = ready(mechanism)
-    solved = solve(prepared, span_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, np.array([at], dtype=np.float64)))
     exact = dataset_of(solved)
     _refuse_where_it_is_not(exact, at)
     drawing = drawing_of(prepared, exact, DrawingBoard())
@@ -408,7 +408,7 @@ def force_polygons(mechanism: Mechanism, at: float, paper: str = "A4") -> ForceP
     ledger = Ledger.of(bodies, joints, outer, float(drawing.numbers.scale))
     cells = cells_of(prepared.structure, bodies, joints)
     groups = tuple(_group(cell, ledger, room) for cell in cells)
-    drives = {joint.name: _driving(ledger, joint) for joint in joints if joint.kind == "drive"}
+    drives = {joint.name: _drive_reaction(ledger, joint) for joint in joints if joint.kind == "drive"}
     return ForcePolygons(
         mechanism,
         exact,
@@ -446,7 +446,7 @@ def _state(solved: Solved, burden: MassesAndLoads) -> tuple[State, Rates, bool]:
     if by_machine:
         moving = Reducer(prepared, burden).moving(span.parameter)
         return State.of(solved, moving), Rates(float(moving.rate[0]), 0.0), True
-    moving = Moving(span.time, span.parameter, span.rate)
+    moving = DriveMotion(span.time, span.parameter, span.rate)
     return State.of(solved, moving), Rates(float(span.rate[0]), float(span.second_rate[0])), False
 
 
@@ -464,7 +464,7 @@ def _speeds(exact: xr.Dataset, prepared: Ready, rates: Rates) -> dict[str, float
 def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces:
     """Solve one group and enter its reactions."""
     words, before = WorkedSteps(), tuple(ledger.on(cell.bodies))
-    kind, found = _solved(cell, ledger, words)
+    kind, found = _solve_cell(cell, ledger, words)
     for joint, force, moment in found.forces:
         ledger.settle(joint, force, moment)
     words.notes(cell.joints)
@@ -495,7 +495,7 @@ def _group(cell: Cell, ledger: Ledger, room: tuple[float, float]) -> GroupForces
     )
 
 
-def _solved(cell: Cell, ledger: Ledger, words: WorkedSteps) -> tuple[str, DyadReactions]:
+def _solve_cell(cell: Cell, ledger: Ledger, words: WorkedSteps) -> tuple[str, DyadReactions]:
     """The kind of a group, and its reactions by the way that fits it."""
     dyad = dyad_of(cell)
     if dyad is not None:
@@ -526,7 +526,7 @@ def _chords(cell: Cell, ledger: Ledger, found: DyadReactions) -> list[PolygonVec
     return [vector_of(ledger.reaction(dyad.inner, body, force), at)]
 
 
-def _driving(ledger: Ledger, joint: StaticJoint) -> float:
+def _drive_reaction(ledger: Ledger, joint: StaticJoint) -> float:
     """Moment or force of a drive, positive as its value grows."""
     number = next(k for k, one in enumerate(ledger.joints) if one is joint)
     force, moment = ledger.forces[number]
@@ -557,7 +557,7 @@ def _by_work(burden: MassesAndLoads, state: State, rates: Rates, prepared: Ready
     """Balancing moment by virtual work, J q'' + J' q'^2/2 - M, of one drive."""
     if prepared.kinematics.path.by_time:
         return {}
-    one = reduced(burden, state, np.zeros(1, dtype=np.int8))
+    one = reduce_state(burden, state, np.zeros(1, dtype=np.int8))
     inertia, slope, moment = (float(part[0]) for part in (one.inertia, one.inertia_slope, one.moment))
     drive = prepared.mechanism.drives[0].id
     return {drive: inertia * rates.second + 0.5 * slope * rates.first**2 - moment}

@@ -13,12 +13,12 @@ from centrode.dynamics.load_coordinates import place_of
 from centrode.dynamics.loads import AppliedLoad, MassesAndLoads
 from centrode.dynamics.masses import shares
 from centrode.dynamics.reduction import Reducer, refuse_drive_in_formulas
-from centrode.dynamics.state import About, Mass, Moving, Spread, State, Vector3
+from centrode.dynamics.state import About, DriveMotion, Mass, Spread, State, Vector3
 from centrode.dynamics.steady_motion.steady import solution_of, turned_at
 from centrode.dynamics.wrenches import Moment, Vector, Wrench, couple, on_link
 from centrode.geometry.sphere import add, cross, dot, times
 from centrode.kinematics.path import JETS, SampleGrid
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import Solved
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.jets import Jet
@@ -131,7 +131,7 @@ class _Inertial:
 
     def _of_ring(self, link: str, part: About) -> Vector3:
         """A ring has the moment of momentum (omega . e) e."""
-        x, y, z = (axis.lowered() for axis in self.state.heading(link, part.direction))
+        x, y, z = (axis.lower_order() for axis in self.state.heading(link, part.direction))
         u, v, w = self.state.spin(link)
         along = dot((u, v, w), (x, y, z))
         return self._first(along * x), self._first(along * y), self._first(along * z)
@@ -160,12 +160,12 @@ class InputMotion:
     source : "drive", "machine" or "steady"
     """
 
-    moving: Moving
+    moving: DriveMotion
     acceleration: Array
     source: str
 
 
-def pace_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
+def input_motion_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
     """As `reduce` takes it: the mean speed of a machine, where the drive has a constant speed; else the drive's own."""
     span, prepared = solved.span, solved.ready
     path = prepared.kinematics.path
@@ -177,7 +177,7 @@ def pace_of(solved: Solved, burden: MassesAndLoads) -> InputMotion:
     return InputMotion(moving, np.zeros(len(span.parameter)), "machine")
 
 
-def steady_span(
+def steady_grid(
     mechanism: Mechanism, samples: int | None, at: npt.ArrayLike | None
 ) -> tuple[Ready, SampleGrid, InputMotion]:
     """Samples of a machine in steady motion, with the real speed of its drive; raises as `steady_motion` does."""
@@ -204,4 +204,4 @@ def rates_of(solved: Solved, pace: InputMotion) -> Array:
 
 
 def _along(span: SampleGrid, source: str) -> InputMotion:
-    return InputMotion(Moving(span.time, span.parameter, span.rate), span.second_rate, source)
+    return InputMotion(DriveMotion(span.time, span.parameter, span.rate), span.second_rate, source)

@@ -22,7 +22,17 @@ from centrode.dynamics.wrenches import NOWHERE, Vector, Wrench, couple, on_frame
 from centrode.geometry import sphere as space
 from centrode.geometry.plane import dot as plane_dot
 from centrode.geometry.plane import subtract as plane_subtract
-from centrode.geometry.sphere import Attitude, add, basis, combined, cross, dot, subtract, times, unit
+from centrode.geometry.sphere import (
+    Attitude,
+    add,
+    basis,
+    cross,
+    dot,
+    linear_combination,
+    subtract,
+    times,
+    unit,
+)
 from centrode.model.mechanism import Gear, Mechanism
 from centrode.numerics.arrays import ARRAYS
 from centrode.structure.constraints import (
@@ -118,7 +128,7 @@ def _hosts(points: list[str], kept: list[Unknown]) -> dict[Axis, Unknown]:
 # How forces act on bodies: three equations a link and two a pin, in the plane and on the sphere.
 
 Number: TypeAlias = Any
-Foot: TypeAlias = tuple[Any, ...]
+MomentCentre: TypeAlias = tuple[Any, ...]
 """The place of a link's first point, on the sphere with two directions square to it."""
 
 
@@ -159,10 +169,10 @@ class Equilibrium(Protocol):
     def of_row(self, constraint: Constraint, row: Row, at: Positions, link: str | None) -> tuple[Wrench, ...]:
         """Forces and moments of a constraint's row at a multiplier of one; `link` bears what acts on its point."""
 
-    def foot(self, first: Vector) -> Foot:
+    def foot(self, first: Vector) -> MomentCentre:
         """What the equations of a link whose first point has this place are taken about, and along."""
 
-    def on_link(self, pull: Wrench, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+    def on_link(self, pull: Wrench, foot: MomentCentre, scale: float) -> tuple[Number, Number, Number]:
         """What a pull does to the three equations of its link [N]."""
 
     def pin_axes(self, place: Vector) -> Sequence[Vector]:
@@ -211,10 +221,10 @@ class InPlane:
             )
         return tuple(found)
 
-    def foot(self, first: Vector) -> Foot:
+    def foot(self, first: Vector) -> MomentCentre:
         return (first,)
 
-    def on_link(self, pull: Wrench, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+    def on_link(self, pull: Wrench, foot: MomentCentre, scale: float) -> tuple[Number, Number, Number]:
         return pull.force[0], pull.force[1], pull.moment_about(foot[0]) / scale
 
     def pin_axes(self, place: Vector) -> Sequence[Vector]:
@@ -264,15 +274,15 @@ class OnSphere:
         place = at.points[point.name]
         unit = 1.0 / self.radius if self.by_moment(constraint) else 1.0
         first, second = basis(ARRAYS, place)
-        force = times(unit, combined((row[point][0], first), (row[point][1], second)))
+        force = times(unit, linear_combination((row[point][0], first), (row[point][1], second)))
         there = times(self.radius, place)
         others = [on_link(entity.name, times(-1.0, force), there) for entity in row if entity is not point]
         return on_point(point.name, force, there), *others
 
-    def foot(self, first: Vector) -> Foot:
+    def foot(self, first: Vector) -> MomentCentre:
         return first, *basis(ARRAYS, first)
 
-    def on_link(self, pull: Wrench, foot: Foot, scale: float) -> tuple[Number, Number, Number]:
+    def on_link(self, pull: Wrench, foot: MomentCentre, scale: float) -> tuple[Number, Number, Number]:
         (up, one, other), force = foot, pull.force
         place = times(1.0 / self.radius, pull.at)
         turning, twist = cross(place, force), cross(subtract(place, up), force)
@@ -396,7 +406,7 @@ def _common(mechanism: Mechanism, wheel: str, carrier: str) -> list[str]:
 # What each constraint does to points and links: its row of the Jacobian as forces and moments of one unit.
 
 
-def pulls_of(
+def wrenches_of(
     constraint: Constraint,
     mechanism: Mechanism,
     numbers: Dimensions,
@@ -411,11 +421,11 @@ def pulls_of(
     """
     if isinstance(constraint, GearRatio) and constraint.gear in teeth.axes:
         return [teeth.pulls(constraint, at, numbers)]
-    link = _bearer(constraint, mechanism)
+    link = _host_link(constraint, mechanism)
     return [space.of_row(constraint, row, at, link) for row in constraint.rows(numbers, at)]
 
 
-def _bearer(constraint: Constraint, mechanism: Mechanism) -> str | None:
+def _host_link(constraint: Constraint, mechanism: Mechanism) -> str | None:
     """The link that takes what a constraint's row gives to a point; None where it is the pin itself."""
     if isinstance(constraint, (PointOnGuide, DisplacementDrive)):
         return mechanism.guide(constraint.guide).link
@@ -541,10 +551,10 @@ class ForceSystem:
 
     def pulls(self, unknown: Unknown) -> list[Wrench]:
         """Forces and moments of one scalar constraint on all it ties together."""
-        return self._tied[unknown]
+        return self._wrenches_by_unknown[unknown]
 
     @cached_property
-    def _tied(self) -> dict[Unknown, list[Wrench]]:
+    def _wrenches_by_unknown(self) -> dict[Unknown, list[Wrench]]:
         pulls = self.system.pulls
         return {one: [pull.times(value) for pull in pulls[one]] for one, value in self.multipliers.items()}
 
@@ -557,7 +567,7 @@ class ForceSystem:
     @cached_property
     def acting(self) -> tuple[Wrench, ...]:
         """Everything that acts on any body but the centre of a sphere."""
-        tied = [pull for pulls in self._tied.values() for pull in pulls]
+        tied = [pull for pulls in self._wrenches_by_unknown.values() for pull in pulls]
         return (*tied, *self.outer, *(pull for one in self.pressing for pull in one.pulls))
 
     @cached_property
@@ -566,7 +576,7 @@ class ForceSystem:
         return self.system.equilibrium.centre(self.acting, self.system.scheme.structure.mechanism)
 
     @cached_property
-    def all_pulls(self) -> tuple[Wrench, ...]:
+    def all_wrenches(self) -> tuple[Wrench, ...]:
         """Everything that acts on any body."""
         return (*self.acting, *self.centre)
 
@@ -574,7 +584,7 @@ class ForceSystem:
     def on_frame(self) -> list[Wrench]:
         """Everything that acts on the frame and its points."""
         fixed = self.system.scheme.structure.mechanism.frame.points
-        return [pull for pull in self.all_pulls if on_frame(pull.body, fixed)]
+        return [pull for pull in self.all_wrenches if on_frame(pull.body, fixed)]
 
 
 @dataclass(frozen=True)
@@ -610,7 +620,7 @@ class Kinetostatics:
         pulls: dict[Unknown, tuple[Wrench, ...]] = {}
         with np.errstate(all="ignore"):
             for constraint in scheme.structure.constraints:
-                found = pulls_of(constraint, state.mechanism, numbers, at, teeth, space)
+                found = wrenches_of(constraint, state.mechanism, numbers, at, teeth, space)
                 pulls |= {(constraint, row): each for row, each in enumerate(found)}
         shape = (1, len(state.parameter))
         return cls(scheme, numbers, teeth, space, space.scale(numbers), at, pulls, shape)
@@ -657,7 +667,7 @@ class Kinetostatics:
                 for axis in range(2):
                     place = pull.body.name, axis
                     along = _along(pull.force, self._host_axis(place)) if place in sums else 0.0
-                    if not _nothing(along):
+                    if not _is_zero(along):
                         sums[place] = sums[place] + along * value
         return {unknown: -sums[place] for place, unknown in self.scheme.hosts.items()}
 
@@ -670,7 +680,7 @@ class Kinetostatics:
         """Add what pulls do to each equation; the frame has none."""
         for pull in pulls:
             for row, value in self._entries(pull):
-                if not _nothing(value):
+                if not _is_zero(value):
                     column[row] += value
 
     def _entries(self, pull: Wrench) -> list[tuple[int, Number]]:
@@ -693,10 +703,10 @@ class Kinetostatics:
 
     def on_link(self, link: str, pull: Wrench) -> tuple[Number, Number, Number]:
         """What a pull does to the three equations of its link [N]: about its first point, by the greatest length."""
-        return self.equilibrium.on_link(pull, self._feet[link], self.scale)
+        return self.equilibrium.on_link(pull, self._moment_centres[link], self.scale)
 
     @cached_property
-    def _feet(self) -> dict[str, Foot]:
+    def _moment_centres(self) -> dict[str, MomentCentre]:
         links = self.scheme.structure.mechanism.links
         firsts = {name: next(iter(link.coordinates)) for name, link in links.items()}
         return {name: self.equilibrium.foot(self.at.points[first]) for name, first in firsts.items()}
@@ -706,10 +716,10 @@ def _along(force: Vector, axis: Vector) -> Number:
     """Component of a force; a component that is plainly zero costs nothing."""
     found: Number = 0.0
     for x, u in zip(force, axis, strict=True):
-        if not _nothing(x) and not _nothing(u):
+        if not _is_zero(x) and not _is_zero(u):
             found = found + (x if isinstance(u, float) and u == 1.0 else x * u)
     return found
 
 
-def _nothing(value: Number) -> bool:
+def _is_zero(value: Number) -> bool:
     return isinstance(value, float) and value == 0.0

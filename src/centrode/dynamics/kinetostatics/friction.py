@@ -19,8 +19,8 @@ from centrode.dynamics.reduction import Reducer
 from centrode.dynamics.state import State
 from centrode.dynamics.wrenches import Wrench, couple
 from centrode.errors import InputError, NotComputedYet
-from centrode.geometry.plane import turned
-from centrode.kinematics.prepared import Ready
+from centrode.geometry.plane import rotate_vector
+from centrode.kinematics.preparation import Ready
 from centrode.locale import _
 from centrode.model.loads import Load
 from centrode.model.mechanism import FRAME, Mechanism
@@ -116,7 +116,9 @@ def contacts_of(mechanism: Mechanism) -> tuple[Contact, ...]:
         if mechanism.space == "sphere":
             what = _("friction by a coefficient on the sphere is not computed yet")
             raise NotComputedYet(where, what, _("give the size of the friction, or leave it out"))
-        contacts = [_sliding(mechanism, load, where)] if load.guide else _bearings(mechanism, load, where)
+        contacts = (
+            [_sliding_friction(mechanism, load, where)] if load.guide else _bearings(mechanism, load, where)
+        )
         for contact in contacts:
             if contact.label in found:
                 what = _("friction at {contact} is given twice").format(contact=contact.label)
@@ -151,7 +153,7 @@ def refuse_undetermined(
             raise InputError(contact.where, what.format(contact=contact.label), repair)
 
 
-def _sliding(mechanism: Mechanism, load: Load, where: str) -> Sliding:
+def _sliding_friction(mechanism: Mechanism, load: Load, where: str) -> Sliding:
     guide = mechanism.guide(load.guide or "")
     if guide.link is None and (load.length or load.height):
         what = _("guide {guide} has no slider of its own that could tilt").format(guide=guide.id)
@@ -325,11 +327,11 @@ class Followed:
     tries: int
 
 
-def followed(law: FrictionLaw) -> Followed:
+def solve_friction(law: FrictionLaw) -> Followed:
     """Solve at every position; all numbers have to be finite."""
     count, width = law.factor.shape
     feedback, ones = law.feedback, np.ones(count)
-    sizes, good, _slope, tries = _corrected(law, np.zeros((count, width)), ones, TRIES)
+    sizes, good, _slope, tries = _newton_corrections(law, np.zeros((count, width)), ones, TRIES)
     good &= feedback < 1.0
     outcome = np.where(good, Outcome.FOUND, Outcome.LOST).astype(np.int8)
     share = np.where(good, 1.0, 0.0)
@@ -342,7 +344,9 @@ def followed(law: FrictionLaw) -> Followed:
     return Followed(sizes, outcome, share, missing.max(axis=1, initial=0.0) / size, tries)
 
 
-def _corrected(law: FrictionLaw, sizes: Array, share: Array, tries: int) -> tuple[Array, Mask, Array, int]:
+def _newton_corrections(
+    law: FrictionLaw, sizes: Array, share: Array, tries: int
+) -> tuple[Array, Mask, Array, int]:
     """Newton's method: sizes, where it converged, the determinants there, and how often it went on."""
     sizes = sizes.copy()
     open_, made = np.ones(len(sizes), dtype=bool), 0
@@ -353,13 +357,13 @@ def _corrected(law: FrictionLaw, sizes: Array, share: Array, tries: int) -> tupl
         with np.errstate(all="ignore"):
             residual, slopes, noise = part.residual(sizes[open_], share[open_])
             determinant[open_] = np.linalg.det(slopes)
-            sizes[open_] -= _solved(slopes, residual)
+            sizes[open_] -= _solve_matrices(slopes, residual)
             done = (np.abs(residual) <= noise).all(axis=1)
         open_[open_] = ~done & np.isfinite(sizes[open_]).all(axis=1)
     return sizes, ~open_ & np.isfinite(sizes).all(axis=1), determinant, made
 
 
-def _solved(matrix: Array, right: Array) -> Array:
+def _solve_matrices(matrix: Array, right: Array) -> Array:
     """Solutions (n, m); NaN where a matrix is singular."""
     with np.errstate(all="ignore"):
         singular = ~(np.abs(np.linalg.det(matrix)) > 0.0)
@@ -382,8 +386,8 @@ def _along(law: FrictionLaw, feedback: Array) -> tuple[Array, Codes, Array, int]
         part, here, aim = law.at(going), sizes[going], np.minimum(share[going] + step[going], 1.0)
         slopes = part.residual(here, share[going])[1]
         ahead = part.factor * part.measures(here)[0]
-        guess = here + (aim - share[going])[:, None] * _solved(slopes, ahead)
-        found, good, determinant, made = _corrected(part, guess, aim, TRIES_ON_BRANCH)
+        guess = here + (aim - share[going])[:, None] * _solve_matrices(slopes, ahead)
+        found, good, determinant, made = _newton_corrections(part, guess, aim, TRIES_ON_BRANCH)
         # the determinant is 1 without friction and changes its sign where the branch ends
         good &= determinant > 0.0
         tries = max(tries, made)
@@ -454,7 +458,7 @@ class Rubbed:
         return np.asarray((self.amounts * self.slopes).sum(axis=1))
 
 
-def rubbed(
+def friction_of_contacts(
     state: State, free: ForceSystem, contacts: Sequence[Contact], acceleration: Array, useful: Mask
 ) -> Rubbed:
     """Friction of the contacts, from the reactions without it, at the samples where these are of use."""
@@ -514,22 +518,22 @@ def _law(free: ForceSystem, sizes: Sequence[Size], senses: Array) -> FrictionLaw
     samples, count = len(senses), len(sizes)
     gain = np.empty((samples, count, 2, count))
     for k, size in enumerate(sizes):
-        gain[..., k] = _measured(free.system.forces(size.pulls), sizes, samples)
+        gain[..., k] = _size_measures(free.system.forces(size.pulls), sizes, samples)
     factors = -senses * np.array([size.factor for size in sizes])
     rules = np.array([size.rule for size in sizes], dtype=np.int8)
-    return FrictionLaw(factors, _measured(free, sizes, samples), gain, rules)
+    return FrictionLaw(factors, _size_measures(free, sizes, samples), gain, rules)
 
 
-def _measured(forces: ForceSystem, sizes: Sequence[Size], samples: int) -> Array:
+def _size_measures(forces: ForceSystem, sizes: Sequence[Size], samples: int) -> Array:
     """The two numbers (n, sizes, 2) that each size depends on."""
     found = np.zeros((samples, len(sizes), 2))
     for k, size in enumerate(sizes):
-        for part, value in enumerate(_pressing(forces, size.contact)):
+        for part, value in enumerate(_contact_forces(forces, size.contact)):
             found[:, k, part] = column(value, samples)
     return found
 
 
-def _pressing(forces: ForceSystem, contact: Contact) -> tuple[Number, Number]:
+def _contact_forces(forces: ForceSystem, contact: Contact) -> tuple[Number, Number]:
     """Force between pin and bearing; normal force of a guide, and what its moment presses with at both ends."""
     if isinstance(contact, HingeBearing):
         side = JointSide(contact.point, contact.link)
@@ -551,7 +555,7 @@ def _where_known(law: FrictionLaw, useful: Mask) -> Followed:
     """Solve where all numbers are known; NaN elsewhere."""
     count, width = law.factor.shape
     known = useful & np.isfinite(law.base).all(axis=(1, 2)) & np.isfinite(law.gain).all(axis=(1, 2, 3))
-    found = followed(law.at(known))
+    found = solve_friction(law.at(known))
     sizes, outcome = np.full((count, width), np.nan), np.zeros(count, dtype=np.int8)
     share, residual = np.full(count, np.nan), np.zeros(count)
     sizes[known], outcome[known] = found.sizes, found.outcome
@@ -679,12 +683,12 @@ def friction_parts(rubbed: Rubbed, powers: Powers, mechanism: Mechanism) -> dict
         found["friction_moment"] = rubbed.amounts[:, bearings]
     if len(bearings) < len(rubbed.contacts):
         found["friction_force"] = np.zeros((len(rubbed.amounts), len(mechanism.guides)))
-        for k, guide in _guided(rubbed, mechanism):
+        for k, guide in _guide_contacts(rubbed, mechanism):
             found["friction_force"][:, guide] = rubbed.amounts[:, k]
     return found
 
 
-def _guided(rubbed: Rubbed, mechanism: Mechanism) -> list[tuple[int, int]]:
+def _guide_contacts(rubbed: Rubbed, mechanism: Mechanism) -> list[tuple[int, int]]:
     """Contacts in guides, each with the number of its guide."""
     guides = [guide.id for guide in mechanism.guides]
     return [(k, guides.index(c.guide)) for k, c in enumerate(rubbed.contacts) if isinstance(c, Sliding)]
@@ -692,9 +696,9 @@ def _guided(rubbed: Rubbed, mechanism: Mechanism) -> list[tuple[int, int]]:
 
 def with_friction(parts: dict[str, Array], rubbed: Rubbed, state: State) -> None:
     """Add friction to the force and the moment of each guide, whose lines exert it."""
-    for k, which in _guided(rubbed, state.mechanism):
+    for k, which in _guide_contacts(rubbed, state.mechanism):
         guide = state.mechanism.guides[which]
-        unit = turned(guide.unit, place_of(state.rotor(guide.on)))
+        unit = rotate_vector(guide.unit, place_of(state.rotor(guide.on)))
         for axis in range(2):
             along = column(unit[axis], len(rubbed.amounts))
             parts["guide_force"][:, which, axis] += rubbed.amounts[:, k] * along

@@ -66,7 +66,7 @@ def side_forces(forces: ForceSystem, sides: Iterable[JointSide]) -> dict[JointSi
     origin = forces.system.equilibrium.origin
     return {
         side: _sum(
-            pulls_on_point(forces, side.point) if side.body == FRAME else _on_body(forces, side), origin
+            wrenches_on_point(forces, side.point) if side.body == FRAME else _on_body(forces, side), origin
         )
         for side in sides
     }
@@ -89,9 +89,9 @@ def _sum(pulls: Iterable[Wrench], origin: Vector) -> Vector:
     return found
 
 
-def pulls_on_point(forces: ForceSystem, point: str) -> list[Wrench]:
+def wrenches_on_point(forces: ForceSystem, point: str) -> list[Wrench]:
     """All forces on a pin: of links, guides, cylinders and loads."""
-    return [pull for pull in forces.all_pulls if pull.body.kind == "point" and pull.body.name == point]
+    return [pull for pull in forces.all_wrenches if pull.body.kind == "point" and pull.body.name == point]
 
 
 # Numbers over samples put together as arrays, samples first.
@@ -246,7 +246,7 @@ def undetermined_parts(
     condition = system.inverse.condition[0][good]
     noise = SAFETY * (system.inverse.loss[0][good] + condition * residual)
     for unknown in system.scheme.repeating:
-        parts = _measured(reactions_of(_self_stress(system, unknown), sides), system.scale)
+        parts = _moments_as_forces(reactions_of(_self_stress(system, unknown), sides), system.scale)
         greatest = np.max([_greatest(values[good]) for values in parts.values()], axis=0)
         for name, values in parts.items():
             bound = (noise * greatest).reshape(-1, *[1] * (values.ndim - 1))
@@ -261,7 +261,7 @@ def _self_stress(system: Kinetostatics, unknown: Unknown) -> ForceSystem:
     return ForceSystem(system, {**multipliers, unknown: multipliers[unknown] + 1.0}, ())
 
 
-def _measured(parts: Mapping[str, Array], scale: float) -> dict[str, Array]:
+def _moments_as_forces(parts: Mapping[str, Array], scale: float) -> dict[str, Array]:
     return {
         name: values / scale if name in MOMENTS else np.nan_to_num(values) for name, values in parts.items()
     }

@@ -13,10 +13,10 @@ import xarray as xr
 from centrode.dynamics.kinetostatics.applied_forces import (
     InputMotion,
     Outer,
+    input_motion_of,
     outer_of,
-    pace_of,
     rates_of,
-    steady_span,
+    steady_grid,
 )
 from centrode.dynamics.kinetostatics.equations import ForceSystem, Kinetostatics, Scheme, Teeth
 from centrode.dynamics.kinetostatics.friction import (
@@ -28,10 +28,10 @@ from centrode.dynamics.kinetostatics.friction import (
     Powers,
     Rubbed,
     contacts_of,
+    friction_of_contacts,
     friction_parts,
     refuse_undetermined,
     reversals,
-    rubbed,
     with_friction,
     without_friction,
     works_over,
@@ -58,11 +58,11 @@ from centrode.kinematics.motion import (
     coordinates_of,
     judgements_of,
     labels_of,
-    named,
+    vocabulary_variable,
 )
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.structure.constraints import Entity
@@ -135,7 +135,7 @@ def _with_friction(
     """The same with friction, which is as great as the reactions that it changes make it."""
     refuse_undetermined(contacts, found.undetermined, found.sides, solved.ready.mechanism)
     useful = (found.status == Status.OK) | (found.status == Status.CUT_OFF)
-    sizes = rubbed(state, found.forces, contacts, found.pace.acceleration, useful)
+    sizes = friction_of_contacts(state, found.forces, contacts, found.pace.acceleration, useful)
     without = found.outer
     outer = Outer(
         (*without.loads, *sizes.pulls), without.inertia, without.moment + sizes.moment, without.shares
@@ -282,22 +282,24 @@ def friction_variables(solved: Solved, rubbed: Rubbed, powers: Powers, whole: bo
     parameter = solved.span.parameter
     locking = powers.locking
     locking[rubbed.solution.outcome == Outcome.LOCKED] = JAMMED
-    dimensions, values, attributes = named("self_locking", ("sample",), locking)
+    dimensions, values, attributes = vocabulary_variable("self_locking", ("sample",), locking)
     flags = {
         "flag_values": np.array(list(LOCKING), dtype=np.int8),
         "flag_meanings": " ".join(LOCKING.values()),
     }
     works = works_over(parameter, powers.rate, -rubbed.amounts * rubbed.slopes)
-    works = np.where(whole and _found(rubbed), works, np.nan)
+    works = np.where(whole and _friction_converged(rubbed), works, np.nan)
     found = {
-        "friction_work": named("friction_work", ("friction",), works),
-        "friction_turns": named("friction_turns", ("sample", "friction"), rubbed.turns.astype(np.int8)),
+        "friction_work": vocabulary_variable("friction_work", ("friction",), works),
+        "friction_turns": vocabulary_variable(
+            "friction_turns", ("sample", "friction"), rubbed.turns.astype(np.int8)
+        ),
         "self_locking": (dimensions, values, attributes | flags),
     }
     if not solved.ready.kinematics.path.by_time:
         first, last = float(np.min(parameter)), float(np.max(parameter))
         places = reversals(solved.ready, rubbed.contacts, first, last)
-        found["jumps"] = named("jumps", ("jump",), places, solved.ready.parameter.units[0])
+        found["jumps"] = vocabulary_variable("jumps", ("jump",), places, solved.ready.parameter.units[0])
     return found
 
 
@@ -315,12 +317,12 @@ def friction_attributes(solved: Solved, rubbed: Rubbed, powers: Powers, whole: b
         "friction_iterations": rubbed.solution.tries,
         "standing": "; ".join(rubbed.standing),
         "efficiency": powers.mean_efficiency(solved.span.parameter)
-        if whole and _found(rubbed)
+        if whole and _friction_converged(rubbed)
         else float("nan"),
     }
 
 
-def _found(rubbed: Rubbed) -> bool:
+def _friction_converged(rubbed: Rubbed) -> bool:
     return bool((rubbed.solution.outcome == Outcome.FOUND).all())
 
 
@@ -355,20 +357,22 @@ DIMENSIONS = {
 }
 
 
-def labelled(solved: Solved, burden: MassesAndLoads, found: ReactionSolution, whole: bool) -> xr.Dataset:
+def reactions_dataset(
+    solved: Solved, burden: MassesAndLoads, found: ReactionSolution, whole: bool
+) -> xr.Dataset:
     """The dataset of `reactions`; `whole` where the samples are a range, and works over it have a sense."""
     parts = found.parts | totals_of(found)
     checks = checks_of(found, rates_of(solved, found.pace))
     # absence is NaN: nothing where the equations are singular, or where the motion itself has no derivatives
     absent = (found.status != Status.OK) & (found.status != Status.CUT_OFF)
-    undetermined = _masked(parts, found)
+    undetermined = _mask_undetermined(parts, found)
     if "centre_force" in parts:
         parts["joint_moment"] = joint_moments(found, parts["joint_force"])
     for values in parts.values():
         values[absent] = np.nan
     units = solved.ready.parameter.units
     variables = {
-        name: named(name, ("sample", *_dimensions(name, values)), values, units[0])
+        name: vocabulary_variable(name, ("sample", *_dimensions(name, values)), values, units[0])
         for name, values in parts.items()
     }
     if len(set(units)) > 1:
@@ -376,10 +380,12 @@ def labelled(solved: Solved, burden: MassesAndLoads, found: ReactionSolution, wh
             one.force_unit for one in solved.ready.parameter.drives
         )
     if not solved.ready.kinematics.path.by_time:
-        variables["drive_rate"] = named("drive_rate", ("sample",), found.pace.moving.rate.copy(), units[0])
+        variables["drive_rate"] = vocabulary_variable(
+            "drive_rate", ("sample",), found.pace.moving.rate.copy(), units[0]
+        )
     variables |= _statuses(solved, found)
     sides = np.array([side.label not in undetermined for side in found.sides], dtype=np.int8)
-    variables["determined"] = named("determined", ("side",), sides)
+    variables["determined"] = vocabulary_variable("determined", ("side",), sides)
     attributes = attributes_of(solved) | checks
     attributes |= {"rate_from": found.pace.source, "undetermined": "; ".join(undetermined)}
     coordinates = _coordinates(solved, burden, found)
@@ -402,12 +408,12 @@ def _statuses(solved: Solved, found: ReactionSolution) -> dict[str, Variable]:
         "flag_values": np.array(list(Status), dtype=np.int8),
         "flag_meanings": " ".join(status.name.lower() for status in Status),
     }
-    dimensions, values, attributes = named("reaction_status", ("sample",), found.status)
+    dimensions, values, attributes = vocabulary_variable("reaction_status", ("sample",), found.status)
     loss = found.forces.system.inverse.loss[0]
     return {
         "status": motion,
         "reaction_status": (dimensions, values, attributes | flags),
-        "reaction_loss": named("reaction_loss", ("sample",), np.minimum(loss, 1.0)),
+        "reaction_loss": vocabulary_variable("reaction_loss", ("sample",), np.minimum(loss, 1.0)),
     }
 
 
@@ -429,7 +435,7 @@ def _coordinates(solved: Solved, burden: MassesAndLoads, found: ReactionSolution
     return coordinates
 
 
-def _masked(parts: dict[str, Array], found: ReactionSolution) -> list[str]:
+def _mask_undetermined(parts: dict[str, Array], found: ReactionSolution) -> list[str]:
     """Put NaN where nothing determines a reaction; the names of these."""
     names = _names(found)
     said: list[str] = []
@@ -512,15 +518,15 @@ def reactions(
             what = _("steady motion is given over a whole cycle")
             raise InputError(_("range"), what, _("leave its ends out, or ask for places with at"))
         _refuse_unknown_speed(contacts)
-        prepared, span, pace = steady_span(mechanism, samples, at)
+        prepared, span, pace = steady_grid(mechanism, samples, at)
         return reactions_at(solve(prepared, span), burden, pace, whole=at is None)
     prepared = ready(mechanism)
     if at is None:
-        span = asked_span(prepared, samples, start, stop)
+        span = requested_grid(prepared, samples, start, stop)
     else:
-        span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
     solved = solve(prepared, span)
-    return reactions_at(solved, burden, pace_of(solved, burden), contacts, at is None)
+    return reactions_at(solved, burden, input_motion_of(solved, burden), contacts, at is None)
 
 
 def _refuse_unknown_speed(contacts: tuple[Contact, ...]) -> None:
@@ -540,4 +546,4 @@ def reactions_at(
 
     `whole` where its samples are a range, over which works have a sense.
     """
-    return labelled(solved, burden, find(solved, burden, pace, contacts), whole)
+    return reactions_dataset(solved, burden, find(solved, burden, pace, contacts), whole)

@@ -26,8 +26,8 @@ from centrode.dynamics.loads import (
 )
 from centrode.dynamics.masses import shares
 from centrode.dynamics.reduction import Reducer
-from centrode.dynamics.state import Moving, State
-from centrode.dynamics.steady_motion.cycle import NODES, resolved
+from centrode.dynamics.state import DriveMotion, State
+from centrode.dynamics.steady_motion.cycle import NODES, resolve_panels
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.plan_evaluation import AT_THE_START
 from centrode.locale import _
@@ -79,7 +79,7 @@ class Sorted:
         return -amount.value * x
 
 
-def sorted_efforts(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[Sorted, ...]:
+def sort_load_terms(mechanism: Mechanism, loads: Sequence[AppliedLoad]) -> tuple[Sorted, ...]:
     """The efforts of a mechanism's loads, in the order of the loads."""
     kinds: list[str] = [load.kind for load in mechanism.loads]
     kinds += ["weight"] * (
@@ -148,7 +148,7 @@ class ReducedFunctions:
     @cached_property
     def efforts(self) -> tuple[Sorted, ...]:
         """All efforts of loads."""
-        return sorted_efforts(self.reducer.ready.mechanism, self.reducer.burden.loads)
+        return sort_load_terms(self.reducer.ready.mechanism, self.reducer.burden.loads)
 
     @cached_property
     def formulas(self) -> tuple[Sorted, ...]:
@@ -188,7 +188,7 @@ class ReducedFunctions:
     def state(self, values: Array, sense: float = 1.0) -> tuple[State, Known]:
         """Positions at values of the drive, and where they exist with their derivatives."""
         ones = np.ones(len(values))
-        state, status = self.reducer.state(values, Moving(0.0 * ones, values, sense * ones))
+        state, status = self.reducer.state(values, DriveMotion(0.0 * ones, values, sense * ones))
         reached = np.isin(status, (Status.OK, Status.SINGULAR))
         return state, reached & np.broadcast_to(state.exists, (1, len(values)))[0]
 
@@ -388,7 +388,7 @@ class PanelTracks:
         near = np.min(np.abs(even[1:-1, None] - jumps), axis=1, initial=inf) if len(jumps) else inf
         inner = even[1:-1][np.broadcast_to(near > 1e-9 * self.length, PANELS - 1)]
         edges = np.unique(np.concatenate([even[[0, -1]], inner, jumps[(jumps > low) & (jumps < high)]]))
-        parts = [self._represented(part) for part in self._sections(edges)]
+        parts = [self._represent(part) for part in self._sections(edges)]
         ends = np.concatenate([parts[0][0][:1], *(part[0][1:] for part in parts)])
         return TrackStretch(ends, np.concatenate([part[1] for part in parts]), jumps)
 
@@ -404,9 +404,9 @@ class PanelTracks:
         places = [0, *sorted(set(np.searchsorted(merged, cuts).tolist())), len(merged) - 1]
         return [merged[i : j + 1] for i, j in pairwise(places)]
 
-    def _represented(self, edges: Array) -> tuple[Array, Array]:
+    def _represent(self, edges: Array) -> tuple[Array, Array]:
         """Edges of panels on a section, and the powers there."""
-        panels, values = resolved(self.rows.at, edges, [TOLERANCE] * self.rows.count, self.rows.scales)
+        panels, values = resolve_panels(self.rows.at, edges, [TOLERANCE] * self.rows.count, self.rows.scales)
         powers = np.moveaxis(values.reshape(self.rows.count, -1, NODES) @ _TO_POWERS, 0, 1)
         self._check_inertia(panels.nodes, values[INERTIA])
         self._check(panels.edges, powers)

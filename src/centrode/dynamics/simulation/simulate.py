@@ -32,19 +32,25 @@ from centrode.dynamics.simulation.equation_of_motion import (
     Trajectory,
     of_time,
 )
-from centrode.dynamics.simulation.stepping import Stepper, Until, compiled, even_times, fixed_steps
+from centrode.dynamics.simulation.integrator import Stepper, Until, compile_scan, even_times, fixed_steps
 from centrode.errors import InputError, MotionError
-from centrode.kinematics.compiled.trace import Untraceable
-from centrode.kinematics.motion import attributes_of, coordinates_of, dataset_of, judgements_of, named
+from centrode.kinematics.machine_code.trace import Untraceable
+from centrode.kinematics.motion import (
+    attributes_of,
+    coordinates_of,
+    dataset_of,
+    judgements_of,
+    vocabulary_variable,
+)
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.plan_evaluation import layout_of
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import Solved, check_size, solve
 from centrode.locale import _
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.model.simulation import MOST_TURNS, Simulation
-from centrode.numerics.executors import ARRAYS, chosen
+from centrode.numerics.executors import ARRAYS, choose_executor
 
 # A mechanism and what its description asks of a simulation, made ready and checked.
 
@@ -211,7 +217,9 @@ def simulation_dataset(
     solved = solve(setting.prepared, SampleGrid(times, states[VALUE], states[RATE], acceleration))
     unit = solved.ready.parameter.units[0]
     curves = _curves(setting, states, forces, acceleration, moving)
-    curves_named = {name: named(name, ("sample",), values, unit) for name, values in curves.items()}
+    curves_named = {
+        name: vocabulary_variable(name, ("sample",), values, unit) for name, values in curves.items()
+    }
     occasions = _occasions(course, unit)
     facts = _facts(setting, course, curves)
     if motion:
@@ -280,12 +288,14 @@ def inertia_at(setting: Setting, value: float) -> float:
 def _occasions(course: Trajectory, unit: str) -> dict[str, object]:
     found = course.occasions
     kinds = np.array([OCCASIONS.index(one.kind) for one in found], dtype=np.int8)
-    dimensions, values, attributes = named("occasion_kind", ("occasion",), kinds)
+    dimensions, values, attributes = vocabulary_variable("occasion_kind", ("occasion",), kinds)
     attributes["flag_values"] = np.arange(len(OCCASIONS), dtype=np.int8)
     attributes["flag_meanings"] = " ".join(word.replace(" ", "_") for word in OCCASIONS)
     return {
-        "occasion_time": named("occasion_time", ("occasion",), np.array([one.time for one in found])),
-        "occasion_value": named(
+        "occasion_time": vocabulary_variable(
+            "occasion_time", ("occasion",), np.array([one.time for one in found])
+        ),
+        "occasion_value": vocabulary_variable(
             "occasion_value", ("occasion",), np.array([one.value for one in found]), unit
         ),
         "occasion_kind": (dimensions, values, attributes),
@@ -356,11 +366,11 @@ def simulate(
     setting = setting_of(mechanism, settings)
     count = setting.settings.samples if at is None else np.size(at)
     check_size(layout_of(setting.prepared.kinematics), 1, count)
-    course = course_of(setting, executor, progress)
+    course = trajectory_of(setting, executor, progress)
     return simulation_dataset(setting, course, _times(setting, course, at), motion=motion)
 
 
-def course_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Trajectory:
+def trajectory_of(setting: Setting, executor: Executor = "auto", progress: Tell | None = None) -> Trajectory:
     """Integrate by the scheme that is asked for."""
     settings, until = setting.settings, setting.until
     if settings.scheme != "runge-kutta-4":
@@ -396,9 +406,9 @@ def _by_fixed_steps(setting: Setting, executor: Executor, progress: Tell | None)
             _('give duration, or scheme = "adaptive"'),
         )
     field = setting.field
-    if chosen(executor) != ARRAYS:
+    if choose_executor(executor) != ARRAYS:
         try:
-            scan = compiled(setting.rows, setting.driving, chosen(executor))
+            scan = compile_scan(setting.rows, setting.driving, choose_executor(executor))
         except Untraceable as reason:
             if executor != "auto":
                 raise InputError("executor", _(reason.reason), _('use executor = "auto"')) from None

@@ -13,8 +13,8 @@ from math import floor, inf, tau
 import numpy as np
 
 from centrode.dynamics.simulation.equation_of_motion import OF_DRIVE, RATE, VALUE, Field, Trajectory
+from centrode.dynamics.simulation.integrator import Stepper, Until
 from centrode.dynamics.simulation.simulate import Setting, setting_of
-from centrode.dynamics.simulation.stepping import Stepper, Until
 from centrode.errors import InputError, MotionError
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -134,10 +134,10 @@ def fixed_point(maps: Callable[[float], float], speed: float) -> float:
         if not 0.2 * here < ahead < 5.0 * here:
             ahead = back
         before, missed_before, here = here, missed, ahead
-    raise unsettled(speed, here)
+    raise unsettled_error(speed, here)
 
 
-def unsettled(first: float, last: float) -> MotionError:
+def unsettled_error(first: float, last: float) -> MotionError:
     """The failure of a speed that does not come back."""
     return MotionError(
         "[simulation]",
@@ -219,27 +219,29 @@ def steady_regime(mechanism: Mechanism, settings: Simulation | None = None) -> R
     MotionError
         It does not turn all the way round, comes to rest, or its speed does not settle.
     """
-    return regime_of(setting_of(mechanism, settings))
+    return steady_state_of(setting_of(mechanism, settings))
 
 
-def regime_of(setting: Setting) -> Regime:
+def steady_state_of(setting: Setting) -> Regime:
     """The same of a mechanism made ready."""
     period = period_of(setting)
     maps = ReturnMap(setting, period)
     speed = maps.run_in()
     if setting.is_conservative:
         # with the place the energy comes back, and with it any speed
-        return _regime(setting, maps.course(speed), speed, 1.0, maps)
+        return _steady_state(setting, maps.course(speed), speed, 1.0, maps)
     found = fixed_point(maps, speed)
     course = maps.course(found)
     slightly = found * (1.0 + 1e-5)
     multiplier = (maps(slightly) - maps(found)) / (slightly - found)
     if abs(found - speed) > 0.01 * speed and abs(multiplier - 1.0) < NEUTRAL:
-        raise unsettled(speed, found)  # it went so far that rounding hides how it grows
-    return _regime(setting, course, found, multiplier, maps)
+        raise unsettled_error(speed, found)  # it went so far that rounding hides how it grows
+    return _steady_state(setting, course, found, multiplier, maps)
 
 
-def _regime(setting: Setting, course: Trajectory, speed: float, multiplier: float, maps: ReturnMap) -> Regime:
+def _steady_state(
+    setting: Setting, course: Trajectory, speed: float, multiplier: float, maps: ReturnMap
+) -> Regime:
     sense, period = setting.rows.sense, maps.period
     least, greatest = (_extreme(course, sense, sign) for sign in (-1.0, 1.0))
     ended = course.at(np.array([course.last]))[0][:, 0]

@@ -15,7 +15,7 @@ from numpy.polynomial import legendre
 from centrode.dynamics.reduction import Reducer
 from centrode.errors import InputError, MotionError, Status
 from centrode.kinematics.path import SampleGrid
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -131,7 +131,7 @@ def tails(coefficients: Array) -> Array:
     return np.asarray(np.max(np.abs(coefficients[..., -2:]), axis=-1))
 
 
-def resolved(
+def resolve_panels(
     functions: Function, edges: Array, tolerances: Sequence[float], scales: Function = np.asarray
 ) -> tuple[Panels, Array]:
     """Panels on which several functions are smooth enough, and their values at the nodes.
@@ -277,7 +277,7 @@ class Cycle:
 
     def at_speed(self, speed: Array) -> Cycle:
         """The same cycle with loads at speeds [rad/s] of the drive at the nodes of the panels."""
-        moment = _reduced(self.reduction, self.first, self.sense, self.panels.nodes, speed)[1]
+        moment = _reduce_in_sense(self.reduction, self.first, self.sense, self.panels.nodes, speed)[1]
         return replace(self, moment=self.panels.series(moment))
 
 
@@ -296,7 +296,7 @@ def cycle_of(prepared: Ready, reduction: CycleReduction, shape: MomentShape | No
     turns = _turns(prepared, reduction, speed)
 
     def functions(turned: Array) -> Array:
-        found = _reduced(reduction, first, sense, turned, np.full(len(turned), speed))
+        found = _reduce_in_sense(reduction, first, sense, turned, np.full(len(turned), speed))
         if not np.isfinite(found).all():
             raise _locks(prepared, turned[~np.isfinite(found).all(axis=0)])
         drive = np.ones(len(turned)) if shape is None else shape.at(first + sense * turned, speed)
@@ -307,7 +307,7 @@ def cycle_of(prepared: Ready, reduction: CycleReduction, shape: MomentShape | No
         inertia, moment, slope, drive = peaks
         return np.array([inertia, max(moment, inertia * speed**2), max(slope, inertia), drive])
 
-    panels, values = resolved(functions, _edges(reduction, first, sense, turns), TOLERANCES, scales)
+    panels, values = resolve_panels(functions, _edges(reduction, first, sense, turns), TOLERANCES, scales)
     inertia, moment, slope = (panels.series(row) for row in values[:3])
     return Cycle(reduction, first, sense, turns, inertia, slope, moment)
 
@@ -329,7 +329,9 @@ def check_drive(prepared: Ready) -> None:
         )
 
 
-def _reduced(reduction: CycleReduction, first: float, sense: float, turned: Array, speed: Array) -> Array:
+def _reduce_in_sense(
+    reduction: CycleReduction, first: float, sense: float, turned: Array, speed: Array
+) -> Array:
     """Inertia, moment and slope (3, n) in the sense of the motion."""
     inertia, slope, moment = reduction.at(first + sense * turned, sense * speed)
     return np.stack([inertia, sense * moment, sense * slope])
@@ -354,7 +356,7 @@ def _turns(prepared: Ready, reduction: CycleReduction, speed: float) -> int:
     for most in (FEW_TURNS, MOST_TURNS):
         turned = (PROBES + tau * np.arange(most + 1)[:, None]).reshape(-1)
         places = _places(prepared, turned)
-        reduced = _reduced(reduction, path.initial, path.forward, turned, np.full(turned.size, speed))
+        reduced = _reduce_in_sense(reduction, path.initial, path.forward, turned, np.full(turned.size, speed))
         if not np.isfinite(reduced).all():
             raise _locks(prepared, turned[~np.isfinite(reduced).all(axis=0)])
         inertia, moment = reduced[:2]

@@ -244,7 +244,7 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
         max(0.0, (inertia - found.present) / shape.ratio**2) for inertia in (found.needed, by_source)
     )
     speed = abs(shape.ratio) * ends.greatest
-    rim, disc = (_sized(added, shape, inner, speed) for inner in (shape.inner, 0.0))
+    rim, disc = (_size_wheel(added, shape, inner, speed) for inner in (shape.inner, 0.0))
     source_rim, source_disc = (_by_source(added_first_order, shape, speed, rim=rim) for rim in (True, False))
     return replace(
         common,
@@ -262,7 +262,7 @@ def flywheel_of(found: SteadySolution) -> Flywheel:
     )
 
 
-def _sized(inertia: float, shape: FlywheelShape, inner: float, speed: float) -> Wheel | None:
+def _size_wheel(inertia: float, shape: FlywheelShape, inner: float, speed: float) -> Wheel | None:
     if inertia <= 0.0:
         return None
     return wheel(inertia, shape.density, shape.width, inner, speed, shape.rim_speed)

@@ -221,12 +221,12 @@ def with_fluctuation(
     if kind == "middle" or not found[0].inertia > 0.0:
         return found
 
-    def missed(middle: float) -> float:
+    def excess(middle: float) -> float:
         return about(middle)[0].mean("time") - mean
 
     # the mean in time lies between the extremes: at most half their distance from the middle
     least = max(mean - spread, spread * (1.0 + 1e-6))
-    return about(root(missed, least, mean + spread))
+    return about(root(excess, least, mean + spread))
 
 
 def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: MeanSpeed) -> Speed:
@@ -245,12 +245,12 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
         )
     swing = balance.energy_extremes(0.0)
 
-    def missed(energy: float) -> float:
+    def excess(energy: float) -> float:
         return Speed(balance, inertia, energy).mean(kind) - mean
 
     least = -swing.least  # at this energy the machine stands still once a cycle
     margin = 1e-9 * (swing.range + carried.greatest * mean**2)
-    if missed(least + margin) > 0.0:
+    if excess(least + margin) > 0.0:
         raise InputError(
             "[machine]",
             _(
@@ -259,4 +259,4 @@ def with_inertia(balance: EnergyBalance, mean: float, inertia: float, kind: Mean
             _("give [[machine.shafts]] with more inertia, or fluctuation to find a flywheel"),
         )
     greatest = least + margin + 2.0 * carried.greatest * mean**2 + swing.range
-    return Speed(balance, inertia, root(missed, least + margin, greatest))
+    return Speed(balance, inertia, root(excess, least + margin, greatest))

@@ -34,9 +34,9 @@ from centrode.dynamics.steady_motion.speed import (
     with_inertia,
 )
 from centrode.errors import InputError, MotionError
-from centrode.kinematics.motion import dataset_of, named
+from centrode.kinematics.motion import dataset_of, vocabulary_variable
 from centrode.kinematics.path import SampleGrid
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import DEFAULT_SAMPLES, solve
 from centrode.locale import _
 from centrode.model import reading
@@ -155,7 +155,7 @@ def solution_of(
     if machine.fluctuation is not None:
         spread = 0.5 * machine.fluctuation
         lines = tangents(balance, mean * (1 + spread), mean * (1 - spread))
-    needed, speed, iterations = _settled(cycle, shape, machine, present, kind)
+    needed, speed, iterations = _settle(cycle, shape, machine, present, kind)
     return SteadySolution(
         prepared,
         machine,
@@ -177,7 +177,7 @@ def in_other_mean(found: SteadySolution, kind: MeanSpeed) -> SteadySolution:
         if found.machine.driving is None
         else MomentShape(compile_formula(found.machine.driving, DRIVING_VARIABLES, ""))
     )
-    needed, speed, iterations = _settled(found.cycle, shape, found.machine, found.present, kind)
+    needed, speed, iterations = _settle(found.cycle, shape, found.machine, found.present, kind)
     return replace(found, kind=kind, needed=needed, speed=speed, iterations=iterations)
 
 
@@ -208,22 +208,22 @@ def _by_source(balance: EnergyBalance, machine: Machine, present: float) -> Spee
     return SpeedBySource(balance, energies, machine.mean_speed, inertia)
 
 
-def _settled(
+def _settle(
     cycle: Cycle, shape: MomentShape | None, machine: Machine, present: float, kind: MeanSpeed
 ) -> tuple[float | None, Speed, int]:
     """Inertia needed and speed at which loads, drive and speed agree, and after how many rounds they do."""
 
     def as_asked(balance: EnergyBalance) -> tuple[float | None, Speed]:
-        return _speed(balance, machine, present, kind)
+        return _balance_speed(balance, machine, present, kind)
 
     def as_present(balance: EnergyBalance) -> tuple[float | None, Speed]:
         return None, with_inertia(balance, machine.mean_speed, present, kind)
 
-    found = _iterated(cycle, shape, machine.mean_speed, as_asked)
+    found = _iterate(cycle, shape, machine.mean_speed, as_asked)
     if found is None and machine.fluctuation is not None:
         # loads that damp may keep the speed more even than asked, whatever the inertia: then none is needed
         with suppress(InputError):  # it stands still on the way to an answer
-            found = _iterated(cycle, shape, machine.mean_speed, as_present)
+            found = _iterate(cycle, shape, machine.mean_speed, as_present)
         if found is not None:
             speed = found[1]
             needed = with_fluctuation(speed.balance, machine.mean_speed, machine.fluctuation, kind)[0].inertia
@@ -239,7 +239,7 @@ def _settled(
     )
 
 
-def _iterated(
+def _iterate(
     cycle: Cycle,
     shape: MomentShape | None,
     mean: float,
@@ -260,7 +260,7 @@ def _iterated(
     return None
 
 
-def _speed(
+def _balance_speed(
     balance: EnergyBalance, machine: Machine, present: float, kind: MeanSpeed
 ) -> tuple[float | None, Speed]:
     if machine.fluctuation is None:
@@ -352,7 +352,8 @@ def steady_dataset(found: SteadySolution, turned: Array, method: Method = "exact
     span = SampleGrid(speed.time(turned), cycle.value(turned), rate, second)
     data = dataset_of(solve(found.prepared, span))
     with_energies = {
-        name: named(name, ("sample",), values) for name, values in _curves(found, turned).items()
+        name: vocabulary_variable(name, ("sample",), values)
+        for name, values in _curves(found, turned).items()
     }
     return data.assign(with_energies).assign_attrs(_facts(found, method))
 

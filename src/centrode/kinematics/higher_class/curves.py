@@ -13,8 +13,14 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.higher_class.newton import Shifts, bordered, motion_along, settled, size_of
-from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, solved, total
+from centrode.kinematics.higher_class.newton import (
+    Shifts,
+    bordered_equations,
+    is_rounding_step,
+    motion_along,
+    size_of,
+)
+from centrode.kinematics.higher_class.system import GroupMotion, Linear, Surroundings, solve_places, total
 from centrode.kinematics.path import JETS
 from centrode.numerics.jets import Jet
 from centrode.numerics.rounding import ROUNDED, SAFETY, Rounded
@@ -113,28 +119,34 @@ def reach(
     found, active = np.zeros(count, dtype=bool), np.isfinite(state).all(axis=1)
     last, wrong = np.full(count, FAR), np.full(count, np.nan)
     for k in range(STEPS):
-        system, linear, moved, rest, follow, matrix = bordered(around, lanes, parameter, state, along)
+        system, linear, moved, rest, follow, matrix = bordered_equations(
+            around, lanes, parameter, state, along
+        )
         right = np.concatenate([rest, np.zeros((count, 1))], axis=1)
-        step = solved(matrix, right[:, :, None])[:, :, 0]
+        step = solve_places(matrix, right[:, :, None])[:, :, 0]
         motion = motion_along(linear, moved, follow, step)
         size = size_of(system, moved, step)
         if k == 0:
             wrong = size
         good = active & np.isfinite(size) & (size < 1.0)
-        state = np.where(good[:, None], system.moved(state, motion), state)
+        state = np.where(good[:, None], system.move(state, motion), state)
         parameter = np.where(good, parameter + around.unit * step[:, -1], parameter)
         with np.errstate(all="ignore"):
-            enough = settled(last, size) if stride is None else size * (size / last) ** 2 <= ENOUGH * stride
+            enough = (
+                is_rounding_step(last, size)
+                if stride is None
+                else size * (size / last) ** 2 <= ENOUGH * stride
+            )
         done = good & enough
         found |= done
         active = good & ~done & ((k == 0) | (size <= np.maximum(CONTRACTION * last, 1e-9)))
         last = size
         if not active.any():
             break
-    system, linear, _moved, _rest, follow, matrix = bordered(around, lanes, parameter, state, along)
+    system, linear, _moved, _rest, follow, matrix = bordered_equations(around, lanes, parameter, state, along)
     ahead = np.zeros((count, free + 1, 1))
     ahead[:, -1] = 1.0
-    slope = solved(matrix, ahead)[:, :, 0]
+    slope = solve_places(matrix, ahead)[:, :, 0]
     first, second = _coefficients(around, lanes, parameter, state, slope, linear, follow, matrix)
     numbers = np.concatenate([state, parameter[:, None]], axis=1)
     with np.errstate(all="ignore"):
@@ -179,8 +191,8 @@ def _coefficients(
     )
     values = system.residual(JETS, system.at(JETS, known, state, straight))
     moved, rest = linear.reduced([-x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
-    right = np.concatenate([system.stacked(rest), zero[:, None]], axis=1)
-    bend = solved(matrix, right[:, :, None])[:, :, 0]
+    right = np.concatenate([system.stack(rest), zero[:, None]], axis=1)
+    bend = solve_places(matrix, right[:, :, None])[:, :, 0]
     two = motion_along(linear, moved, follow, bend)
     curved = GroupMotion(
         {
@@ -193,7 +205,7 @@ def _coefficients(
     jets = system.numbers_of(at)
     first = [x.coefficients[1] for x in jets] + [around.unit * slope[:, -1]]
     second = [x.coefficients[2] for x in jets] + [around.unit * bend[:, -1]]
-    return system.stacked(first), system.stacked(second)
+    return system.stack(first), system.stack(second)
 
 
 def quintic(base: CurvePlaces, reached: ReachedPlace) -> Array:
@@ -241,7 +253,7 @@ def limits(around: Surroundings, lanes: Lanes, here: CurvePlaces, there: Reached
         powers = share[:, None] ** np.arange(6)
         value = total(whole * powers[:, :, None])
         parameter = here.parameter + value[:, -1]
-        state = around.blank(lanes).righted(value[:, :-1])
+        state = around.blank(lanes).normalise(value[:, :-1])
         limit = reach(around, lanes, here, here.along, parameter, state)
         with np.errstate(all="ignore"):
             change = -limit.first[:, -1] / (2.0 * limit.second[:, -1]) / there.arc
@@ -268,11 +280,11 @@ def _first_turn(coefficients: Array) -> Array:
 def _margin(around: Surroundings, lanes: Lanes, places: CurvePlaces) -> Array:
     """By how much rounding of the equations may shift a limit along the path."""
     parameter, state = places.parameter, places.state
-    system, linear, _moved, _rest, _follow, matrix = bordered(around, lanes, parameter, state, None)
+    system, linear, _moved, _rest, _follow, matrix = bordered_equations(around, lanes, parameter, state, None)
     values = system.residual(ROUNDED, system.at(ROUNDED, around.bounded(parameter, lanes), state))
     zero = np.zeros(len(parameter))
     _moved, rest = linear.reduced([Rounded(zero, zero + Rounded.of(x).bound) for x in values])
-    bounds = system.stacked([Rounded.of(x).bound for x in rest])
+    bounds = system.stack([Rounded.of(x).bound for x in rest])
     with np.errstate(all="ignore"):
         # the combination of equations that does not feel the group's own motion there tells the parameter
         least = np.linalg.svd(np.where(np.isfinite(matrix), matrix, 0.0)[:, :, :-1])[0][:, :, -1]
@@ -312,7 +324,7 @@ class _Saddle:
 
     def approach(self) -> tuple[float, bool]:
         """Step towards the saddle; returns the size of the step and whether it is one."""
-        system, linear, moved, rest, follow, matrix = bordered(
+        system, linear, moved, rest, follow, matrix = bordered_equations(
             self.around, self.lane, self.parameter, self.state, None
         )
         left, values, right = np.linalg.svd(matrix[0])
@@ -325,13 +337,13 @@ class _Saddle:
         step = plane.T @ inside + back
         size = float(np.max(np.abs(step)))
         step *= min(1.0, GREATEST / size)
-        self.state = system.moved(self.state, motion_along(linear, moved, follow, step[None, :]))
+        self.state = system.move(self.state, motion_along(linear, moved, follow, step[None, :]))
         self.parameter = self.parameter + self.around.unit * step[-1]
         return size, bool(np.linalg.det(hessian) < 0.0)
 
     def _bend(self, least: Array, direction: Array) -> float:
         """Second derivative of the worst equation in a direction of the curve's coordinates."""
-        system, linear, _moved, _rest, follow, _matrix = bordered(
+        system, linear, _moved, _rest, follow, _matrix = bordered_equations(
             self.around, self.lane, self.parameter, self.state, None
         )
         zero = np.zeros(1)
@@ -343,11 +355,11 @@ class _Saddle:
         known = self.around.known(ahead, self.lane)
         values = system.residual(JETS, system.at(JETS, known, self.state, straight))
         _moved, rest = linear.reduced([x.coefficients[2] if isinstance(x, Jet) else 0.0 for x in values])
-        return 2.0 * float(least @ system.stacked(rest)[0])
+        return 2.0 * float(least @ system.stack(rest)[0])
 
     def value(self) -> tuple[float, float]:
         """The worst equation's value with the bound of its rounding error."""
-        system, linear, _moved, rest, _follow, matrix = bordered(
+        system, linear, _moved, rest, _follow, matrix = bordered_equations(
             self.around, self.lane, self.parameter, self.state, None
         )
         least = np.linalg.svd(matrix[0])[0][:, -1]
@@ -358,12 +370,12 @@ class _Saddle:
         return float(least @ rest[0]), bound
 
 
-def crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: ReachedPlace) -> float | None:
+def curve_crossing(around: Surroundings, lane: Lanes, base: CurvePlaces, there: ReachedPlace) -> float | None:
     """The parameter at which curves cross between two places; None if they do not."""
     share = float(np.clip(base.size[0] / (base.size[0] - there.places.size[0]), 0.0, 1.0))
     middle = total(quintic(base, there) * share ** np.arange(6)[:, None])
     system = around.blank(lane)
-    state = system.righted(middle[:, :-1])
+    state = system.normalise(middle[:, :-1])
     saddle = _Saddle(around, lane, base.parameter + middle[:, -1], state)
     try:
         with np.errstate(all="ignore"):

@@ -9,17 +9,17 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from centrode.kinematics.higher_class.curve_continuation import CurveTracks
 from centrode.kinematics.higher_class.newton import newton, step_at
 from centrode.kinematics.higher_class.system import (
     GroupSystem,
     Linear,
     Surroundings,
-    flattened,
-    needed,
+    add_in_shape,
+    flatten_positions,
+    needed_positions,
     plain,
-    shaped,
 )
-from centrode.kinematics.higher_class.tracing import CurveTracks
 from centrode.numerics.arrays import ARRAYS
 from centrode.numerics.jets import Jet, JetFunctions
 from centrode.numerics.rounding import RoundedFunctions
@@ -63,25 +63,25 @@ def close(
     shape = (tracks.lanes, parameter.shape[-1]) if lanes is None else parameter.shape
     flat = np.broadcast_to(parameter, shape).reshape(-1)
     which = np.repeat(np.arange(tracks.lanes), shape[-1]) if lanes is None else lanes
-    numbers = around.kinematics.taken(which).numbers
+    numbers = around.kinematics.take(which).numbers
     group = around.equations
-    known = flattened(needed(group, at), shape)
-    system = GroupSystem(group, numbers, known.mapped(plain), len(flat))
+    known = flatten_positions(needed_positions(group, at), shape)
+    system = GroupSystem(group, numbers, known.map_numbers(plain), len(flat))
     foretold = tracks.foretell(flat, which)
-    start = system.righted(foretold.state)
+    start = system.normalise(foretold.state)
     with np.errstate(all="ignore"):
         if rough:
             right, state, linear = ~(foretold.beyond | foretold.limit), start, None
             if isinstance(m, JetFunctions):
                 linear = system.linear(system.at(ARRAYS, system.known, state))
-                state = system.moved(state, step_at(system, state, linear)[0])
+                state = system.move(state, step_at(system, state, linear)[0])
         else:
             found = newton(system, start)
             linear = system.linear(system.at(ARRAYS, system.known, found.state))
             right = found.found & (np.sign(np.linalg.det(linear.matrix)) == foretold.sense)
             state = np.where(right[:, None], found.state, np.nan)
         state[foretold.limit] = foretold.state[foretold.limit]
-        shaped(_lifted(system, m, known, state, linear), group, shape, at)
+        add_in_shape(_lift_states(system, m, known, state, linear), group, shape, at)
     lost = ~(right | foretold.limit | foretold.beyond)
     return ConvergedPlaces(*(mask.reshape(shape) for mask in (foretold.beyond, foretold.limit, lost)))
 
@@ -94,20 +94,20 @@ def follow(
     The ways stand one after the other, of so many steps each, and begin with a real parameter.
     """
     group = around.equations
-    known = flattened(needed(group, at), parameter.shape)
-    system = GroupSystem(group, around.kinematics.taken(lanes).numbers, known, len(parameter))
+    known = flatten_positions(needed_positions(group, at), parameter.shape)
+    system = GroupSystem(group, around.kinematics.take(lanes).numbers, known, len(parameter))
     first = np.arange(0, len(parameter), steps)
     state: Any = tracks.foretell(parameter[first].real, lanes[first]).state + 0j
-    state = system.taken(first).righted(state)
+    state = system.take(first).normalise(state)
     states: Any = np.empty((len(parameter), state.shape[1]), dtype=complex)
     for k in range(steps):
-        found = newton(system.taken(first + k), state)
+        found = newton(system.take(first + k), state)
         state = np.where(found.found[:, None], found.state, np.nan)
         states[first + k] = state
-    shaped(system.at(ARRAYS, known, states), group, parameter.shape, at)
+    add_in_shape(system.at(ARRAYS, known, states), group, parameter.shape, at)
 
 
-def _lifted(
+def _lift_states(
     system: GroupSystem, m: Namespace, known: Positions, state: Array, linear: Linear | None
 ) -> Positions:
     """Converged states over the algebra of the known positions."""
@@ -142,8 +142,8 @@ def starts(around: Surroundings, nominal: Dimensions, start: Positions, initial:
     done, part = np.zeros(lanes), np.ones(lanes)
     while (going := np.nonzero((done < 1.0) & (part >= LEAST_PART))[0]).size:
         aim = np.minimum(done[going] + part[going], 1.0)
-        numbers = around.kinematics.taken(going).numbers
-        between = around.with_numbers(blended(nominal, numbers, aim), going)
+        numbers = around.kinematics.take(going).numbers
+        between = around.with_numbers(blend_dimensions(nominal, numbers, aim), going)
         everyone = np.arange(len(going))
         known = between.known_at(np.full(len(going), initial), everyone)
         system = between.system(known, everyone)
@@ -171,11 +171,11 @@ def numbers_of(numbers: Dimensions) -> list[Number]:
         found.append(x)
         return x
 
-    numbers.mapped(note)
+    numbers.map_numbers(note)
     return found
 
 
-def blended(first: Dimensions, second: Dimensions, part: Array) -> Dimensions:
+def blend_dimensions(first: Dimensions, second: Dimensions, part: Array) -> Dimensions:
     """Dimensions (lanes,) part of the way from the first to the second, exactly these at the end."""
     from_first = iter(numbers_of(first))
 
@@ -183,4 +183,4 @@ def blended(first: Dimensions, second: Dimensions, part: Array) -> Dimensions:
         y = next(from_first)
         return x if isinstance(x, float) else np.where(part == 1.0, x, y + part * (x - y))
 
-    return second.mapped(between)
+    return second.map_numbers(between)

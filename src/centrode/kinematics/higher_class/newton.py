@@ -15,7 +15,7 @@ from centrode.kinematics.higher_class.system import (
     Linear,
     Shift,
     Surroundings,
-    solved,
+    solve_places,
 )
 from centrode.kinematics.path import JETS
 from centrode.numerics.arrays import ARRAYS
@@ -55,14 +55,15 @@ def newton(system: GroupSystem, start: Array, steps: int = STEPS) -> Converged:
     for k in range(steps):
         if not len(going):
             break
-        part = system if len(going) == len(start) else system.taken(going)
+        part = system if len(going) == len(start) else system.take(going)
         motion, size = step_at(part, state[going])
         sizes[k, going] = size
         good = np.isfinite(size) & (size < 1.0e3)
-        state[going[good]] = part.moved(state[going], motion)[good]
+        state[going[good]] = part.move(state[going], motion)[good]
         # next to a limit rounding makes steps that are not small; they do not shrink any more
         done = good & (
-            settled(last[going], size) | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
+            is_rounding_step(last[going], size)
+            | ((k == steps - 1) & (size <= COARSE) & (last[going] <= COARSE))
         )
         last[going] = size
         found[going[done]] = True
@@ -75,7 +76,7 @@ def step_at(system: GroupSystem, state: Array, linear: Linear | None = None) -> 
     at = system.at(ARRAYS, system.known, state)
     linear = system.linear(at) if linear is None else linear
     moved, rest = linear.reduced([-x for x in system.residual(ARRAYS, at)])
-    free = solved(linear.matrix, system.stacked(rest)[:, :, None])[:, :, 0]
+    free = solve_places(linear.matrix, system.stack(rest)[:, :, None])[:, :, 0]
     return GroupMotion(linear.whole(moved, list(free.T)), list(free.T)), size_of(system, moved, free)
 
 
@@ -89,7 +90,7 @@ def size_of(system: GroupSystem, moved: Mapping[Entity, Shift], free: Array) -> 
     return size
 
 
-def settled(last: Array, size: Array) -> Mask:
+def is_rounding_step(last: Array, size: Array) -> Mask:
     """Where a step of some size after one of a last size is followed by nothing but rounding.
 
     Either the next step, quadratically smaller, is below it, or both are so small already that the matrix
@@ -106,7 +107,7 @@ Lanes: TypeAlias = npt.NDArray[np.intp]
 Shifts: TypeAlias = Mapping[Entity, Shift]
 
 
-def bordered(
+def bordered_equations(
     around: Surroundings, lanes: Lanes, parameter: Array, state: Array, along: Array | None
 ) -> tuple[GroupSystem, Linear, Shifts, Array, Shifts, Array]:
     """Equations at places: made linear, their residual, how they follow the parameter, and their matrix.
@@ -125,10 +126,10 @@ def bordered(
     rows = free if along is None else free + 1
     matrix = np.empty((count, rows, free + 1))
     matrix[:, :free, :-1] = linear.matrix
-    matrix[:, :free, -1] = -system.stacked(pushed)
+    matrix[:, :free, -1] = -system.stack(pushed)
     if along is not None:
         matrix[:, -1] = along
-    return system, linear, moved, system.stacked(rest), follow, matrix
+    return system, linear, moved, system.stack(rest), follow, matrix
 
 
 def _times(x: object, factor: float) -> object:

@@ -17,16 +17,16 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.geometry.plane import (
-    Pose,
+    PlanePose,
     Vector,
     cross,
     dot,
     is_literal_zero,
     place,
     pose_with_point,
+    rotate_vector,
     rotor_of,
     subtract,
-    turned,
 )
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, Kinematics
@@ -178,7 +178,7 @@ class Linear:
         pair = _dot((a, b), right), _dot((c, d), right)
         if entity.kind == "point":
             return pair
-        return _combined(pair, self._shifts[entity])
+        return _combine_shifts(pair, self._shifts[entity])
 
     def _matrix(self) -> Array:
         free = self.pattern.free
@@ -224,7 +224,7 @@ class Linear:
         return found
 
 
-def solved(matrix: Array, right: Array) -> Array:
+def solve_places(matrix: Array, right: Array) -> Array:
     """Solution (k, n, m) of the equations at every place; NaN where the matrix is singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right))
@@ -255,7 +255,7 @@ def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
     return total
 
 
-def _combined(factors: Sequence[Number], shifts: Sequence[Shift]) -> Shift:
+def _combine_shifts(factors: Sequence[Number], shifts: Sequence[Shift]) -> Shift:
     return tuple(_dot(factors, [shift[k] for shift in shifts]) for k in range(len(shifts[0])))
 
 
@@ -294,13 +294,15 @@ class GroupSystem:
     known: Positions
     places: int
 
-    def taken(self, which: npt.NDArray[np.intp]) -> GroupSystem:
+    def take(self, which: npt.NDArray[np.intp]) -> GroupSystem:
         """The same equations at some of the places."""
 
         def take(x: Number) -> Number:
             return x if np.ndim(x) == 0 else x[which]
 
-        return GroupSystem(self.group, self.numbers.mapped(take), self.known.mapped(take), len(which))
+        return GroupSystem(
+            self.group, self.numbers.map_numbers(take), self.known.map_numbers(take), len(which)
+        )
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -328,7 +330,7 @@ class GroupSystem:
         self, m: Namespace, known: Positions, state: Array, motion: GroupMotion | None = None
     ) -> Positions:
         """Known positions with those of a state, moved a little, over any algebra."""
-        at, space, column = known.copied(), self.numbers.space, 0
+        at, space, column = known.copy(), self.numbers.space, 0
         for name in self.group.points:
             size = len(space.axes)
             place = tuple(state[:, column + k] for k in range(size))
@@ -362,23 +364,23 @@ class GroupSystem:
         weights = [length for _name in self.group.points for _axis in self.numbers.space.axes]
         rest = self.numbers.space.at_rest
         parts = [length if name == "origin" else 1.0 for name, part in rest._asdict().items() for _x in part]
-        return self.stacked([*weights, *parts * len(self.group.links), *[1.0] * len(self._turns)])
+        return self.stack([*weights, *parts * len(self.group.links), *[1.0] * len(self._turns)])
 
     def state_of(self, at: Positions) -> Array:
         """The state in which positions are: (k, width)."""
-        return self.stacked(self.numbers_of(at))
+        return self.stack(self.numbers_of(at))
 
-    def moved(self, state: Array, motion: GroupMotion) -> Array:
+    def move(self, state: Array, motion: GroupMotion) -> Array:
         """A state moved a little."""
-        return self.righted(self.state_of(self.at(ARRAYS, self.known, state, motion)))
+        return self.normalise(self.state_of(self.at(ARRAYS, self.known, state, motion)))
 
-    def righted(self, state: Array) -> Array:
+    def normalise(self, state: Array) -> Array:
         """A state whose links keep their own distances, and whose angles are those of its links."""
         at, space = self.at(ARRAYS, self.known, state), self.numbers.space
         for name in self.group.points:
             at.points[name] = space.moved_point(ARRAYS, at.points[name], (0.0, 0.0))
         for name in self.group.links:
-            at.poses[name] = space.righted(ARRAYS, at.poses[name])
+            at.poses[name] = space.normalise(ARRAYS, at.poses[name])
         for name in self._turns:
             near = at.angles[name]
             at.angles[name] = near + space.turn(
@@ -404,10 +406,10 @@ class GroupSystem:
         """Greatest left side of the equations, in rad or in the greatest length: (k,)."""
         values = self.residual(ARRAYS, self.at(ARRAYS, self.known, state))
         units = [1.0 if c.angular else 1.0 / self.numbers.scale for c, _row in self.group.equations]
-        gaps = np.abs(self.stacked([x * u for x, u in zip(values, units, strict=True)]))
+        gaps = np.abs(self.stack([x * u for x, u in zip(values, units, strict=True)]))
         return np.asarray(np.max(gaps, axis=1), dtype=np.float64)
 
-    def stacked(self, values: Sequence[Number]) -> Array:
+    def stack(self, values: Sequence[Number]) -> Array:
         """Numbers as an array (k, numbers)."""
         found = np.empty(
             (len(values), self.places), dtype=np.result_type(np.float64, *map(np.asarray, values))
@@ -421,12 +423,13 @@ class GroupSystem:
         zero = np.zeros(self.places)
         shifts = {f.entity: [[zero] for _ in range(f.entity.unknowns)] for f in linear.pattern.follows}
         free = [[zero] for _ in range(self.free)]
-        inverse = solved(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
+        inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
         for k in range(1, order + 1):
             motion = _as_jets(shifts, free, k)
-            values = self.residual(JETS, self.at(JETS, known.mapped(lambda x, k=k: cut(x, k)), state, motion))  # type: ignore[misc]
+            below = known.map_numbers(lambda x, k=k: truncate_jet(x, k))  # type: ignore[misc]
+            values = self.residual(JETS, self.at(JETS, below, state, motion))
             moved, rest = linear.reduced([_minus_coefficient(x, k) for x in values])
-            freely = list(times(inverse, self.stacked(rest)).T)
+            freely = list(times(inverse, self.stack(rest)).T)
             for entity, shift in linear.whole(moved, freely).items():
                 for c, x in zip(shifts[entity], shift, strict=True):
                     c.append(x)
@@ -439,8 +442,8 @@ class GroupSystem:
         values = [Rounded.of(x) for x in self.residual(ROUNDED, self.at(ROUNDED, known, state))]
         zero = np.zeros(self.places)
         moved, rest = linear.reduced([Rounded(zero, x.bound + np.abs(x.value)) for x in values])
-        inverse = solved(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
-        bound = times(np.abs(inverse), self.stacked([Rounded.of(x).bound for x in rest]))
+        inverse = solve_places(linear.matrix, np.broadcast_to(np.eye(self.free), linear.matrix.shape))
+        bound = times(np.abs(inverse), self.stack([Rounded.of(x).bound for x in rest]))
         free = [Rounded(zero, column) for column in bound.T]
         shifts = {
             entity: tuple(Rounded(zero, Rounded.of(x).bound) for x in shift)
@@ -458,7 +461,7 @@ def _as_jets(
     return GroupMotion({entity: tuple(map(jet, cs)) for entity, cs in shifts.items()}, [jet(c) for c in free])
 
 
-def cut(x: Number, order: int) -> Number:
+def truncate_jet(x: Number, order: int) -> Number:
     """A jet without what is beyond an order."""
     return Jet(x.coefficients[: order + 1]) if isinstance(x, Jet) else x
 
@@ -566,7 +569,7 @@ class LinkChain:
 
     def positions(self, known: Positions, posture: Posture, motion: Sequence[Number]) -> Positions:
         """Known positions with those of the group: in a posture, moved by jets that are zero there, or by 0.0."""
-        at = known.copied()
+        at = known.copy()
         for follow in self.pattern.follows:
             name = follow.entity.name
             if follow.entity.kind == "link":
@@ -574,19 +577,19 @@ class LinkChain:
                 at.poses[name] = self._pose(follow, posture, motion, at)
                 at.angles[name] = posture.angles[name] + turn if _moves(turn) else posture.angles[name]
             elif follow.by is None:
-                at.points[name] = self._shifted(follow, posture, motion)
+                at.points[name] = self._shift_of(follow, posture, motion)
             else:
                 at.points[name] = place(at.poses[follow.by.link], self.numbers.local[follow.by.link][name])
         return at
 
-    def _pose(self, follow: Follow, posture: Posture, motion: Sequence[Number], at: Positions) -> Pose:
+    def _pose(self, follow: Follow, posture: Posture, motion: Sequence[Number], at: Positions) -> PlanePose:
         turn, rotor = motion[follow.turn], posture.rotors[follow.entity.name]
         if _moves(turn):
-            rotor = turned(rotor, _rotor_of_zero(turn))
-        there = self._shifted(follow, posture, motion) if follow.by is None else at.points[follow.by.point]
+            rotor = rotate_vector(rotor, _rotor_of_zero(turn))
+        there = self._shift_of(follow, posture, motion) if follow.by is None else at.points[follow.by.point]
         return pose_with_point(self._pivot(follow), there, rotor)
 
-    def _shifted(self, follow: Follow, posture: Posture, motion: Sequence[Number]) -> Vector:
+    def _shift_of(self, follow: Follow, posture: Posture, motion: Sequence[Number]) -> Vector:
         x, y = posture.places[follow.entity.name]
         by_x, by_y = motion[follow.first : follow.first + 2]
         return (
@@ -611,7 +614,7 @@ class LinkChain:
         over = 1.0 / self.unit
         found = []
         for leaf in self.leaves:
-            x, y = turned(self.arm(leaf), posture.rotors[leaf.constraint.link])
+            x, y = rotate_vector(self.arm(leaf), posture.rotors[leaf.constraint.link])
             found.append((x * over, y * over))
         return found
 
@@ -667,20 +670,20 @@ class Surroundings:
 
     def known(self, parameter: Jet, lanes: Lanes) -> Positions:
         """What the group's equations need of what is known before it, at a parameter given as a jet."""
-        used = self.kinematics.taken(lanes)
+        used = self.kinematics.take(lanes)
         hooks = self.hooks(JETS, parameter.value, lanes)
         with np.errstate(all="ignore"):
             at = used.frame(JETS, parameter)
             used.advance(at, range(self.group), JETS, hooks)
-        return needed(self.equations, at)
+        return needed_positions(self.equations, at)
 
     def known_at(self, parameter: Array, lanes: Lanes) -> Positions:
         """The same at plain parameters."""
-        return needed(self.equations, self.before(parameter, lanes))
+        return needed_positions(self.equations, self.before(parameter, lanes))
 
     def before(self, parameter: Array, lanes: Lanes) -> Positions:
         """Everything that is known before the group, at plain parameters."""
-        used = self.kinematics.taken(lanes)
+        used = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):
             at = used.frame(ARRAYS, parameter)
             used.advance(at, range(self.group), ARRAYS, self.hooks(ARRAYS, parameter, lanes))
@@ -688,16 +691,16 @@ class Surroundings:
 
     def bounded(self, parameter: Array, lanes: Lanes) -> Positions:
         """The same with bounds of rounding errors."""
-        used = self.kinematics.taken(lanes)
+        used = self.kinematics.take(lanes)
         with np.errstate(all="ignore"):
             at = used.frame(ROUNDED, Rounded.of(parameter))
             used.advance(at, range(self.group), ROUNDED, self.hooks(ROUNDED, parameter, lanes))
-        return needed(self.equations, at)
+        return needed_positions(self.equations, at)
 
     def blank(self, lanes: Lanes) -> GroupSystem:
         """The group's equations beside nothing: for what needs the state alone."""
         return GroupSystem(
-            self.equations, self.kinematics.taken(lanes).numbers, Positions({}, {}, {}, {}), len(lanes)
+            self.equations, self.kinematics.take(lanes).numbers, Positions({}, {}, {}, {}), len(lanes)
         )
 
     def with_numbers(self, numbers: Dimensions, lanes: Lanes) -> Surroundings:
@@ -711,11 +714,11 @@ class Surroundings:
     def system(self, known: Positions, lanes: Lanes) -> GroupSystem:
         """The group's equations beside known positions, one lane for each place."""
         return GroupSystem(
-            self.equations, self.kinematics.taken(lanes).numbers, known.mapped(plain), len(lanes)
+            self.equations, self.kinematics.take(lanes).numbers, known.map_numbers(plain), len(lanes)
         )
 
 
-def needed(group: Newton, at: Positions) -> Positions:
+def needed_positions(group: Newton, at: Positions) -> Positions:
     """The points and links of which the equations of a group speak."""
     bodies = {body.name for constraint, _row in group.equations for body in constraint.bodies}
     return Positions(
@@ -744,22 +747,22 @@ def within(function: Callable[[Number], Number]) -> Callable[[Number], Number]:
     return apply
 
 
-def flattened(at: Positions, shape: tuple[int, ...]) -> Positions:
+def flatten_positions(at: Positions, shape: tuple[int, ...]) -> Positions:
     """Positions with every array spread over the shape and laid out in one row; floats stay."""
 
     def flat(x: Number) -> Number:
         return x if np.ndim(x) == 0 else np.broadcast_to(x, shape).reshape(-1)
 
-    return at.mapped(within(flat))
+    return at.map_numbers(within(flat))
 
 
-def shaped(at: Positions, names: Newton, shape: tuple[int, ...], into: Positions) -> None:
+def add_in_shape(at: Positions, names: Newton, shape: tuple[int, ...], into: Positions) -> None:
     """Add the group's points and links, laid out in one row, to positions of a shape."""
 
     def fold(x: Number) -> Number:
         return np.reshape(x, shape) if np.ndim(x) else x
 
-    folded = at.mapped(within(fold))
+    folded = at.map_numbers(within(fold))
     for name in names.points:
         into.points[name] = folded.points[name]
     for name in names.links:

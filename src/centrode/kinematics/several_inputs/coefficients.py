@@ -24,12 +24,12 @@ from centrode.kinematics.motion import (
     judgements_of,
     kinds_of,
     labels_of,
-    named,
+    vocabulary_variable,
 )
-from centrode.kinematics.path import JETS, span_at, unit_of
-from centrode.kinematics.prepared import ready
-from centrode.kinematics.sampling import ORDERS, SampleJudging, fill_columns, fill_number, start_of
-from centrode.kinematics.solve import GREATEST_RESULT, Solved, asked_span, fit_for, solve
+from centrode.kinematics.path import JETS, grid_at, unit_of
+from centrode.kinematics.preparation import ready
+from centrode.kinematics.samples import ORDERS, SampleJudging, fill_columns, fill_number, start_of
+from centrode.kinematics.solve import GREATEST_RESULT, Solved, fit_for, requested_grid, solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
@@ -75,7 +75,7 @@ def partials(solved: Solved) -> Partials:
     if not path.by_time:
         return Partials(solved, {drives[0].id: 1.0}, {(0, 0): solved})
     units = {drive.id: _power_of_two(unit_of(drive, path.scale)) for drive in drives}
-    continuation = _found(solved)
+    continuation = _branched_plan(solved)
     singular = np.zeros(solved.status.shape, dtype=bool)
     columns, turning = {}, {}
     for i, first in enumerate(units):
@@ -86,7 +86,7 @@ def partials(solved: Solved) -> Partials:
     status = np.where(singular & (solved.status == Status.OK), Status.SINGULAR, solved.status)
     absent = singular | np.isin(status, (Status.OPEN, Status.UNCONVERGED, Status.SINGULAR))
     judged = replace(solved, status=status.astype(np.int8))
-    along = {pair: _solved(judged, columns[pair], turning[pair], absent) for pair in columns}
+    along = {pair: _solve_direction(judged, columns[pair], turning[pair], absent) for pair in columns}
     return Partials(judged, units, along)
 
 
@@ -95,7 +95,7 @@ def _power_of_two(unit: float) -> float:
     return float(2.0 ** (frexp(unit)[1] - 1))
 
 
-def _found(solved: Solved) -> BranchedPlan:
+def _branched_plan(solved: Solved) -> BranchedPlan:
     """The plan with everything that was found along the path."""
     ready = fit_for(solved.ready, solved.span)
     continuation = start_of(ready, ready.kinematics)
@@ -139,7 +139,7 @@ def _along(
     return columns, angles, hooks.zero | ~whole
 
 
-def _solved(solved: Solved, columns: Array, angles: Array, absent: Mask) -> Solved:
+def _solve_direction(solved: Solved, columns: Array, angles: Array, absent: Mask) -> Solved:
     """The motion with derivatives along a direction in the place of those along its path."""
     layout = solved.layout
     columns[1:, :, absent] = np.nan
@@ -187,9 +187,9 @@ def kinematic_coefficients(
     """
     prepared = ready(mechanism)
     if at is None:
-        span = asked_span(prepared, samples, start, stop)
+        span = requested_grid(prepared, samples, start, stop)
     else:
-        span = span_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
+        span = grid_at(prepared.kinematics.path, np.asarray(at, dtype=np.float64))
     return coefficients_of(solve(prepared, span))
 
 
@@ -209,7 +209,9 @@ def coefficients_of(solved: Solved) -> xr.Dataset:
         for word, values, drives in (("velocity", first, 1), ("acceleration", second, 2)):
             name = f"{kind.prefix}{word}_coefficient"
             dimensions = ("sample", *("drive", "drive_2")[:drives], *kind.dimensions)
-            variables[name] = _with_units(named(name, dimensions, values, length_unit=length), name, units)
+            variables[name] = _with_units(
+                vocabulary_variable(name, dimensions, values, length_unit=length), name, units
+            )
     coordinates = coordinates_of(solved)
     coordinates["drive_2"] = labels_of(tuple(found.units))
     return xr.Dataset(variables, coords=coordinates, attrs=attributes_of(solved))

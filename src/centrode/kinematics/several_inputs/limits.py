@@ -17,8 +17,8 @@ from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import MAX_TURNS, DrivenBy, Path, TimeScale, unit_of
 from centrode.kinematics.plan_evaluation import Event, branches_at_start, layout_of
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import ORDERS, Samples, evaluate_columns
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import ORDERS, Samples, evaluate_columns
 from centrode.kinematics.solve import SEARCH, TURNS
 from centrode.laws import Uniform
 from centrode.locale import _
@@ -118,13 +118,13 @@ class _Arriving(Smooth):
         super().__init__(continuation, ARRAYS, parameter, None)
         self.angles: dict[str, float] = {}
 
-    def continued(self, group: int, key: str, angle: Any) -> Any:
-        with_turns = super().continued(group, key, angle)
-        self.angles[key] = _one(with_turns)
+    def continue_angle(self, group: int, key: str, angle: Any) -> Any:
+        with_turns = super().continue_angle(group, key, angle)
+        self.angles[key] = _as_float(with_turns)
         return with_turns
 
 
-def _one(x: Any) -> float:
+def _as_float(x: Any) -> float:
     return float(np.asarray(x, dtype=np.float64).reshape(-1)[0])
 
 
@@ -152,7 +152,7 @@ def _brought(ready: Ready, target: Mapping[str, float]) -> Assembled:
             _("hold values nearer to the initial ones, or let the description begin elsewhere"),
         )
     arriving = _Arriving(continuation, np.ones((1, 1)))
-    positions = kinematics.positions(ARRAYS, np.ones((1, 1)), arriving).mapped(_one)
+    positions = kinematics.positions(ARRAYS, np.ones((1, 1)), arriving).map_numbers(_as_float)
     signs = {group: float(branches.sign(group, np.ones(1))[0, 0]) for group in branches.signs}
     angles = {**first.angles, **positions.angles, **arriving.angles}
     return replace(first, signs=signs, positions=positions, angles=angles)

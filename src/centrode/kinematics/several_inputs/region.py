@@ -19,8 +19,8 @@ from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.motion import labels_of
 from centrode.kinematics.path import JETS, unit_of
 from centrode.kinematics.plan_evaluation import Event, PlanLayout, branches_at_start, layout_of
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import ORDERS, SampleJudging, fill_columns
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import ORDERS, SampleJudging, fill_columns
 from centrode.kinematics.several_inputs.limits import (
     Value,
     held_path,
@@ -118,7 +118,7 @@ def _some(ready: Ready, drive: str, nodes: Array, held: Mapping[str, Any], first
     kinematics = replace(ready.kinematics, path=path)
     continuation = BranchedPlan(kinematics, branches, ready.assembled.positions, kinematics.numbers)
     EventScan(continuation, mesh_of(path, nodes)).run()
-    judged = _judged(continuation, layout_of(kinematics), nodes, lanes)
+    judged = _measure_nodes(continuation, layout_of(kinematics), nodes, lanes)
     return Lines(~judged.opened, judged.margins, _limits(branches.events, nodes, first))
 
 
@@ -153,7 +153,7 @@ class _Measuring(SampleJudging):
         return np.array(np.broadcast_to(value, self.shape), dtype=np.float64)
 
 
-def _judged(continuation: BranchedPlan, layout: PlanLayout, nodes: Array, lanes: int) -> _Measuring:
+def _measure_nodes(continuation: BranchedPlan, layout: PlanLayout, nodes: Array, lanes: int) -> _Measuring:
     columns = np.empty((ORDERS, layout.width, lanes, len(nodes)))
     judging = _Measuring(continuation, nodes[None, :], (lanes, len(nodes)))
     kinematics = continuation.kinematics
@@ -347,8 +347,8 @@ def reachable_region(
     reached = reached_from(along_second.closed, *passages, seed, rounds)
     status = np.where(reached, Status.OK, np.where(along_second.closed, Status.CUT_OFF, Status.OPEN))
     variables: dict[str, Any] = {
-        "status": _named(("first", "second"), status.astype(np.int8), "status of the node", "1"),
-        "margin": _named(
+        "status": _region_variable(("first", "second"), status.astype(np.int8), "status of the node", "1"),
+        "margin": _region_variable(
             ("first", "second"), along_second.margin(), "smallest radicand over its greatest", "1"
         ),
         **_border(prepared, nodes, (along_first, along_second), reached),
@@ -407,17 +407,17 @@ def _border(
     with speaking("en"):
         names = [name_of(prepared.structure.groups[group]) for group in np.concatenate(groups)]
     return {
-        "border_value": _named(
+        "border_value": _region_variable(
             ("border", "drive"), np.concatenate(places), "values of the drives at a limit", ""
         ),
-        "border_reached": _named(
+        "border_reached": _region_variable(
             ("border",), np.concatenate(touching).astype(np.int8), "whether the limit bounds the region", "1"
         ),
-        "border_group": _named(("border",), np.array(names, dtype=str), "group of the limit", "1"),
+        "border_group": _region_variable(("border",), np.array(names, dtype=str), "group of the limit", "1"),
     }
 
 
-def _named(dimensions: tuple[str, ...], values: Any, long_name: str, unit: str) -> tuple[Any, ...]:
+def _region_variable(dimensions: tuple[str, ...], values: Any, long_name: str, unit: str) -> tuple[Any, ...]:
     return dimensions, values, {"units": unit, "long_name": long_name}
 
 
@@ -433,12 +433,12 @@ def _dataset(
     each = units[0] if units[0] == units[1] else " ".join(units)
     variables["border_value"][2]["units"] = each
     initial = np.array([start[name] for name in pair])
-    variables["initial_value"] = _named(
+    variables["initial_value"] = _region_variable(
         ("drive",), initial, "values of the drives in the initial position", each
     )
     coordinates = {
-        "first": _named(("first",), nodes[0], f"value of drive {pair[0]}", units[0]),
-        "second": _named(("second",), nodes[1], f"value of drive {pair[1]}", units[1]),
+        "first": _region_variable(("first",), nodes[0], f"value of drive {pair[0]}", units[0]),
+        "second": _region_variable(("second",), nodes[1], f"value of drive {pair[1]}", units[1]),
         "drive": labels_of(pair),
     }
     attributes = {

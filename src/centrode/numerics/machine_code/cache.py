@@ -48,13 +48,13 @@ def name_of(*parts: str) -> str:
     return digest.hexdigest()
 
 
-def read(name: str) -> bytes | None:
+def read_entry(name: str) -> bytes | None:
     """What is kept under a name; None if there is nothing, or nothing that can be trusted."""
     place = folder()
     if place is None:
         return None
     try:
-        with _opened(place, f"{name}{SUFFIX}") as file:
+        with _open_entry(place, f"{name}{SUFFIX}") as file:
             content = file.read(GREATEST + 1)
     except OSError:
         return None
@@ -88,7 +88,7 @@ def _digest(name: str, payload: bytes) -> bytes:
     return hashlib.sha256(name.encode() + payload).digest()
 
 
-def _opened(place: Path, entry: str) -> IO[bytes]:
+def _open_entry(place: Path, entry: str) -> IO[bytes]:
     """An entry that is open to be read; PermissionError where somebody else may have written it.
 
     The folder is opened first and the entry in it, so that neither can be exchanged between looking and reading.

@@ -92,7 +92,7 @@ def object_code(text: str, target: Target) -> bytes:
     return bytes(generator.emit_object(module))
 
 
-def loaded(code: bytes, target: Target) -> Loaded:
+def load_object_code(code: bytes, target: Target) -> Loaded:
     """Object code brought into memory.
 
     Raises

@@ -34,13 +34,13 @@ def sine_and_cosine(code: Code, x: Value) -> tuple[Value, Value]:
     """Sine and cosine of x; below 1 ULP from the true value for |x| <= 1e5, the C library's beyond."""
     turns = code.add(code.multiply(x, code.constant(2.0 / math.pi)), code.constant(ROUNDER))
     k = code.subtract(turns, code.constant(ROUNDER))
-    r, low = _reduced_by_fma(code, x, k) if code.has_fma else _reduced(code, x, k)
+    r, low = _reduced_by_fma(code, x, k) if code.has_fma else _reduce_by_short_parts(code, x, k)
     sine, cosine = _sine(code, r, low), _cosine(code, r, low)
     quarter = code.bits_of(turns)
     odd = _is_odd(code, quarter)
     near = (
-        _flipped(code, code.select(odd, cosine, sine), quarter),
-        _flipped(code, code.select(odd, sine, cosine), code.whole("add", quarter, 1)),
+        _flip_sign(code, code.select(odd, cosine, sine), quarter),
+        _flip_sign(code, code.select(odd, sine, cosine), code.whole("add", quarter, 1)),
     )
     # a zero keeps its sign
     at_zero = code.compare("oeq", x, code.constant(0.0))
@@ -62,7 +62,7 @@ def _reduced_by_fma(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
     return _sum_of_two(code, r, code.fma(back, third, code.add(low, lost)))
 
 
-def _reduced(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
+def _reduce_by_short_parts(code: Code, x: Value, k: Value) -> tuple[Value, Value]:
     """The same where the machine rounds products: parts so short that products with k are exact."""
     r, low = x, code.constant(0.0)
     for part in QUARTER_TURN_SHORT:
@@ -106,7 +106,7 @@ def _is_odd(code: Code, quarter: Value) -> Value:
     return code.block.put(f"icmp ne {code.vector.whole} {lowest}, {zero}")
 
 
-def _flipped(code: Code, value: Value, quarter: Value) -> Value:
+def _flip_sign(code: Code, value: Value, quarter: Value) -> Value:
     """The value, with the other sign in the third and the fourth quarter."""
     sign = code.whole("shl", code.whole("and", quarter, 2), SIGN_OF_DOUBLE - 1)
     return code.from_bits(code.block.put(f"xor {code.vector.whole} {code.bits_of(value)}, {sign}"))
@@ -198,9 +198,9 @@ class Operating:
     def compute(self, node: Node) -> None:
         """Add the value of a node whose arguments have been computed."""
         if node.arguments:
-            self.values[node] = self._computed(node, [self.value(x) for x in node.arguments])
+            self.values[node] = self._compute(node, [self.value(x) for x in node.arguments])
 
-    def _computed(self, node: Node, arguments: list[Value]) -> Value:
+    def _compute(self, node: Node, arguments: list[Value]) -> Value:
         operation, code = node.operation, self.code
         if operation in ARITHMETIC:
             a, b = arguments
@@ -218,25 +218,25 @@ class Operating:
     def _of_angle(self, node: Node) -> tuple[Value, Value]:
         """Sine and cosine of a node, together: most of their cost is common."""
         if node not in self._turned:
-            x = self._widened(self.value(node))
+            x = self._widen(self.value(node))
             sine, cosine = sine_and_cosine(self.code.of_doubles(), x)
-            self._turned[node] = self._narrowed(sine), self._narrowed(cosine)
+            self._turned[node] = self._narrow(sine), self._narrow(cosine)
         return self._turned[node]
 
     def _in_doubles(self, operation: str, arguments: list[Value]) -> Value:
-        code, wide = self.code.of_doubles(), [self._widened(x) for x in arguments]
+        code, wide = self.code.of_doubles(), [self._widen(x) for x in arguments]
         if operation == "atan2":
-            return self._narrowed(angle(code, *wide))
-        return self._narrowed(by_library(code, FUNCTIONS[operation], *wide))
+            return self._narrow(angle(code, *wide))
+        return self._narrow(by_library(code, FUNCTIONS[operation], *wide))
 
-    def _widened(self, x: Value) -> Value:
+    def _widen(self, x: Value) -> Value:
         """Functions are computed in doubles, whatever the kernel's numbers are."""
         code = self.code
         if code.vector.number == "double":
             return x
         return code.block.put(f"fpext {code.vector.name} {x} to {code.of_doubles().vector.name}")
 
-    def _narrowed(self, x: Value) -> Value:
+    def _narrow(self, x: Value) -> Value:
         code = self.code
         if code.vector.number == "double":
             return x

@@ -17,7 +17,14 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.numerics.machine_code import cache
-from centrode.numerics.machine_code.compile import VERSIONS, Loaded, Target, host, loaded, object_code
+from centrode.numerics.machine_code.compile import (
+    VERSIONS,
+    Loaded,
+    Target,
+    host,
+    load_object_code,
+    object_code,
+)
 from centrode.numerics.machine_code.language import Vector
 from centrode.numerics.machine_code.loops import LoopShape, Tables, function_text, with_reciprocals
 from centrode.numerics.scans import Array, Call, Scan, Scanned, call_of
@@ -66,7 +73,7 @@ class Kernel:
             return Scanned(call.outputs, call.state)
         width = self.shape.vector.width
         if call.lanes < width:
-            return _without_padding(self._run(_padded(call, width), 1), call)
+            return _without_padding(self._run(_pad_lanes(call, width), 1), call)
         return self._run(call, threads)
 
     def _run(self, call: Call, threads: int) -> Scanned:
@@ -136,7 +143,7 @@ def kernel_of(
         if key in _remembered:
             _remembered.move_to_end(key)
             return _remembered[key]
-    kernel = _compiled(scan, shape, np.dtype(number), machine)
+    kernel = _compile_kernel(scan, shape, np.dtype(number), machine)
     with _one_at_a_time:
         _remembered[key] = kernel
         while len(_remembered) > REMEMBERED:
@@ -150,7 +157,7 @@ def forget() -> None:
         _remembered.clear()
 
 
-def _compiled(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine: Target) -> Kernel:
+def _compile_kernel(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine: Target) -> Kernel:
     tables = Tables.of(scan, shape.lanes_inside)
     rest = tables.rest
     if shape.relaxed:
@@ -162,12 +169,12 @@ def _compiled(scan: Scan, shape: LoopShape, number: np.dtype[Any], machine: Targ
 def _function(text: str, machine: Target) -> Loaded:
     """The function of a text, from disk if its object code is there."""
     name = cache.name_of(text, VERSIONS, repr(machine))
-    code = cache.read(name)
+    code = cache.read_entry(name)
     if code is not None:
-        return loaded(code, machine)
+        return load_object_code(code, machine)
     code = object_code(text, machine)
     cache.write(name, code)
-    return loaded(code, machine)
+    return load_object_code(code, machine)
 
 
 def address(array: Array) -> int:
@@ -187,7 +194,7 @@ def _pool_of(threads: int, process: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(threads, "kernel")
 
 
-def _padded(call: Call, width: int) -> Call:
+def _pad_lanes(call: Call, width: int) -> Call:
     """Fewer lanes than a vector has: the last one is repeated."""
 
     def pad(rows: Array) -> Array:

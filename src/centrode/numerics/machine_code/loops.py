@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from centrode.numerics.expressions import Node, Operand, variable
-from centrode.numerics.graphs import Graph, rebuilt, split
+from centrode.numerics.graphs import Graph, rebuilt, split_graph
 from centrode.numerics.machine_code.functions import Operating
 from centrode.numerics.machine_code.language import Block, Code, Value, Vector
 from centrode.numerics.operations import CONSTANT, VARIABLE
@@ -175,7 +175,7 @@ def with_reciprocals(scan: Scan, inner: Sequence[str]) -> Scan:
     free = behind_decisions(scan.graph)
     quotients = [x for x in scan.graph.order if x.operation == "divide" and x in free]
     times = Counter(node.arguments[1] for node in quotients)
-    changing = _changing(scan.graph, {*inner, *scan.state})
+    changing = _inner_loop_nodes(scan.graph, {*inner, *scan.state})
 
     def product(node: Node, arguments: tuple[Node, ...]) -> Operand | None:
         if node.operation != "divide" or node not in free:
@@ -187,7 +187,7 @@ def with_reciprocals(scan: Scan, inner: Sequence[str]) -> Scan:
     return scan.with_graph(Graph(rebuilt(scan.graph.outputs, product)), scan.parameters, scan.inputs)
 
 
-def _changing(graph: Graph, names: set[str]) -> set[Node]:
+def _inner_loop_nodes(graph: Graph, names: set[str]) -> set[Node]:
     """Nodes that depend on variables of the inner loop."""
     found: set[Node] = set()
     for node in graph.order:
@@ -457,13 +457,13 @@ class ConstantTable:
         if not self.graph.outputs:
             return rows
         if rows.nbytes > KEPT:
-            return self._computed(rows)
+            return self._compute_rows(rows)
         key, last = rows.tobytes() + rows.dtype.char.encode(), self._last
         if last is None or last[0] != key:
-            self._last = last = key, self._computed(rows)
+            self._last = last = key, self._compute_rows(rows)
         return last[1]
 
-    def _computed(self, rows: Array) -> Array:
+    def _compute_rows(self, rows: Array) -> Array:
         whole = room_of(len(rows) + len(self.graph.outputs), 1, rows.shape[1], rows.dtype)[:, 0]
         whole[: len(rows)] = rows
         found = evaluate(self.graph, dict(zip(self.names, rows, strict=True)), rows.dtype)
@@ -493,10 +493,10 @@ class Tables:
     @classmethod
     def of(cls, scan: Scan, lanes_inside: bool) -> Tables:
         """The tables of a scan."""
-        steps, graph = split(scan.graph, scan.inputs, "of step", FUNCTIONS if lanes_inside else None)
+        steps, graph = split_graph(scan.graph, scan.inputs, "of step", FUNCTIONS if lanes_inside else None)
         # of one step that hands nothing on nothing is computed twice
         known = scan.parameters if lanes_inside or scan.inputs or scan.state else ()
-        lanes, graph = split(graph, known, "of lane", None if lanes_inside else FUNCTIONS)
+        lanes, graph = split_graph(graph, known, "of lane", None if lanes_inside else FUNCTIONS)
         rest = scan.with_graph(graph, (*scan.parameters, *lanes.outputs), (*scan.inputs, *steps.outputs))
         return cls(ConstantTable(scan.inputs, steps), ConstantTable(scan.parameters, lanes), rest)
 

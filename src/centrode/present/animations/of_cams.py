@@ -6,12 +6,12 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from centrode.cams.followers.sizing import follower_cam
+from centrode.cams.followers.base_circle import follower_cam
 from centrode.cams.profiles import cam_body
 from centrode.cams.results import walking_wheel
 from centrode.errors import InputError
 from centrode.locale import _
-from centrode.model.cam_files import AnyCam, curved
+from centrode.model.cam_files import AnyCam, require_curvature_cam
 from centrode.model.follower_cam import PlateCam
 from centrode.present.animations.cams import loop_of, roller_stage, walking_stage
 from centrode.present.animations.encoding import Said
@@ -38,7 +38,7 @@ def _staged(cam: AnyCam, frames: int, size: tuple[int, int], dark: bool) -> tupl
     title, display = _(cam.title), cam.display
     if isinstance(cam, PlateCam):
         return follower_stage(follower_cam(cam), frames, size, title, display, dark=dark), "round"
-    if curved(cam).mover is not None:
+    if require_curvature_cam(cam).mover is not None:
         return walking_stage(walking_wheel(cam), frames, size, title, display, dark=dark), "round"
     body = cam_body(cam)
     return roller_stage(body, frames, size, title, display, dark=dark), loop_of(body)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.cams.followers.base_circle import follower_cam, has_bounds
 from centrode.cams.followers.geometry import FollowerCam, Oscillating
-from centrode.cams.followers.sizing import bounded, follower_cam
 from centrode.errors import CentrodeError
 from centrode.model.checks import pivot_of
 from centrode.numerics.arrays import ARRAYS
@@ -47,7 +47,7 @@ def _cams(mechanism: Mechanism, dataset: xarray.Dataset, factor: float) -> Itera
     for drive in mechanism.drives:
         if drive.cam is None or drive.turning is None:
             continue
-        if drive.cam.body.base_radius is None and not bounded(drive.cam):
+        if drive.cam.body.base_radius is None and not has_bounds(drive.cam):
             continue
         time = np.asarray(dataset["time"], dtype=float)
         values = np.asarray(dataset["drive_value"].sel(drive=drive.id), dtype=float)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.equations.spelling import Spelling, parts_of
+from centrode.equations.spelling import FormulaSpelling, parts_of
 from centrode.equations.symbols import Letter, Wave
 from centrode.locale import _
 from centrode.present.equations.page import Entry, Note, Relation, Symbols, System, sections
@@ -33,7 +33,7 @@ HEAD = r"""\documentclass{article}
 """
 
 
-class LatexSpelling(Spelling):
+class LatexSpelling(FormulaSpelling):
     """Formulas in LaTeX (amsmath)."""
 
     def letter(self, letter: Letter) -> str:

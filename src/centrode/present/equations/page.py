@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.equations.spelling import Spelling, SymbolFormula, formula_of, spelled, spelled_sum
+from centrode.equations.spelling import FormulaSpelling, SymbolFormula, formula_of, spell_formula, spelled_sum
 from centrode.equations.symbols import Letter, Sum
 from centrode.locale import _
 from centrode.present.equations.velocities import velocity_lines
@@ -63,7 +63,7 @@ class Section:
     entries: tuple[Entry, ...]
 
 
-def sections(equations: Equations, spelling: Spelling, points: Sequence[str]) -> list[Section]:
+def sections(equations: Equations, spelling: FormulaSpelling, points: Sequence[str]) -> list[Section]:
     """The whole page in the order of the work; `points` are those whose velocities are asked for."""
     found = [Section(_("Symbols"), (_symbols(equations, spelling, points),))]
     conditions = [one for group in equations.groups for one in group.conditions]
@@ -101,7 +101,7 @@ def sections(equations: Equations, spelling: Spelling, points: Sequence[str]) ->
     return found
 
 
-def _symbols(equations: Equations, spelling: Spelling, points: Sequence[str]) -> Symbols:
+def _symbols(equations: Equations, spelling: FormulaSpelling, points: Sequence[str]) -> Symbols:
     display = equations.mechanism.display
     largest = max((abs(one.value) for one in equations.legend if one.unit == "m"), default=1.0)
     least = {"m": NOTHING * largest, "rad": NOTHING}
@@ -118,7 +118,7 @@ def _symbols(equations: Equations, spelling: Spelling, points: Sequence[str]) ->
     return Symbols(tuple(rows))
 
 
-def _constraint(one: Condition, spelling: Spelling) -> Relation:
+def _constraint(one: Condition, spelling: FormulaSpelling) -> Relation:
     right = spelled_sum(one.right, spelling)
     name = one.name.partition("(")[0]
     left = [spelling.letter(Letter(0, name))] if name[:2] in ("x_", "y_") or _is_offset(one) else []
@@ -130,12 +130,12 @@ def _is_offset(one: Condition) -> bool:
     return one.name.startswith("n_") and bool(one.right)
 
 
-def _differentiated(one: Condition, equations: Equations, spelling: Spelling) -> Relation:
+def _differentiated(one: Condition, equations: Equations, spelling: FormulaSpelling) -> Relation:
     total = one.rate(equations.board.moves)
     return Relation((spelled_sum(total, spelling), spelling.number(0)))
 
 
-def _given(one: Drivenness, spelling: Spelling) -> list[Entry]:
+def _given(one: Drivenness, spelling: FormulaSpelling) -> list[Entry]:
     value, rate = spelling.letter(one.letter), spelling.letter(one.rate)
     if one.law == "law":
         return [
@@ -155,14 +155,14 @@ def _given(one: Drivenness, spelling: Spelling) -> list[Entry]:
     return [Relation((value, way)), Relation((rate, spelling.decimal(one.speed)))]
 
 
-def _solved(solution: GroupSolution, spelling: Spelling) -> list[Entry]:
+def _solved(solution: GroupSolution, spelling: FormulaSpelling) -> list[Entry]:
     system = solution.system
     unknowns = tuple(spelling.letter(letter) for letter in system.unknowns)
     matrix = tuple(tuple(_entry(entry, spelling) for entry in row) for row in system.matrix)
     right = tuple(_entry(entry, spelling) for entry in system.right)
     if len(unknowns) == 1:
         left = formula_of(system.matrix[0][0] * Sum.letter(system.unknowns[0]))
-        return [Relation((spelled(left, spelling), right[0]))]
+        return [Relation((spell_formula(left, spelling), right[0]))]
     lines: list[Entry] = [System(matrix, unknowns, right)]
     if system.determinant is None or system.numerators is None:
         return [
@@ -170,10 +170,10 @@ def _solved(solution: GroupSolution, spelling: Spelling) -> list[Entry]:
             Note(_("The determinants have too many terms to be read; the system is solved as numbers.")),
         ]
     delta = spelling.letter(solution.under)
-    lines.append(Relation((delta, spelled(system.determinant, spelling, differences_first=True))))
+    lines.append(Relation((delta, spell_formula(system.determinant, spelling, differences_first=True))))
     for letter, unknown, one in zip(system.unknowns, unknowns, system.numerators, strict=True):
         top = spelling.letter(Letter(0, f"Delta_{index_of(letter)}"))
-        lines.append(Relation((top, spelled(one, spelling, differences_first=True))))
+        lines.append(Relation((top, spell_formula(one, spelling, differences_first=True))))
         lines.append(Relation((unknown, spelling.fraction([top], [delta]))))
     return lines
 
@@ -184,16 +184,16 @@ def index_of(letter: Letter) -> str:
     return name.removeprefix("omega").removeprefix("gamma").removesuffix("_dot").lstrip("_")
 
 
-def _entry(total: Sum, spelling: Spelling) -> str:
-    return spelled(formula_of(total), spelling) if total else spelling.number(0)
+def _entry(total: Sum, spelling: FormulaSpelling) -> str:
+    return spell_formula(formula_of(total), spelling) if total else spelling.number(0)
 
 
-def _normal(group: GroupEquations, spelling: Spelling, told: bool) -> list[Entry]:
+def _normal(group: GroupEquations, spelling: FormulaSpelling, told: bool) -> list[Entry]:
     """Rates as formulas; the letter of a determinant is explained first unless Cramer's rule has `told` it."""
     lines: list[Entry] = []
     solution = group.velocities
     if solution.system.determinant is not None and solution.lettered:
-        delta = spelled(solution.system.determinant, spelling, differences_first=True)
+        delta = spell_formula(solution.system.determinant, spelling, differences_first=True)
         if not told or len(solution.letters) == 1:
             lines.append(Relation((spelling.letter(solution.under), delta)))
     for unknown, formula in _with_formulas(group.unknowns, group.normal_form):
@@ -203,7 +203,7 @@ def _normal(group: GroupEquations, spelling: Spelling, told: bool) -> list[Entry
         parts = [
             spelling.derivative(unknown.letter),
             spelling.letter(unknown.rate),
-            spelled(formula, spelling),
+            spell_formula(formula, spelling),
         ]
         if parts[0] == parts[1]:
             del parts[0]
@@ -211,11 +211,11 @@ def _normal(group: GroupEquations, spelling: Spelling, told: bool) -> list[Entry
     return lines
 
 
-def _seconds(group: GroupEquations, spelling: Spelling) -> list[Entry]:
+def _seconds(group: GroupEquations, spelling: FormulaSpelling) -> list[Entry]:
     return [
         _as_numbers(unknown.second, group, spelling)
         if formula is None
-        else Relation((spelling.letter(unknown.second), spelled(formula, spelling)))
+        else Relation((spelling.letter(unknown.second), spell_formula(formula, spelling)))
         for unknown, formula in _with_formulas(group.unknowns, group.seconds.formulas)
     ]
 
@@ -232,7 +232,7 @@ def _with_formulas(
     ]
 
 
-def _as_numbers(letter: Letter, group: GroupEquations, spelling: Spelling) -> Note:
+def _as_numbers(letter: Letter, group: GroupEquations, spelling: FormulaSpelling) -> Note:
     sentence = _("{letter}: as a number, from the system of group {group}")
     symbol = spelling.math(spelling.letter(letter))
     return Note(sentence.format(letter=symbol, group=spelling.text(group.label)))

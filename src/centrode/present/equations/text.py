@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from centrode.equations.spelling import Spelling
+from centrode.equations.spelling import FormulaSpelling
 from centrode.locale import _
 from centrode.present.equations.page import Entry, Relation, Symbols, System, sections
 
@@ -20,7 +20,7 @@ WIDTH = 110
 def equations_text(equations: Equations, points: Sequence[str] | None = None) -> str:
     """The equations as text; `points` are those whose velocities are told, those on guides of the frame if left out."""
     parts = [_(equations.mechanism.title)] if equations.mechanism.title else []
-    for section in sections(equations, Spelling(), equations.sliding if points is None else points):
+    for section in sections(equations, FormulaSpelling(), equations.sliding if points is None else points):
         lines = [line for entry in section.entries for line in _lines(entry)]
         parts.append("\n".join([section.heading, *(f"  {line}".rstrip() for line in lines)]))
     return "\n\n".join(parts) + "\n"
@@ -29,7 +29,7 @@ def equations_text(equations: Equations, points: Sequence[str] | None = None) ->
 def equations_rows(equations: Equations, points: Sequence[str] | None = None) -> list[tuple[str, str, str]]:
     """Heading, left side and right side of every relation, for tables and documents."""
     found = []
-    for section in sections(equations, Spelling(), equations.sliding if points is None else points):
+    for section in sections(equations, FormulaSpelling(), equations.sliding if points is None else points):
         for entry in section.entries:
             if isinstance(entry, Relation):
                 found.append((section.heading, entry.parts[0], " = ".join(entry.parts[1:])))

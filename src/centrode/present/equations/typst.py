@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from centrode.equations.spelling import Spelling, parts_of
+from centrode.equations.spelling import FormulaSpelling, parts_of
 from centrode.equations.symbols import Letter, Wave
 from centrode.locale import decimal_mark
 
@@ -19,7 +19,7 @@ _LETTER_WITH_INDEX = re.compile(r"[A-Za-z]_.+")
 _LATIN = re.compile(r"[A-Za-z]+")
 
 
-class TypstSpelling(Spelling):
+class TypstSpelling(FormulaSpelling):
     """Formulas in typst's mathematics; numbers with the decimal mark of the reader's language."""
 
     def letter(self, letter: Letter) -> str:

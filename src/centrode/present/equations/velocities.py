@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeAlias
 
-from centrode.equations.spelling import Spelling, SymbolFormula, spelled, spelled_sum
+from centrode.equations.spelling import FormulaSpelling, SymbolFormula, spell_formula, spelled_sum
 from centrode.equations.symbols import Letter, Sum, SumTerm
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ MANY = 9
 """Terms of three components whose squares are not tried: hardly any of them would go."""
 
 
-def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
+def velocity_lines(velocity: PointVelocity, spelling: FormulaSpelling) -> list[Line]:
     """Coordinates, then the velocity along its guide, or both components and the speed.
 
     In the rates, and with these put in where that is short.
@@ -46,14 +46,14 @@ def velocity_lines(velocity: PointVelocity, spelling: Spelling) -> list[Line]:
     if _is_square(square):
         lines.append((speed, _root(square, spelling)))
     elif square.size <= LONGEST:
-        lines.append((spelling.power(speed, 2), spelled(square, spelling)))
+        lines.append((spelling.power(speed, 2), spell_formula(square, spelling)))
     return lines
 
 
-def _line(name: str, formula: SymbolFormula, closed: SymbolFormula | None, spelling: Spelling) -> Line:
-    parts = [spelling.letter(Letter(0, name)), spelled(formula, spelling, turned=formula.single)]
+def _line(name: str, formula: SymbolFormula, closed: SymbolFormula | None, spelling: FormulaSpelling) -> Line:
+    parts = [spelling.letter(Letter(0, name)), spell_formula(formula, spelling, turned=formula.single)]
     if closed is not None:
-        short = spelled(closed, spelling, turned=True)
+        short = spell_formula(closed, spelling, turned=True)
         parts += [short] if short != parts[1] else []
     return tuple(parts)
 
@@ -67,12 +67,12 @@ def _is_square(formula: SymbolFormula) -> bool:
     )
 
 
-def _root(formula: SymbolFormula, spelling: Spelling) -> str:
+def _root(formula: SymbolFormula, spelling: FormulaSpelling) -> str:
     """Square root of a product of squares; rates may be negative, so they stand between bars."""
     halves = [(letter, power // 2) for letter, power in formula.product.letters]
     texts = []
     for letter, power in halves:
-        factor = spelled(SymbolFormula(1, SumTerm(((letter, power),)), Sum.number(1)), spelling)
+        factor = spell_formula(SymbolFormula(1, SumTerm(((letter, power),)), Sum.number(1)), spelling)
         rate = letter.name.startswith("omega") or letter.name.endswith("_dot")
         texts.append((rate, spelling.bars(factor) if rate else factor))
     return spelling.join([text for _rate, text in sorted(texts, key=lambda one: one[0])]) or spelling.number(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from centrode.errors import CentrodeError
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.report.chapters.forces.results import reactions_at_instants
 from centrode.report.moments import Moment, moments_of
 from centrode.study.rotation import rotation_of

@@ -6,8 +6,8 @@ import math
 
 import xarray as xr
 
+from centrode.cams.followers.base_circle import has_bounds
 from centrode.cams.followers.forces import dataset_of_forces, follower_forces
-from centrode.cams.followers.sizing import bounded
 from centrode.cams.roller_path import angles_of
 from centrode.errors import MotionError
 from centrode.locale import _
@@ -22,7 +22,7 @@ def forces_part(cam: PlateCam, asked: Asked) -> CamPart | None:
     """Forces over a turn; nothing where neither mass nor spring nor load is given, or no base radius."""
     follower = cam.follower
     given = follower.mass or follower.inertia or follower.load or follower.spring is not None
-    if not given or (cam.body.base_radius is None and not bounded(cam)):
+    if not given or (cam.body.base_radius is None and not has_bounds(cam)):
         return None
     try:
         forces = follower_forces(cam)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from centrode.cams.followers.base_circle import follower_cam, has_bounds, stretches_text
 from centrode.cams.followers.geometry import Face, FollowerCam, Oscillating
 from centrode.cams.followers.manufacture import (
     check_cutter,
@@ -13,7 +14,6 @@ from centrode.cams.followers.manufacture import (
     follower_profile,
     points_dataset,
 )
-from centrode.cams.followers.sizing import bounded, follower_cam, stretches_text
 from centrode.cams.nodes import nodes_of
 from centrode.cams.roller_path import angles_of
 from centrode.errors import MotionError
@@ -27,7 +27,7 @@ from centrode.study.cams.said import Asked, CamPart, Rows, Units
 
 def plate_part(cam: PlateCam, asked: Asked) -> CamPart | None:
     """The profile that a follower asks for; nothing where neither a base radius nor bounds are given."""
-    if cam.body.base_radius is None and not bounded(cam):
+    if cam.body.base_radius is None and not has_bounds(cam):
         return None
     heading = _("Profile of the cam")
     try:

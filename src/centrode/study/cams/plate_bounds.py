@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from centrode.cams.followers.geometry import FollowerCam
-from centrode.cams.followers.sizing import (
+from centrode.cams.followers.base_circle import (
     Least,
     admissible_of,
     best_offset,
-    bounded,
     exact_margin,
+    has_bounds,
     layout_of,
     least_base_radius,
 )
+from centrode.cams.followers.geometry import FollowerCam
 from centrode.errors import MotionError
 from centrode.locale import _, mark
 from centrode.model.follower_cam import PlateCam
@@ -38,7 +38,7 @@ class BoundsTold:
 def bounds_told(cam: PlateCam, body: FollowerCam) -> BoundsTold:
     """What `[bounds]` asks of the profile, the least cam that keeps it, and whether this one does."""
     told = BoundsTold()
-    if not bounded(cam):
+    if not has_bounds(cam):
         return told
     layout, kept, units = layout_of(cam), admissible_of(cam), Units(cam)
     told.rows.append((_("admissible"), _admissible(cam, units)))

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.errors import InputError, NotComputedYet
-from centrode.kinematics.motion import labels_of, motion, named
+from centrode.kinematics.motion import labels_of, motion, vocabulary_variable
 from centrode.locale import _
 from centrode.model.mechanism import FRAME, Mechanism
 
@@ -105,13 +105,17 @@ def bearings(
         "wear": (("bearing", "surface", "sector"), wear),
     }
     variables: dict[str, Any] = {name: reactions[name].variable for name in ("status", "reaction_status")}
-    variables |= {name: named(name, dimensions, data) for name, (dimensions, data) in values.items()}
+    variables |= {
+        name: vocabulary_variable(name, dimensions, data) for name, (dimensions, data) in values.items()
+    }
     coordinates: dict[str, Any] = {
         name: reactions.coords[name].variable for name in ("time", "drive_value", "drive", "axis")
     } | {
         "bearing": labels_of(tuple(one.label for one in found)),
         "surface": labels_of(SURFACES),
-        "sector": named("sector", ("sector",), (np.arange(sectors) + 0.5) * (2.0 * np.pi / sectors)),
+        "sector": vocabulary_variable(
+            "sector", ("sector",), (np.arange(sectors) + 0.5) * (2.0 * np.pi / sectors)
+        ),
     }
     for part in ("point", "journal", "bush"):
         names = np.array([getattr(one, part) for one in found], dtype=str)

@@ -12,8 +12,8 @@ import xarray as xr
 
 from centrode.errors import InputError, Status
 from centrode.kinematics.motion import motion
-from centrode.kinematics.path import INSIDE, span_at
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.path import INSIDE, grid_at
+from centrode.kinematics.preparation import Ready, ready
 from centrode.kinematics.solve import solve
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
@@ -154,7 +154,7 @@ def _swing(prepared: Ready, found: xr.Dataset) -> xr.Dataset:
     """The same between the nearest limits on both sides of the initial position, if all of that is reached."""
     path = prepared.kinematics.path
     way = np.linspace(-math.tau, math.tau, 3) if path.parameter.turns else np.zeros(1)
-    reach = solve(prepared, span_at(path, path.initial + way)).branches.reach(0)
+    reach = solve(prepared, grid_at(path, path.initial + way)).branches.reach(0)
     low, high = (float(end) for end in reach)
     if not (math.isfinite(low) and math.isfinite(high) and high - low < math.tau):
         return found

@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from centrode.dynamics.kinetostatics.applied_forces import pace_of
+from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.loads import MassesAndLoads
 from centrode.dynamics.state import State, length_unit
 from centrode.dynamics.wrenches import Wrench
-from centrode.kinematics.path import span_at
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.path import grid_at
+from centrode.kinematics.preparation import ready
 from centrode.kinematics.solve import solve
 from centrode.model.mechanism import FRAME, Mechanism
 
@@ -50,9 +50,9 @@ def joint_forces(mechanism: Mechanism, places: Array) -> xr.Dataset:
 def load_forces(mechanism: Mechanism, places: Array) -> list[LoadForce]:
     """Forces of all loads and weights at given places, as `reactions` takes them; moments are not among them."""
     prepared = ready(mechanism)
-    solved = solve(prepared, span_at(prepared.kinematics.path, places))
+    solved = solve(prepared, grid_at(prepared.kinematics.path, places))
     burden = MassesAndLoads.for_reactions(mechanism)
-    state = State.of(solved, pace_of(solved, burden).moving)
+    state = State.of(solved, input_motion_of(solved, burden).moving)
     found = []
     for load in burden.loads:
         with np.errstate(all="ignore"):

@@ -15,7 +15,7 @@ from centrode.errors import InputError
 from centrode.locale import _, ngettext
 from centrode.model.files import kind_at
 from centrode.model.mechanism import FRAME, Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.model.units import unit_factor
 
 NAME = "variant"
@@ -58,12 +58,14 @@ def columns_of(mechanism: Mechanism, headers: Sequence[str]) -> list[Column | No
             if path in named:
                 both = _("columns {one} and {other} name the same number")
                 raise InputError(
-                    "", both.format(one=shown(named[path]), other=shown(header)), _("keep one of them")
+                    "",
+                    both.format(one=value_text(named[path]), other=value_text(header)),
+                    _("keep one of them"),
                 )
             named[path] = header
         found.append(column)
     if NAME not in named:
-        what = _("the column {name} is missing").format(name=shown(NAME))
+        what = _("the column {name} is missing").format(name=value_text(NAME))
         raise InputError("", what, _("give every variant a name in it, such as its number"))
     if len(found) == 1:
         raise InputError("", _("no column has a number of the mechanism"), _hint(mechanism))
@@ -88,7 +90,7 @@ def _column(mechanism: Mechanism, header: str) -> Column:
         kind = kind_at(mechanism, paths[0])
         factor = None if unit is None else unit_factor(unit, kind)
     except InputError as error:
-        where = _("column {header}").format(header=shown(header))
+        where = _("column {header}").format(header=value_text(header))
         raise InputError(where, error.what, error.repair) from None
     return Column(header.strip(), paths, kind, factor)
 

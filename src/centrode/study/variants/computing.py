@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from centrode.equations.integration import integrate
 from centrode.errors import InputError
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.locale import _, mark, ngettext, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.study.rotation import Rotation, rotation_of

@@ -15,7 +15,7 @@ from centrode.model import reading
 from centrode.model.files import with_values
 from centrode.model.mechanism import Mechanism
 from centrode.model.placement import replace_placed
-from centrode.model.reading import Problem, read_file, read_name, shown
+from centrode.model.reading import Problem, read_file, read_name, value_text
 from centrode.model.units import to_si
 from centrode.study.variants.columns import NAME, Column, columns_of
 
@@ -69,7 +69,7 @@ def read_variants(topology: Mechanism, table: Table) -> tuple[Variant, ...]:
     for variant in found:
         # folders are named after variants, and some file systems know no capital letters
         if variant.name.casefold() in seen:
-            what = _("variant {name} is there twice").format(name=shown(variant.name))
+            what = _("variant {name} is there twice").format(name=value_text(variant.name))
             raise InputError(where, what, _("give each a name of its own"))
         seen.add(variant.name.casefold())
     return tuple(found)
@@ -87,7 +87,7 @@ def _file(path: Path, where: str) -> tuple[list[str], list[Row]]:
     try:
         lines = [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
     except csv.Error as error:
-        what = _("{name} is not a CSV file: {reason}").format(name=shown(where), reason=error)
+        what = _("{name} is not a CSV file: {reason}").format(name=value_text(where), reason=error)
         place = _("{table}, row {number}").format(table=where, number=reader.line_num)
         raise InputError(place, what) from None
     if not lines:
@@ -142,7 +142,7 @@ def _variant(columns: Sequence[Column | None], row: list[object], where: str) ->
         if column is None:
             name = _name(cell, where)
             continue
-        place = _("{row}, column {header}").format(row=where, header=shown(column.header))
+        place = _("{row}, column {header}").format(row=where, header=value_text(column.header))
         number = _number(column, cell, place)
         values |= dict.fromkeys(column.paths, number)
     return Variant(name, values)
@@ -155,7 +155,7 @@ def _name(cell: object, where: str) -> str:
             where, _("the variant has no name"), _("give every variant a name, such as its number")
         )
     if text.startswith(FORMULAS):
-        what = _("{name} begins like a formula of a spreadsheet").format(name=shown(text))
+        what = _("{name} begins like a formula of a spreadsheet").format(name=value_text(text))
         raise InputError(where, what, _("begin it with a letter or a digit"))
     try:
         return read_name(text)

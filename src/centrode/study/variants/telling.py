@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from centrode.errors import InputError
-from centrode.kinematics.prepared import ready
+from centrode.kinematics.preparation import ready
 from centrode.locale import chosen_language
 from centrode.model.mechanism import Mechanism
 from centrode.study.rotation import rotation_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from centrode.kinematics.prepared import Ready, ready
+from centrode.kinematics.preparation import Ready, ready
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism
 from centrode.study.rotation import rotation_of

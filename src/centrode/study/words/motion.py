@@ -10,13 +10,13 @@ from centrode.model.mechanism import FRAME, Mechanism
 from centrode.structure.assur import assur_groups, is_input
 from centrode.structure.groups import (
     Aim,
+    CylinderCircle,
     Group,
     Meet,
     Newton,
     Rail,
     RigidPoint,
     Rod,
-    Stroke,
     Train,
     TurnedLink,
     Turning,
@@ -106,7 +106,7 @@ def _on_turned_link(roles: Roles, group: TurnedLink) -> Iterator[str]:
 
 def _on_meeting(structure: Structure, roles: Roles, group: Meet) -> Iterator[str]:
     rods, rails = group.rods, [locus for locus in group.loci if isinstance(locus, Rail)]
-    strokes = [locus.drive for locus in group.loci if isinstance(locus, Stroke)]
+    strokes = [locus.drive for locus in group.loci if isinstance(locus, CylinderCircle)]
     if strokes:
         yield from (_moved_by_cylinder(roles, strokes[0], rod.link) for rod in rods)
     elif group.carriage is not None:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.cams.followers.base_circle import follower_cam, has_bounds
 from centrode.cams.followers.motion import FollowerMotion, follower_motion
-from centrode.cams.followers.sizing import bounded, follower_cam
 from centrode.locale import _
 from centrode.render.document.blocks import Block, Check, Section, Table
 from centrode.render.document.rows import told
@@ -46,7 +46,7 @@ def motion_of(study: ReportStudy) -> FollowerMotion:
 def body_of(study: ReportStudy) -> FollowerCam | None:
     """The cam; nothing where neither its size nor bounds are given. Raises as `follower_cam`."""
     cam = study.plate
-    if cam.body.base_radius is None and not bounded(cam):
+    if cam.body.base_radius is None and not has_bounds(cam):
         return None
     return study.once("follower-cam", lambda: follower_cam(cam))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from centrode.cams.followers.sizing import stretches_text
+from centrode.cams.followers.base_circle import stretches_text
 from centrode.locale import _
 from centrode.present.cams.bodies import cam_body_figures
 from centrode.present.cams.plate_curves import plate_curves_figure

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from centrode.cams.followers.sizing import admissible_of, bounded, exact_margin, layout_of, least_cam
+from centrode.cams.followers.base_circle import admissible_of, exact_margin, has_bounds, layout_of, least_cam
 from centrode.cams.nodes import nodes_of
 from centrode.errors import CentrodeError
 from centrode.locale import _
@@ -20,8 +20,8 @@ from centrode.report.chapters.followers.profile_checks import closed_forms
 from centrode.report.chapters.followers.spelled import Spelled
 
 if TYPE_CHECKING:
+    from centrode.cams.followers.base_circle import Least
     from centrode.cams.followers.geometry import FollowerCam
-    from centrode.cams.followers.sizing import Least
     from centrode.model.follower_cam import PlateCam
     from centrode.report.study import ReportStudy
 
@@ -77,9 +77,9 @@ def _least(study: ReportStudy, body: FollowerCam) -> Iterator[Block]:
             "No bounds are given, and no base radius undercuts the profile: the size of the cam is free."
         )
         kept = _("no bound decides the base radius: a cam as small as one likes keeps them all")
-        yield Paragraph(f"{kept[0].upper()}{kept[1:]}." if bounded(cam) else free)
+        yield Paragraph(f"{kept[0].upper()}{kept[1:]}." if has_bounds(cam) else free)
         return
-    yield Paragraph(admissible if bounded(cam) else none)
+    yield Paragraph(admissible if has_bounds(cam) else none)
     decided = {
         "pressure angle": _(
             "The least base radius is {radius}. The pressure angle decides it, at $phi$ = {angle}:"

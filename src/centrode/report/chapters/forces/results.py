@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from centrode.dynamics.balancing.balance import Balance, balance
-from centrode.dynamics.balancing.shaking import shaking
+from centrode.dynamics.balancing.shaking_forces import shaking
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.reduction import reduce
 from centrode.dynamics.simulation.simulate import simulate

@@ -22,9 +22,9 @@ from centrode.cams.followers.geometry import (
     Guidance,
     Point,
     Translating,
-    oscillating,
     oscillating_face,
-    translating,
+    oscillating_follower,
+    translating_follower,
 )
 from centrode.cams.followers.motion import follower_motion
 from centrode.cams.nodes import nodes_of
@@ -74,10 +74,10 @@ class FollowerLayout:
         if self.kind == "translating":
             if self.flat:
                 return Translating(base_radius, self.offset)
-            return translating(base_radius + self.touch.roller, self.offset)
+            return translating_follower(base_radius + self.touch.roller, self.offset)
         if self.flat:
             return oscillating_face(base_radius, self.distance, self.face_offset)
-        return oscillating(base_radius + self.touch.roller, self.arm, self.distance)
+        return oscillating_follower(base_radius + self.touch.roller, self.arm, self.distance)
 
     def cam(self, motion: ContactMotion, base_radius: float) -> FollowerCam:
         """The cam of this base radius [m] for a motion.
@@ -285,7 +285,7 @@ class BaseCircleTrial:
     def _between(self, broken: float, kept: float) -> float:
         """The least radius that keeps the bounds, from one that breaks them, or 0, to one that keeps them."""
         if not broken:
-            broken = max(self._reached(), kept / STEP) * (1.0 + REACHED)
+            broken = max(self._least_base_radius(), kept / STEP) * (1.0 + REACHED)
         least = self.margin(broken).least
         if not broken < kept or least >= 0.0:
             return min(broken, kept)
@@ -293,7 +293,7 @@ class BaseCircleTrial:
             return kept
         return root(lambda one: self.margin(one).least, broken, kept)
 
-    def _reached(self) -> float:
+    def _least_base_radius(self) -> float:
         """The least base radius that the follower reaches; 0 of a flat face."""
         layout = self.layout
         if layout.flat:
@@ -309,7 +309,7 @@ class BaseCircleTrial:
         """A radius below which none keeps the bounds."""
         layout, small = self.layout, SMALLEST * self.size
         if layout.kind == "oscillating":
-            return max(small, self._reached())
+            return max(small, self._least_base_radius())
         if layout.flat:
             return small
         heights = self._heights()
@@ -462,7 +462,7 @@ def follower_cam(cam: AnyCam) -> FollowerCam:
 def _body(cam: PlateCam) -> FollowerCam:
     layout, motion, base = layout_of(cam), follower_motion(cam), cam.body.base_radius
     if base is None:
-        if not bounded(cam):
+        if not has_bounds(cam):
             what = _("a profile needs the cam's base radius")
             raise InputError("[cam] base_radius", what, _("give it, or write [bounds] that it is to keep"))
         least = least_base_radius(layout, motion, admissible_of(cam))
@@ -494,7 +494,7 @@ def least_cam(cam: AnyCam, *, offset: bool = False) -> Least:
     return find(layout_of(plate), follower_motion(plate), admissible_of(plate))
 
 
-def bounded(cam: PlateCam) -> bool:
+def has_bounds(cam: PlateCam) -> bool:
     """Whether the description says what is admissible of the profile."""
     given = (cam.bounds.pressure_angle, cam.bounds.return_pressure_angle, cam.bounds.curvature_radius)
     return any(one is not None for one in given)

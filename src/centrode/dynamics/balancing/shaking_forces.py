@@ -13,18 +13,24 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.dynamics.masses import masses_of
-from centrode.dynamics.state import Mass, Moving, Place, State
+from centrode.dynamics.state import DriveMotion, Mass, Place, State
 from centrode.dynamics.steady_motion.cycle import FEW_TURNS, MOST_TURNS, PROBES, SAME, Panels
 from centrode.dynamics.steady_motion.steady import SteadySolution, solution_of, turned_at
 from centrode.errors import InputError, MotionError, NotComputedYet
-from centrode.kinematics.motion import Variable, attributes_of, coordinates_of, judgements_of, named
-from centrode.kinematics.path import SampleGrid, span_at
-from centrode.kinematics.prepared import Ready, ready
-from centrode.kinematics.sampling import MotionOnPath
-from centrode.kinematics.solve import Solved, asked_span, solve
+from centrode.kinematics.motion import (
+    Variable,
+    attributes_of,
+    coordinates_of,
+    judgements_of,
+    vocabulary_variable,
+)
+from centrode.kinematics.path import SampleGrid, grid_at
+from centrode.kinematics.preparation import Ready, ready
+from centrode.kinematics.samples import MotionOnPath
+from centrode.kinematics.solve import Solved, requested_grid, solve
 from centrode.locale import _, speaking
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import nearest, shown
+from centrode.model.reading import nearest, value_text
 from centrode.numerics.jets import Jet
 from centrode.numerics.search import tops
 
@@ -163,7 +169,7 @@ class Instants:
         check_speed(speed)
         if speed == "steady":
             found = solution_of(mechanism)
-            return cls(found.prepared, lambda values: steady_pace(found, values), found.cycle.panels)
+            return cls(found.prepared, lambda values: steady_shaft_motion(found, values), found.cycle.panels)
         if mechanism.space == "sphere":
             raise on_sphere()
         prepared = ready(mechanism)
@@ -177,7 +183,7 @@ class Instants:
             reach = values if places is None else np.append(values, places.mesh[[0, -1]])
             places = MotionOnPath.along(self.ready, self.ready.kinematics, reach)
             self._places = places
-        moving = Moving(0.0 * values, values, np.ones(len(values)))
+        moving = DriveMotion(0.0 * values, values, np.ones(len(values)))
         return State.of_samples(
             self.ready.mechanism, places.at(values), moving, self.ready.kinematics.path.scale
         )
@@ -198,7 +204,7 @@ def on_sphere() -> NotComputedYet:
     return NotComputedYet("space", _("forces on the sphere are not computed yet"), _("describe a plane one"))
 
 
-def steady_pace(found: SteadySolution, values: Array) -> ShaftMotion:
+def steady_shaft_motion(found: SteadySolution, values: Array) -> ShaftMotion:
     """The real speed and acceleration of a drive in steady motion."""
     cycle = found.cycle
     turned = cycle.sense * (values - cycle.first)
@@ -464,7 +470,7 @@ def harmonics_of(turning: ShakingTurning, most: int) -> Harmonics:
         if error <= SETTLED:
             break
         before, count = found, 2 * count
-        panels = None if panels is None else _halved(panels)
+        panels = None if panels is None else _halve_panels(panels)
     cosine, sine = found
     return Harmonics(
         orders,
@@ -492,7 +498,7 @@ def _gauss(turning: ShakingTurning, panels: Panels) -> tuple[Array, Array]:
     return turning.first + sense * panels.nodes, panels.weights / abs(turning.period)
 
 
-def _halved(panels: Panels) -> Panels:
+def _halve_panels(panels: Panels) -> Panels:
     middles = 0.5 * (panels.edges[:-1] + panels.edges[1:])
     return Panels(np.sort(np.concatenate([panels.edges, middles])))
 
@@ -545,14 +551,14 @@ def shaking(
         what = _("{orders} harmonics were asked for").format(orders=orders)
         raise InputError("orders", what, _("ask for 1 to {most}").format(most=MOST_ORDERS))
     centre, masses = place_of(mechanism, about), heavy(mechanism)
-    prepared, span = _asked(mechanism, samples, start, stop, at, speed)
+    prepared, span = _sampled_range(mechanism, samples, start, stop, at, speed)
     solved = solve(prepared, span)
-    state = State.of(solved, Moving(span.time, span.parameter, span.rate))
+    state = State.of(solved, DriveMotion(span.time, span.parameter, span.rate))
     effects = effects_of(
         tracks_of(state, masses), masses, ShaftMotion(span.rate, span.second_rate), complex(*centre)
     )
     variables = _curves(effects, solved.ready.parameter.units[0], several=prepared.kinematics.path.by_time)
-    variables["drive_rate"] = named(
+    variables["drive_rate"] = vocabulary_variable(
         "drive_rate", ("sample",), span.rate.copy(), solved.ready.parameter.units[0]
     )
     variables["status"] = judgements_of(solved, ())["status"]
@@ -568,7 +574,7 @@ def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
     """Coordinates of a place of the frame, given by name or by themselves; InputError for any other."""
     if isinstance(about, str):
         if about not in mechanism.frame.points:
-            what = _("{name} is no point of the frame").format(name=shown(about))
+            what = _("{name} is no point of the frame").format(name=value_text(about))
             raise InputError("about", what, nearest(about, list(mechanism.frame.points)))
         x, y = mechanism.frame.coordinates[about]
         return x, y
@@ -581,7 +587,7 @@ def place_of(mechanism: Mechanism, about: About) -> tuple[float, float]:
     return x, y
 
 
-def _asked(
+def _sampled_range(
     mechanism: Mechanism,
     samples: int | None,
     start: float | None,
@@ -604,9 +610,9 @@ def _asked(
     prepared = ready(mechanism)
     path = prepared.kinematics.path
     if at is None:
-        span = asked_span(prepared, samples, start, stop)
+        span = requested_grid(prepared, samples, start, stop)
     else:
-        span = span_at(path, np.asarray(at, dtype=np.float64))
+        span = grid_at(path, np.asarray(at, dtype=np.float64))
     if mechanism.machine is not None and path.parameter.is_uniform:
         rate = np.full(len(span.parameter), np.copysign(mechanism.machine.mean_speed, path.forward))
         time = path.parameter.times(span.parameter, path.driven[0].start, rate)
@@ -618,12 +624,14 @@ def _curves(effects: Effects, unit: str, *, several: bool) -> dict[str, Variable
     """Force, its size, moment; what the drive gives, where there is one."""
     force = np.stack([effects.force.real, effects.force.imag], axis=-1)
     found = {
-        "shaking_force": named("shaking_force", ("sample", "axis"), force),
-        "shaking_force_size": named("shaking_force_size", ("sample",), np.abs(effects.force)),
-        "shaking_moment": named("shaking_moment", ("sample",), effects.moment),
+        "shaking_force": vocabulary_variable("shaking_force", ("sample", "axis"), force),
+        "shaking_force_size": vocabulary_variable("shaking_force_size", ("sample",), np.abs(effects.force)),
+        "shaking_moment": vocabulary_variable("shaking_moment", ("sample",), effects.moment),
     }
     if not several:
-        found["inertia_on_drive"] = named("inertia_on_drive", ("sample",), effects.driving, unit)
+        found["inertia_on_drive"] = vocabulary_variable(
+            "inertia_on_drive", ("sample",), effects.driving, unit
+        )
     return found
 
 
@@ -676,14 +684,19 @@ def variables_of(harmonics: Harmonics) -> dict[str, Variable]:
             "amplitude": np.hypot(cosine, sine),
             "phase": np.arctan2(sine, cosine),
         }
-        return {f"{name}_{key}": named(f"{name}_{key}", dims, value) for key, value in values.items()}
+        return {
+            f"{name}_{key}": vocabulary_variable(f"{name}_{key}", dims, value)
+            for key, value in values.items()
+        }
 
     cosine, sine = (
         np.stack([x.real, x.imag], axis=-1) for x in (harmonics.force_cosine, harmonics.force_sine)
     )
     return {
-        "order": named("order", ("order",), harmonics.orders),
+        "order": vocabulary_variable("order", ("order",), harmonics.orders),
         **parts("force_harmonic", cosine, sine, ("order", "axis")),
-        "force_harmonic_greatest": named("force_harmonic_greatest", ("order",), harmonics.force_greatest),
+        "force_harmonic_greatest": vocabulary_variable(
+            "force_harmonic_greatest", ("order",), harmonics.force_greatest
+        ),
         **parts("moment_harmonic", harmonics.moment_cosine, harmonics.moment_sine, ("order",)),
     }

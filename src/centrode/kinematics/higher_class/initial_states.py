@@ -43,7 +43,7 @@ SAME = 1e-6
 """Positions closer than this, in the greatest length and in rad, are the same."""
 
 
-def scattered(numbers: Dimensions, at: Positions, origin: Sequence[float]) -> Iterator[Any]:
+def scatter_places(numbers: Dimensions, at: Positions, origin: Sequence[float]) -> Iterator[Any]:
     """Places on rings about the known points; about the origin where only guides hold the group."""
     for known in list(at.points.values())[:POINTS] or [origin]:
         for ring in RINGS:
@@ -52,7 +52,9 @@ def scattered(numbers: Dimensions, at: Positions, origin: Sequence[float]) -> It
                 yield numbers.space.moved_point(ARRAYS, known, (reach * cos(turn), reach * sin(turn)))
 
 
-def closing(mechanism: Mechanism, system: GroupSystem, starts: Sequence[Array], steps: int) -> list[Array]:
+def closing_states(
+    mechanism: Mechanism, system: GroupSystem, starts: Sequence[Array], steps: int
+) -> list[Array]:
     """The states near the initial angles to which Newton's method leads from the starts.
 
     One if its angles are much nearer to those given than the angles of all others.
@@ -101,7 +103,7 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
     Raises InputError where an initial angle is missing, where nothing closes near the angles given, and where
     the group is singular.
     """
-    system = GroupSystem(group, numbers, at.copied(), 1)
+    system = GroupSystem(group, numbers, at.copy(), 1)
     start = _start(mechanism, system, at)
     with np.errstate(all="ignore"):
         found = newton(system, start, STEPS)
@@ -115,7 +117,7 @@ def start_higher(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: P
             _("it stands at a limit or a change point in the initial position"),
             _("start the drive elsewhere"),
         )
-    closed = closed.mapped(_floating)
+    closed = closed.map_numbers(_as_float)
     for name in group.points:
         at.points[name] = closed.points[name]
     for name in group.links:
@@ -129,16 +131,16 @@ def bound_higher(system: GroupSystem, at: Positions, bounded: Positions) -> None
     """Add a group's initial position to what is known before it with bounds of rounding errors."""
     state = system.state_of(at)
     linear = system.linear(system.at(ARRAYS, system.known, state))
-    known = bounded.mapped(
+    known = bounded.map_numbers(
         lambda x: Rounded(np.reshape(x.value, 1), np.reshape(x.bound, 1)) if isinstance(x, Rounded) else x
     )
-    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).mapped(within(_single))
+    found = system.at(ROUNDED, known, state, system.bounds(known, state, linear)).map_numbers(within(_single))
     bounded.points.update(found.points)
     bounded.poses.update(found.poses)
     bounded.angles.update(found.angles)
 
 
-def _floating(x: Number) -> float:
+def _as_float(x: Number) -> float:
     return float(x if np.ndim(x) == 0 else x[0])
 
 
@@ -152,7 +154,7 @@ def _start(mechanism: Mechanism, system: GroupSystem, at: Positions) -> Array:
     starts = [system.state_of(guess) for guess in guesses(mechanism, system.numbers, system.group, at)]
     if len(starts) == 1:
         return starts[0]
-    states = closing(mechanism, system, starts, STEPS)
+    states = closing_states(mechanism, system, starts, STEPS)
     if len(states) > 1:
         raise InputError(
             name_of(system.group),
@@ -164,18 +166,18 @@ def _start(mechanism: Mechanism, system: GroupSystem, at: Positions) -> Array:
 
 def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positions) -> list[Positions]:
     """Where the initial angles put the group's links: in one way, or in many where they know angles and no place."""
-    guess, left = _chained(mechanism, numbers, group.links, at.copied())
+    guess, left = _chain_links(mechanism, numbers, group.links, at.copy())
     if not left and all(point in guess.points for point in group.points):
         return [guess]
     if _adrift(mechanism, left) is None:
-        raise _missing(mechanism, group, left or list(group.links))
+        raise _missing_angle_error(mechanism, group, left or list(group.links))
     found = []
     origin = (0.0, 0.0) if mechanism.space == "plane" else (1.0, 0.0, 0.0)
-    for place in scattered(numbers, at, origin):
-        trial, rest = guess.copied(), left
+    for place in scatter_places(numbers, at, origin):
+        trial, rest = guess.copy(), left
         while (link := _adrift(mechanism, rest)) is not None:  # several, where guides alone join them
             trial.points[next(iter(numbers.local[link]))] = place
-            trial, after = _chained(mechanism, numbers, rest, trial)
+            trial, after = _chain_links(mechanism, numbers, rest, trial)
             if after == rest:
                 break
             rest = after
@@ -184,7 +186,7 @@ def guesses(mechanism: Mechanism, numbers: Dimensions, group: Newton, at: Positi
             if point not in carried:  # of a slider that only guides hold
                 trial.points.setdefault(point, place)
         if rest or any(point not in trial.points for point in group.points):
-            raise _missing(mechanism, group, rest or left)
+            raise _missing_angle_error(mechanism, group, rest or left)
         found.append(trial)
     return found
 
@@ -194,17 +196,17 @@ def _adrift(mechanism: Mechanism, links: Sequence[str]) -> str | None:
     return next((link for link in links if mechanism.initial_angle(link) is not None), None)
 
 
-def _chained(
+def _chain_links(
     mechanism: Mechanism, numbers: Dimensions, links: Sequence[str], guess: Positions
 ) -> tuple[Positions, list[str]]:
     """A guess with links put by their initial angles, link by link from what is known; and those left over."""
     left = list(links)
-    while ready := [link for link in left if _put(mechanism, numbers, link, guess)]:
+    while ready := [link for link in left if _pose_link(mechanism, numbers, link, guess)]:
         left = [link for link in left if link not in ready]
     return guess, left
 
 
-def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions) -> bool:
+def _pose_link(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions) -> bool:
     """Pose a link by its initial angle and a known point, or by two known points."""
     local, space = numbers.local[link], numbers.space
     known = [point for point in local if point in guess.points]
@@ -216,7 +218,7 @@ def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions)
     elif angle is None and len(known) > 1:
         first, second = known[:2]
         ends = local[first], local[second], guess.points[first], guess.points[second]
-        pose = space.righted(ARRAYS, space.pose_by_two_points(ARRAYS, *ends))
+        pose = space.normalise(ARRAYS, space.pose_by_two_points(ARRAYS, *ends))
     if pose is None:
         return False
     guess.poses[link] = pose
@@ -230,7 +232,7 @@ def _put(mechanism: Mechanism, numbers: Dimensions, link: str, guess: Positions)
     return True
 
 
-def _missing(mechanism: Mechanism, group: Newton, left: list[str]) -> InputError:
+def _missing_angle_error(mechanism: Mechanism, group: Newton, left: list[str]) -> InputError:
     without = [link for link in left if mechanism.initial_angle(link) is None]
     return InputError(
         name_of(group),

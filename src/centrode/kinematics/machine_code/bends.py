@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.assembly import with_phases
-from centrode.kinematics.compiled.variables import PARAMETER, Varied, traced_path
 from centrode.kinematics.events import bent_drives, half_widths
+from centrode.kinematics.machine_code.variables import PARAMETER, Varied, traced_path
 from centrode.kinematics.path import Path, SampleGrid
 from centrode.kinematics.plan_evaluation import EvaluationPolicy, ReachedRadicand
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.numerics.bends import BendFunctions, Bent, Cells
 from centrode.numerics.expressions import EXPRESSIONS, Operand, variable
 from centrode.numerics.jets import Jet
@@ -38,20 +38,20 @@ class _Bounding(EvaluationPolicy):
     cells: Cells
 
     def root(self, group: int, radicand: Number) -> Number:
-        self.found[RADICAND, group] = self._bent(radicand)
+        self.found[RADICAND, group] = self._bend_of(radicand)
         return NODE_BENDS.sqrt(radicand) * self.signs[group]
 
     def divisor(self, group: int, divisor: Number) -> Number:
-        self.found[DIVISOR, group] = self._bent(divisor)
+        self.found[DIVISOR, group] = self._bend_of(divisor)
         return divisor
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         raise ReachedRadicand(None)  # only walks along the path count turns
 
     def higher(self, group: int, m: Any, at: Positions) -> None:
         raise ReachedRadicand(None)
 
-    def _bent(self, number: Number) -> Bent:
+    def _bend_of(self, number: Number) -> Bent:
         return number if isinstance(number, Bent) else Bent(number, 0.0, 0.0, self.cells)
 
 

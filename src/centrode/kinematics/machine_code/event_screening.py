@@ -18,10 +18,10 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.change_points import WINDOW
-from centrode.kinematics.compiled.bends import DIVISOR, RADICAND, bends_of
-from centrode.kinematics.compiled.path_following import SURE, Walk, Walking, way_of
-from centrode.kinematics.compiled.trace import Traced
-from centrode.kinematics.compiled.variables import (
+from centrode.kinematics.machine_code.bends import DIVISOR, RADICAND, bends_of
+from centrode.kinematics.machine_code.path_continuation import SURE, Walk, Walking, way_of
+from centrode.kinematics.machine_code.trace import Traced
+from centrode.kinematics.machine_code.variables import (
     AWAY,
     FIRST,
     INFINITE,
@@ -39,7 +39,7 @@ from centrode.kinematics.compiled.variables import (
 )
 from centrode.kinematics.mesh import LOW, mesh_of
 from centrode.kinematics.path import Path
-from centrode.kinematics.sampling import ORDERS, SUSPECT
+from centrode.kinematics.samples import ORDERS, SUSPECT
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
 from centrode.numerics.jets import Jet
 from centrode.numerics.scans import Reduction, together
@@ -73,7 +73,7 @@ class Centring:
     def centres(self, values: Mapping[str, Array], kernels: str, threads: int) -> tuple[Mask, Values]:
         """The mechanisms whose links all stay near enough to their centres; these with their windings."""
         found, further = self._over_nodes.run(values, kernels, threads), Values()
-        near = [self._centred(link, found, further) for link in self.links]
+        near = [self._add_centre(link, found, further) for link in self.links]
         return np.logical_and.reduce(near), further
 
     @cached_property
@@ -116,7 +116,7 @@ class Centring:
                 parts += [greatest(f"high {k} {link}", rest), least(f"low {k} {link}", rest)]
         return together(*parts)
 
-    def _centred(self, link: str, found: Values, further: Values) -> Mask:
+    def _add_centre(self, link: str, found: Values, further: Values) -> Mask:
         """Where an angle stays within half a turn of a centre; the centre and its winding are added."""
         start = self.traced.solved.ready.assembled.angles[link]
         whole = np.round((start - found[f"at start {link}"]) / TURN)

@@ -38,7 +38,7 @@ from centrode.kinematics.plan_evaluation import (
     rotor_of_angle,
     slide_of,
 )
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.kinematics.quick_turns import QuickTurns
 from centrode.locale import _
 from centrode.numerics.arrays import ARRAYS
@@ -92,7 +92,7 @@ def evaluate_columns(
     With `lanes` every parameter belongs to one mechanism of the batch: arrays have (k,) in place of (lanes, n).
     """
     along, layout = parameter if lanes is not None else parameter[None, :], samples.layout
-    kinematics = continuation.kinematics if lanes is None else continuation.kinematics.taken(lanes)
+    kinematics = continuation.kinematics if lanes is None else continuation.kinematics.take(lanes)
     judging = SampleJudging(continuation, along, samples.status.shape, lanes)
     with np.errstate(all="ignore"):
         at = kinematics.positions(JETS, Jet.variable(along, ORDERS - 1), judging)

@@ -13,7 +13,7 @@ from centrode.model.examples import example_names, example_text
 from centrode.model.files import parse_mechanism, read_mechanism
 from centrode.model.follower_cam import PlateCam
 from centrode.model.mechanism import Mechanism
-from centrode.model.reading import likely, read_file, shown
+from centrode.model.reading import likely, read_file, value_text
 from centrode.model.toml import is_cam, toml_tables
 
 CamName: TypeAlias = Literal["cam-from-curvature", "walking-wheel-four-legs", "walking-wheel-three-legs"]
@@ -78,7 +78,7 @@ def _file(file_or_example: str | Path) -> Path | None:
         return None
     near = likely(name, names)
     raise InputError(
-        shown(name)[1:-1],
+        value_text(name)[1:-1],
         _("no such file, and no built-in mechanism of this name"),
         near or _("give a TOML file, or a name that centrode examples lists"),
     )

@@ -20,13 +20,13 @@ import numpy.typing as npt
 from centrode.kinematics.higher_class.curves import (
     CurvePlaces,
     ReachedPlace,
-    crossing,
+    curve_crossing,
     limits,
     quintic,
     reach,
 )
 from centrode.kinematics.higher_class.newton import SMALL, newton
-from centrode.kinematics.higher_class.system import Surroundings, needed, total
+from centrode.kinematics.higher_class.system import Surroundings, needed_positions, total
 from centrode.kinematics.plan_evaluation import Event
 from centrode.structure.constraints import Positions
 
@@ -160,7 +160,7 @@ class CurveTracks:
 
     def foretell(self, parameter: Array, lanes: Lanes) -> Foretold:
         """Starting states at parameters, one lane for each."""
-        parameter, grown = self._repeated(parameter, lanes)
+        parameter, grown = self._fold_to_first_round(parameter, lanes)
         which, known = self._pieces(parameter, lanes)
         state = np.full((self.at_limit.shape[2], len(parameter)), np.nan).T
         sense = np.zeros(len(parameter))
@@ -175,7 +175,7 @@ class CurveTracks:
         past = (parameter < self.limits[lanes, 0]) | (parameter > self.limits[lanes, 1])
         return Foretold(state, sense, past & ~limit, limit)
 
-    def _repeated(self, parameter: Array, lanes: Lanes) -> tuple[Array, Array]:
+    def _fold_to_first_round(self, parameter: Array, lanes: Lanes) -> tuple[Array, Array]:
         """The places on the first round of closed curves that come before places, and how states grow between them."""
         side = (parameter > self.initial).astype(np.intp)
         period = self.period[lanes, side]
@@ -293,15 +293,17 @@ class Rounds:
         who, places, last = who[passing], places[passing], pieces[passing]
         ways = np.ascontiguousarray(last[:, :, -1].T)
         share = share_at(ways, np.arange(len(who)), places - origin[passing])
-        return self._met(who, places, total(last * (share[:, None] ** np.arange(6))[:, :, None])[:, :-1])
+        return self._walkers_at_start(
+            who, places, total(last * (share[:, None] ** np.arange(6))[:, :, None])[:, :-1]
+        )
 
-    def _met(self, who: Lanes, places: Array, foretold: Array) -> list[tuple[np.intp, Period]]:
+    def _walkers_at_start(self, who: Lanes, places: Array, foretold: Array) -> list[tuple[np.intp, Period]]:
         """Walkers that stand at their next places as they stood at their first; the next places move on."""
         lane, turns = self.lane[who], self.passed[who]
         self.passed[who] += 1
         before = self.around.before(places, lane)
-        system = self.around.system(needed(self.around.equations, before), lane)
-        found = newton(system, system.righted(foretold))
+        system = self.around.system(needed_positions(self.around.equations, before), lane)
+        found = newton(system, system.normalise(foretold))
         state = np.where(found.found[:, None], found.state, np.nan)
         first = turns == 0
         self.begun[who[first]] = state[first]
@@ -319,7 +321,7 @@ class Rounds:
 
     def _alike(self, one: Positions, other: Positions, lane: Lanes) -> Mask:
         """Where everything before the group stands alike, but for what Newton's method does not tell apart."""
-        over = 1.0 / self.around.kinematics.taken(lane).numbers.scale
+        over = 1.0 / self.around.kinematics.take(lane).numbers.scale
         gap = np.zeros(len(lane))
         for name, place in one.points.items():
             for x, y in zip(place, other.points[name], strict=True):
@@ -332,7 +334,7 @@ class Rounds:
         return np.asarray(gap <= SMALL)
 
 
-def repeated(event: Event, tracks: CurveTracks, extent: tuple[float, float]) -> list[Event]:
+def repeat_event(event: Event, tracks: CurveTracks, extent: tuple[float, float]) -> list[Event]:
     """An event of the first round of a closed curve on all rounds of an extent; any other alone."""
     side = int(event.at > tracks.initial)
     period, away = float(tracks.period[event.lane, side]), abs(event.at - tracks.initial)
@@ -414,7 +416,7 @@ def trace(
         ):
             trail.end, trail.limit = "limit", float(stop)
     tracks = CurveTracks.of(initial, walkers.trails[:lanes], walkers.trails[lanes:], start.shape[1])
-    return tracks, [other for event in events for other in repeated(event, tracks, extent)]
+    return tracks, [other for event in events for other in repeat_event(event, tracks, extent)]
 
 
 def _setting_out(around: Surroundings, start: Array, initial: float, extent: tuple[float, float]) -> Walkers:
@@ -461,7 +463,7 @@ def _stride(around: Surroundings, walkers: Walkers, who: Lanes, smooth: bool) ->
     passed = np.full(len(who), np.nan)
     for k in np.nonzero(crossed & good)[0]:
         one = np.array([k])
-        at = crossing(around, walkers.lane[who[one]], here.of(one), there.of(one))
+        at = curve_crossing(around, walkers.lane[who[one]], here.of(one), there.of(one))
         if at is None:
             good[k] = False  # the curves only come near each other
         else:
@@ -490,7 +492,7 @@ def _foretold(around: Surroundings, walkers: Walkers, who: Lanes, here: CurvePla
         end = total(walkers.last[who])
     ahead = np.where(np.isfinite(value), value - end, taylor)
     parameter = here.parameter + ahead[:, -1]
-    return parameter, around.blank(walkers.lane[who]).righted(here.state + ahead[:, :-1])
+    return parameter, around.blank(walkers.lane[who]).normalise(here.state + ahead[:, :-1])
 
 
 def _shorten(walkers: Walkers, who: Lanes) -> None:

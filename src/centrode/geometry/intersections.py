@@ -10,8 +10,8 @@ from typing import Any, Protocol, TypeAlias
 
 from centrode.geometry import sphere
 from centrode.geometry.plane import (
-    Circle,
     Line,
+    PlaneCircle,
     Root,
     Vector,
     circle_meets_line,
@@ -38,7 +38,7 @@ Number: TypeAlias = Any
 Place: TypeAlias = Sequence[Number]
 
 
-class Moving(Protocol):
+class MovingLocus(Protocol):
     """A locus that a moving point stays on."""
 
     @property
@@ -126,8 +126,8 @@ class OnLine:
         return less(0.0, y), x
 
 
-def followed(
-    place: Place, loci: Sequence[Moving], solved: Callable[[Sequence[Number]], Place], order: int
+def place_series(
+    place: Place, loci: Sequence[MovingLocus], solved: Callable[[Sequence[Number]], Place], order: int
 ) -> tuple[Jet, ...]:
     """A place as series, one for each axis; `solved` gives the vector whose products with the gradients are known."""
     found = [tuple(place)]
@@ -138,8 +138,12 @@ def followed(
     return tuple(Jet(axis) for axis in zip(*found, strict=True))
 
 
-def bent(
-    place: Sequence[Jet], loci: Sequence[Moving], ways: Sequence[Number], determinant: Number, cells: Cells
+def bound_acceleration(
+    place: Sequence[Jet],
+    loci: Sequence[MovingLocus],
+    ways: Sequence[Number],
+    determinant: Number,
+    cells: Cells,
 ) -> tuple[Bent, ...]:
     """A place that was followed, with a bound of its acceleration over cells.
 
@@ -223,7 +227,7 @@ def apart(a: Place, b: Place) -> tuple[Number, ...]:
     return tuple(less(x, y) for x, y in zip(a, b, strict=True))
 
 
-def meet_circles(one: Circle, other: Circle, root: Root) -> Vector:
+def meet_circles(one: PlaneCircle, other: PlaneCircle, root: Root) -> Vector:
     """Point where two circles meet, to the left of the way from centre to centre for a positive root."""
     radicand = radicand_of_circles(one, other)
     signed = root(radicand)
@@ -233,14 +237,16 @@ def meet_circles(one: Circle, other: Circle, root: Root) -> Vector:
     loci = [AtDistance(locus.centre, locus.radius * locus.radius, place) for locus in (one, other)]
     # the cross product of the arms is half the root
     inverse = 2.0 / value(signed)
-    x, y = followed(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
+    x, y = place_series(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
     if isinstance(radicand, Bent):
         cells = radicand.cells
-        x, y = bent((x, y), loci, _across(loci, cells), 0.5 * cells.m.sqrt(radicand.least), cells)
+        x, y = bound_acceleration(
+            (x, y), loci, _across(loci, cells), 0.5 * cells.m.sqrt(radicand.least), cells
+        )
     return x, y
 
 
-def meet_circle_and_line(one: Circle, other: Line, root: Root) -> Vector:
+def meet_circle_and_line(one: PlaneCircle, other: Line, root: Root) -> Vector:
     """Point where a circle meets a line, ahead of the foot of its centre for a positive root."""
     radicand = radicand_of_circle_and_line(one, other)
     signed = root(radicand)
@@ -253,10 +259,10 @@ def meet_circle_and_line(one: Circle, other: Line, root: Root) -> Vector:
     )  # fmt: skip
     # the cross product of the arm and the line's normal is the way from the foot
     inverse = 1.0 / value(signed)
-    x, y = followed(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
+    x, y = place_series(place, loci, lambda known: _in_plane(loci, known, inverse), radicand.order)
     if isinstance(radicand, Bent):
         cells = radicand.cells
-        x, y = bent((x, y), loci, _across(loci, cells), cells.m.sqrt(radicand.least), cells)
+        x, y = bound_acceleration((x, y), loci, _across(loci, cells), cells.m.sqrt(radicand.least), cells)
     return x, y
 
 
@@ -290,19 +296,19 @@ def meet_circles_on_sphere(
         sphere.cross(one.gradient, other.gradient),
     )
 
-    def solved(known: Sequence[Number]) -> Place:
+    def solve_products(known: Sequence[Number]) -> Place:
         shares = [times(inverse, x) for x in known]
         return [
             total(times(share, way[axis]) for share, way in zip(shares, towards, strict=True))
             for axis in range(3)
         ]
 
-    x, y, z = followed(place, (one, other, unit), solved, radicand.order)
+    x, y, z = place_series(place, (one, other, unit), solve_products, radicand.order)
     if isinstance(radicand, Bent):
         cells = radicand.cells
         across = _across((one, other), cells)
         ways = (*across, across[0] * across[1])
-        x, y, z = bent((x, y, z), (one, other, unit), ways, cells.m.sqrt(radicand.least), cells)
+        x, y, z = bound_acceleration((x, y, z), (one, other, unit), ways, cells.m.sqrt(radicand.least), cells)
     return x, y, z
 
 
@@ -326,5 +332,5 @@ def _vector(vector: Vector) -> Vector:
     return value(vector[0]), value(vector[1])
 
 
-def _circle(circle: Circle) -> Circle:
-    return Circle(_vector(circle.centre), value(circle.radius))
+def _circle(circle: PlaneCircle) -> PlaneCircle:
+    return PlaneCircle(_vector(circle.centre), value(circle.radius))

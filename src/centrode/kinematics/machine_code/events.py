@@ -18,17 +18,33 @@ import numpy.typing as npt
 from centrode.errors import Status
 from centrode.kinematics.angular_velocity import NodeTurns, angle_and_rates, node_turns
 from centrode.kinematics.change_points import BranchedPlan, inside
-from centrode.kinematics.compiled.bends import bends_of
-from centrode.kinematics.compiled.trace import Traced, traced
-from centrode.kinematics.compiled.variables import PARAMETER, TURN, Varied, boxed, inputs_of, places_of, taken
-from centrode.kinematics.compiled.writing import JUDGED, ORDERED, ROOMS, SINES, Writer, nodes_of, solved_of
 from centrode.kinematics.events import EventScan
+from centrode.kinematics.machine_code.bends import bends_of
+from centrode.kinematics.machine_code.outputs import (
+    JUDGED,
+    ORDERED,
+    ROOMS,
+    SINES,
+    Writer,
+    nodes_of,
+    solved_of,
+)
+from centrode.kinematics.machine_code.trace import Traced, trace_motion
+from centrode.kinematics.machine_code.variables import (
+    PARAMETER,
+    TURN,
+    Varied,
+    box_array,
+    inputs_of,
+    places_of,
+    take_lanes,
+)
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import SampleGrid, nearest_node
 from centrode.kinematics.plan_evaluation import Branches, positions_from, rotor_of_angle
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.kinematics.quick_turns import QuickTurns
-from centrode.kinematics.sampling import (
+from centrode.kinematics.samples import (
     CLOSED,
     ORDERS,
     SUSPECT,
@@ -75,7 +91,7 @@ class Patches:
         self, lanes: Lanes, places: Lanes, found: Mapping[str, Array], status: npt.NDArray[np.int8]
     ) -> Lanes:
         """Put samples, one of each of these mechanisms, into the arrays of all; returns those that do not close."""
-        arrays, status[lanes, places], broken = self._computed(lanes, places)
+        arrays, status[lanes, places], broken = self._compute_samples(lanes, places)
         for name in ROOMS:
             if name in found:
                 if name in ORDERED:
@@ -84,7 +100,9 @@ class Patches:
                     found[name][lanes, places] = arrays[name][:, 0]
         return lanes[broken]
 
-    def _computed(self, lanes: Lanes, places: Lanes) -> tuple[dict[str, Array], npt.NDArray[np.int8], Mask]:
+    def _compute_samples(
+        self, lanes: Lanes, places: Lanes
+    ) -> tuple[dict[str, Array], npt.NDArray[np.int8], Mask]:
         """The samples as motions (k, 1) of one sample each."""
         parameter = self.span.parameter[places]
         kinematics = of_lanes(self.continuation.kinematics, lanes)
@@ -202,8 +220,8 @@ def of_mesh(plan: Traced) -> dict[str, Nodes]:
     found |= {f"divisor {group}": _pair(x) for group, x in plan.divisors.items() if isinstance(x, Jet)}
     for (kind, group), bent in plan.bends.items():
         if f"{kind} {group}" in found:
-            found[f"bend of {kind} {group}"] = boxed([bent.bend])
-    return found | {f"rotor {link}": boxed(rotor) for link, rotor in plan.turning.items()}
+            found[f"bend of {kind} {group}"] = box_array([bent.bend])
+    return found | {f"rotor {link}": box_array(rotor) for link, rotor in plan.turning.items()}
 
 
 def _angle_of(link: str, numbers: Dimensions, at: Positions) -> Any:
@@ -212,7 +230,7 @@ def _angle_of(link: str, numbers: Dimensions, at: Positions) -> Any:
 
 
 def _pair(number: Any) -> Nodes:
-    return boxed(number.coefficients[:2] if isinstance(number, Jet) else (number, 0.0))
+    return box_array(number.coefficients[:2] if isinstance(number, Jet) else (number, 0.0))
 
 
 @dataclass
@@ -248,8 +266,8 @@ class EventSearch:
     def turns(self, link: str, initial: float) -> NodeTurns:
         """Turns of a link's angle along the mesh; `initial` [rad] is its value in the initial position."""
         cosine, sine = self._found[f"rotor {link}"]
-        if len(self._mended[0]):
-            cosine[self._mended], sine[self._mended] = self._rotors_mended[link]
+        if len(self._repaired_nodes[0]):
+            cosine[self._repaired_nodes], sine[self._repaired_nodes] = self._rotors_mended[link]
         start = int(np.argmin(np.abs(self.mesh - self.continuation.branches.initial)))
         quick = self._quick.measured(partial(_angle_of, link))
         return node_turns((cosine, sine), initial, start, len(self.mesh), quick)
@@ -286,7 +304,7 @@ class EventSearch:
             return Jet((pair[0], pair[1]))
         if len(lanes):
             half = np.broadcast_to(scan.zeros.half, self.mesh.shape)[nodes]
-            patched = scan.guards.bent(group, lanes, self.mesh[nodes], half)
+            patched = scan.guards.bend_bound(group, lanes, self.mesh[nodes], half)
             pair[:, lanes, nodes], bend[0, lanes, nodes] = patched[:2], patched[2]
         return Bent(pair[0], pair[1], bend[0], Cells(scan.zeros.half, ARRAYS))
 
@@ -301,15 +319,15 @@ class EventSearch:
         return lanes, nodes
 
     @cached_property
-    def _mended(self) -> tuple[Lanes, Lanes]:
+    def _repaired_nodes(self) -> tuple[Lanes, Lanes]:
         return self._near_change_points(range(len(self.continuation.kinematics.structure.groups)))
 
     @cached_property
     def _rotors_mended(self) -> dict[str, tuple[Any, Any]]:
         """Rotors where a series gives any group, as the arrays have them."""
-        lanes, nodes = self._mended
+        lanes, nodes = self._repaired_nodes
         parameter = self.mesh[nodes]
-        kinematics = self.continuation.kinematics.taken(lanes)
+        kinematics = self.continuation.kinematics.take(lanes)
         with np.errstate(all="ignore"):
             at = kinematics.positions(ARRAYS, parameter, self.continuation.hooks(ARRAYS, parameter, lanes))
             plan, _writer = self.writers(self._counts)
@@ -362,7 +380,7 @@ class Eventful:
                 yield some, self._part(search, some)
             else:
                 self.unclosed.update(some.tolist())  # nobody has looked
-                yield some, solve(self.ready, self.span, taken(numbers, some), len(some))
+                yield some, solve(self.ready, self.span, take_lanes(numbers, some), len(some))
 
     @cached_property
     def possible(self) -> bool:
@@ -388,7 +406,7 @@ class Eventful:
         writer.write(values, room)
         found = writer.placed(room)
         turns = self._turns(plan, search, found)
-        status, doubtful = self._judged(continuation, found[JUDGED], found["residual"])
+        status, doubtful = self._judge_samples(continuation, found[JUDGED], found["residual"])
         broken = (status == Status.OPEN) & (found[JUDGED] != OPEN)
         if broken.any():
             self.unclosed.update(some[broken.any(axis=1)].tolist())
@@ -405,10 +423,10 @@ class Eventful:
         key = tuple(sorted(counts.items()))
         if key not in self._writers:
             signs = signs_of(self.ready, counts)
-            plan = traced(self.ready, self.span, self.varied, signs) if counts else self.plan
+            plan = trace_motion(self.ready, self.span, self.varied, signs) if counts else self.plan
             nodes = plan
             if not all(isinstance(radicand, Jet) for radicand in plan.radicands.values()):
-                nodes = traced(self.ready, self.span, self.varied, signs, on_mesh=True)
+                nodes = trace_motion(self.ready, self.span, self.varied, signs, on_mesh=True)
             path = self.ready.kinematics.path
             mesh = places_of(path, self.mesh, ORDERS - 1) | bends_of(path, self.mesh)
             samples = inputs_of(path, self.span)
@@ -432,7 +450,7 @@ class Eventful:
                 angle += TURN * turns
         return known
 
-    def _judged(self, continuation: BranchedPlan, judged: Array, residual: Array) -> tuple[Any, Mask]:
+    def _judge_samples(self, continuation: BranchedPlan, judged: Array, residual: Array) -> tuple[Any, Mask]:
         """Statuses of the samples, and which of them the arrays have to look at."""
         status = np.full(judged.shape, Status.OK, dtype=np.int8)
         status[beyond_limits(continuation.branches, self.span.parameter)] = Status.CUT_OFF
@@ -470,7 +488,7 @@ def _outputs(plan: Traced) -> dict[str, Nodes]:
         opened = m.less(lowest, 0.0)
         judged = m.where(near, DOUBTFUL, m.where(opened, OPEN, judged))
         found = {
-            name: boxed([m.where(opened, np.nan, node) for node in nodes.ravel()]).reshape(nodes.shape)
+            name: box_array([m.where(opened, np.nan, node) for node in nodes.ravel()]).reshape(nodes.shape)
             for name, nodes in found.items()
         }
-    return {**found, JUDGED: boxed([judged]).reshape(1, 1)}
+    return {**found, JUDGED: box_array([judged]).reshape(1, 1)}

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.kinematics.path import JETS, Path, SampleGrid
-from centrode.kinematics.sampling import ORDERS
+from centrode.kinematics.samples import ORDERS
 from centrode.numerics.executors import runner
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
 from centrode.numerics.graphs import Graph
@@ -32,7 +32,7 @@ none, whether the place is a sample."""
 ALONG = (PARAMETER, TIME, RATE, SECOND_RATE, STEP, SHARE, FIRST, SAMPLE)
 
 
-def boxed(values: Sequence[Any]) -> Nodes:
+def box_array(values: Sequence[Any]) -> Nodes:
     """An array of nodes and floats."""
     found = np.empty(len(values), dtype=object)
     for k, value in enumerate(values):
@@ -68,25 +68,25 @@ def varied_of(numbers: Dimensions, values: Mapping[str, Array]) -> Varied:
     known = {id(value): path for path, value in values.items()}
     names: list[str] = []
 
-    def lifted(x: Number) -> Number:
+    def lift(x: Number) -> Number:
         if isinstance(x, float):
             return x
         # one array in several places is one variable
         names.append(known.setdefault(id(x), f"number {len(names)}"))
         return variable(names[-1])
 
-    nodes = numbers.mapped(lifted)
+    nodes = numbers.map_numbers(lift)
     scale = numbers.scale
     return Varied(nodes, tuple(names), scale if isinstance(scale, float) else variable(SCALE))
 
 
-def taken(numbers: Dimensions, lanes: npt.NDArray[np.intp]) -> Dimensions:
+def take_lanes(numbers: Dimensions, lanes: npt.NDArray[np.intp]) -> Dimensions:
     """The numbers of some mechanisms of a batch."""
-    return numbers.mapped(lambda x: x if isinstance(x, float) else x[lanes])
+    return numbers.map_numbers(lambda x: x if isinstance(x, float) else x[lanes])
 
 
 def arrays_of(numbers: Dimensions) -> list[Array]:
-    """The arrays of a batch's numbers, in the order in which `mapped` meets them."""
+    """The arrays of a batch's numbers, in the order in which `map_numbers` meets them."""
     found: list[Array] = []
 
     def seen(x: Number) -> Number:
@@ -94,12 +94,12 @@ def arrays_of(numbers: Dimensions) -> list[Array]:
             found.append(x)
         return x
 
-    numbers.mapped(seen)
+    numbers.map_numbers(seen)
     return found
 
 
 @dataclass(frozen=True)
-class TracedSpan(SampleGrid):
+class TracedGrid(SampleGrid):
     """One place of the path, whose numbers may be variables."""
 
     accelerated: bool = False
@@ -109,16 +109,16 @@ class TracedSpan(SampleGrid):
         return self.accelerated
 
 
-def span_of_variables(span: SampleGrid) -> TracedSpan:
+def grid_of_variables(span: SampleGrid) -> TracedGrid:
     """The place as variables; rates that are the same everywhere as numbers."""
     accelerates = span.accelerates
 
     def row(name: str, values: Array) -> Any:
-        return values[:1] if (values == values[0]).all() else boxed([variable(name)])
+        return values[:1] if (values == values[0]).all() else box_array([variable(name)])
 
     second = row(SECOND_RATE, span.second_rate) if accelerates else np.zeros(1)
-    place = boxed([variable(PARAMETER)])
-    return TracedSpan(boxed([variable(TIME)]), place, row(RATE, span.rate), second, accelerates)
+    place = box_array([variable(PARAMETER)])
+    return TracedGrid(box_array([variable(TIME)]), place, row(RATE, span.rate), second, accelerates)
 
 
 def times_of(span: SampleGrid) -> dict[str, Array]:
@@ -151,7 +151,7 @@ class TracedPath(Path):
             return dict(self.known)
         values = {drive: x.value if isinstance(x, Jet) else x for drive, x in self.known.items()}
         if isinstance(parameter, np.ndarray):
-            return {drive: boxed([x]) for drive, x in values.items()}
+            return {drive: box_array([x]) for drive, x in values.items()}
         return values
 
 

@@ -131,7 +131,7 @@ def _places(kinematics: Kinematics, assembled: Assembled) -> Iterator[Positions]
     with np.errstate(all="ignore"):
         there = kinematics.positions(ARRAYS, nodes[None, :], continuation.hooks(ARRAYS, nodes[None, :], None))
     for k in range(len(nodes)):
-        at = there.mapped(lambda x, k=k: float(np.broadcast_to(x, (1, len(nodes)))[0, k]))  # type: ignore[misc]
+        at = there.map_numbers(lambda x, k=k: float(np.broadcast_to(x, (1, len(nodes)))[0, k]))  # type: ignore[misc]
         vectors = [*at.points.values(), *(vector for pose in at.poses.values() for vector in pose)]
         if all(np.isfinite(x) for vector in vectors for x in vector):
             yield at

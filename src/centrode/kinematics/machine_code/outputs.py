@@ -11,12 +11,12 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.compiled.trace import Traced
-from centrode.kinematics.compiled.variables import PARAMETER, boxed
+from centrode.kinematics.machine_code.trace import Traced
+from centrode.kinematics.machine_code.variables import PARAMETER, box_array
 from centrode.kinematics.solve import Solved
 from centrode.numerics.executors import runner
 from centrode.numerics.expressions import Node, as_node
-from centrode.numerics.graphs import Graph, ordered
+from centrode.numerics.graphs import Graph, topological_order
 from centrode.numerics.machine_code.loops import FUNCTIONS
 from centrode.numerics.operations import VARIABLE
 from centrode.numerics.scans import Scan
@@ -45,7 +45,7 @@ def nodes_of(plan: Traced) -> dict[str, Nodes]:
             if link in plan.turning:
                 angles[0, 0, 0, k] = plan.turning[link][0]
         found["angles"] = angles
-        found[SINES] = boxed([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
+        found[SINES] = box_array([sine for _cosine, sine in plan.turning.values()]).reshape(1, 1, -1)
     return {name: nodes for name, nodes in found.items() if nodes is not None}
 
 
@@ -94,7 +94,7 @@ class Writer:
             as_node(x) for name, nodes in self.outputs.items() if name not in LAST_BITS for x in nodes.ravel()
         ]
         kinds: dict[Node, frozenset[bool]] = {}
-        for node in ordered(asked):
+        for node in topological_order(asked):
             own = {str(node.detail) in self.places} if node.operation == VARIABLE else set()
             kinds[node] = frozenset(own).union(*(kinds[x] for x in node.arguments))
             # what depends on places alone, or on mechanisms alone, is computed on NumPy
@@ -136,12 +136,12 @@ class Writer:
     def placed(self, room: Array) -> dict[str, Array]:
         """The same as arrays with the shapes of the nodes."""
         return {
-            name: _placed(name, stream, self.outputs[name].shape)
+            name: _shape_numbers(name, stream, self.outputs[name].shape)
             for name, stream in self.streams(room).items()
         }
 
 
-def _placed(name: str, room: Array, shape: tuple[int, ...]) -> Array:
+def _shape_numbers(name: str, room: Array, shape: tuple[int, ...]) -> Array:
     """Numbers (numbers, lanes, samples) as an array of a shape that has one lane and one sample."""
     lane = 1 if name in ORDERED else 0
     whole = room.reshape(*shape[:lane], *shape[lane + 2 :], *room.shape[1:])

@@ -15,28 +15,28 @@ import numpy as np
 import numpy.typing as npt
 
 from centrode.errors import Status
-from centrode.kinematics.compiled.event_screening import EventScreening, ScreenedEvents
-from centrode.kinematics.compiled.events import Eventful
-from centrode.kinematics.compiled.path_following import SURE, Walking, Way, beginnings, way_of
-from centrode.kinematics.compiled.trace import Traced, Untraceable, traced
-from centrode.kinematics.compiled.variables import (
+from centrode.kinematics.machine_code.event_screening import EventScreening, ScreenedEvents
+from centrode.kinematics.machine_code.events import Eventful
+from centrode.kinematics.machine_code.outputs import ROOMS, SINES, Writer, nodes_of, solved_of, streams_of
+from centrode.kinematics.machine_code.path_continuation import SURE, Walking, Way, beginnings, way_of
+from centrode.kinematics.machine_code.trace import Traced, Untraceable, trace_motion
+from centrode.kinematics.machine_code.variables import (
     SCALE,
     TURN,
     Varied,
-    boxed,
+    box_array,
     centre_of,
     inputs_of,
-    taken,
+    take_lanes,
     varied_of,
     whole_turns,
     winding_of,
 )
-from centrode.kinematics.compiled.writing import ROOMS, SINES, Writer, nodes_of, solved_of, streams_of
 from centrode.kinematics.mesh import mesh_of
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.plan_evaluation import Branches, branches_at_start
-from centrode.kinematics.prepared import Ready
-from centrode.kinematics.sampling import CLOSED, Kept
+from centrode.kinematics.preparation import Ready
+from centrode.kinematics.samples import CLOSED, Kept
 from centrode.kinematics.solve import CHUNK, Progress, Solved, check_size, solve
 from centrode.numerics import machine_code
 from centrode.numerics.executors import MACHINE_CODE
@@ -67,7 +67,7 @@ def solve_many(
         return solve(ready, span, numbers, lanes, progress)
     varied = varied_of(numbers, {})
     try:
-        plan = traced(ready, span, varied)
+        plan = trace_motion(ready, span, varied)
     except Untraceable:
         return solve(ready, span, numbers, lanes, progress)
     check_size(plan.solved.layout, lanes, len(span.parameter))
@@ -123,7 +123,7 @@ class _Many:
     def _outputs(self) -> dict[str, Nodes]:
         found = nodes_of(self.plan)
         slack = self.judging.slack_at_samples
-        return found if slack is None else {**found, SLACK: boxed([slack]).reshape(1, 1)}
+        return found if slack is None else {**found, SLACK: box_array([slack]).reshape(1, 1)}
 
     @cached_property
     def _inputs(self) -> dict[str, Array]:
@@ -139,7 +139,7 @@ class _Many:
                 if walking is None:
                     writer.write(some, room[:, rows])
                 else:
-                    at_end = walking.written(self._way, some, MACHINE_CODE, 1, room[:, rows])
+                    at_end = walking.write_samples(self._way, some, MACHINE_CODE, 1, room[:, rows])
                     sure[rows] &= at_end[SURE] > 0.0
             if progress is not None:
                 progress(rows.stop, self.lanes)
@@ -176,7 +176,7 @@ class _Many:
 
     def _some(self, lanes: Lanes) -> Solved:
         """Some mechanisms by arrays."""
-        return solve(self.ready, self.span, taken(self.numbers, lanes), len(lanes))
+        return solve(self.ready, self.span, take_lanes(self.numbers, lanes), len(lanes))
 
     def _fill(
         self, left: Lanes, found: dict[str, Array], status: npt.NDArray[np.int8], branches: Branches

@@ -37,17 +37,17 @@ from centrode.dynamics.simulation.equation_of_motion import (
     ReducedFunctions,
     Trajectory,
     TrajectoryPiece,
-    sorted_efforts,
+    sort_load_terms,
     too_far,
     without_value,
 )
 from centrode.dynamics.simulation.equation_of_motion import Array as States
 from centrode.dynamics.simulation.interpolation import Interpolant
-from centrode.dynamics.state import Moving
+from centrode.dynamics.state import DriveMotion
 from centrode.errors import MotionError
-from centrode.kinematics.compiled.trace import Untraceable, traced
-from centrode.kinematics.compiled.variables import PARAMETER, TIME, centre_of, varied_of, winding_of
-from centrode.kinematics.compiled.variables import RATE as RATE_VARIABLE
+from centrode.kinematics.machine_code.trace import Untraceable, trace_motion
+from centrode.kinematics.machine_code.variables import PARAMETER, TIME, centre_of, varied_of, winding_of
+from centrode.kinematics.machine_code.variables import RATE as RATE_VARIABLE
 from centrode.kinematics.path import SampleGrid
 from centrode.locale import _, mark
 from centrode.model.simulation import MOST_TURNS
@@ -94,10 +94,12 @@ def fixed_steps(
         if not done:
             raise
         ended = "interrupted"
-    return course_of(field, found[:, : done + 1], step, ended, 4 * steps)
+    return trajectory_of_states(field, found[:, : done + 1], step, ended, 4 * steps)
 
 
-def course_of(field: Field, found: States, step: float, ended: Ending, evaluations: int) -> Trajectory:
+def trajectory_of_states(
+    field: Field, found: States, step: float, ended: Ending, evaluations: int
+) -> Trajectory:
     """States (STATES, steps + 1) at even times as a course; between two steps an interpolant of the same order."""
     count = found.shape[1] - 1
     if ended in ("limit", "change point") and count == 0:
@@ -156,7 +158,7 @@ def _rates(field: Field, t: float, y: States) -> States:
 #
 # Positions are those of the closed forms, traced at each of the four stages: nothing is represented, so
 # nothing is
-# approximated but by the scheme. That needs a mechanism without events, as sweeps do (`kinematics.compiled`).
+# approximated but by the scheme. That needs a mechanism without events, as sweeps do (`kinematics.machine_code`).
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Number: TypeAlias = Any
@@ -204,12 +206,12 @@ class Compiled:
             step = duration / steps
             next_state(field, done * step, states[:, done], step)  # says which formula has no value
             states, ended = states[:, : done + 1], "limit"
-        course = course_of(field, states, duration / steps, ended, 4 * steps)
+        course = trajectory_of_states(field, states, duration / steps, ended, 4 * steps)
         course.executor = self.executor
         return course
 
 
-def compiled(rows: ReducedFunctions, driving: Driving, executor: str) -> Compiled:
+def compile_scan(rows: ReducedFunctions, driving: Driving, executor: str) -> Compiled:
     """The scan of a mechanism; raises Untraceable, with a reason, where its motion cannot be said by expressions."""
     _refuse_events(rows)
     rates = _rate_graph(rows, driving)
@@ -220,7 +222,7 @@ def compiled(rows: ReducedFunctions, driving: Driving, executor: str) -> Compile
         moved = begun if before is None else {k: begun[k] + share * step * before[k] for k in NAMES}
         time = variable(BEGINNING) + share * step
         places: dict[str, Operand] = {PARAMETER: moved["value"], RATE_VARIABLE: moved["speed"], TIME: time}
-        return dict(rates.substituted(places).outputs)
+        return dict(rates.substitute(places).outputs)
 
     k1 = at_stage(None, 0.0)
     k2 = at_stage(k1, 0.5)
@@ -239,19 +241,19 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
     reducer = rows.reducer
     # two samples whose times and rates differ: then these are variables
     span = SampleGrid(np.array([0.0, 1.0]), np.array([0.0, 1.0]), np.array([1.0, 2.0]), np.zeros(2))
-    found = traced(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
+    found = trace_motion(reducer.ready, span, varied_of(reducer.ready.kinematics.numbers, {}))
     if found.steps:
         raise Untraceable(mark("groups of higher class"))
     time, value, rate = (variable(name) for name in (TIME, PARAMETER, RATE_VARIABLE))
     mechanism = reducer.ready.mechanism
     burden = MassesAndLoads.of(mechanism, None, EXPRESSIONS)
-    state = state_of_nodes(found.solved, burden, Moving(time, value, rate))  # type: ignore[arg-type]
+    state = state_of_nodes(found.solved, burden, DriveMotion(time, value, rate))  # type: ignore[arg-type]
     inertia: Number = rows.added
     slope: Number = 0.0
     for mass in burden.masses:
         inertia, slope = (a + b for a, b in zip((inertia, slope), share(state, mass), strict=True))
     moments: dict[str, Number] = dict.fromkeys(SORTS, 0.0)
-    for one in sorted_efforts(mechanism, burden.loads):
+    for one in sort_load_terms(mechanism, burden.loads):
         along = one.effort.along(state)
         moments[one.sort] = moments[one.sort] + one.effort.strength(state) * along
     driven = driving.over(EXPRESSIONS, time, value, rate)
@@ -263,7 +265,7 @@ def _rate_graph(rows: ReducedFunctions, driving: Driving) -> Graph:
         **{name: moment * rate for name, moment in powers.items()},
     }
     graph = Graph.of(outputs)
-    return graph.substituted(_turns(rows, graph))
+    return graph.substitute(_turns(rows, graph))
 
 
 def _refuse_events(rows: ReducedFunctions) -> None:
@@ -304,7 +306,7 @@ REST_SCANS = 2000
 """Instants at which a mechanism at rest is asked whether it breaks loose, where something depends on time."""
 
 
-def loosening(field: Field, value: float, first: float, last: float) -> float | None:
+def break_loose_time(field: Field, value: float, first: float, last: float) -> float | None:
     """When a mechanism at rest breaks loose between two times; evenly spaced instants tell, bisection finds it."""
     times: list[float] = np.linspace(first, last, REST_SCANS).tolist()
     for before, after in pairwise(times):
@@ -331,14 +333,18 @@ def first_event(
         targets.append((1, 0.0))
     for component, target in targets:
 
-        def missed(t: float, component: int = component, target: float = target) -> float:
+        def distance_to_target(t: float, component: int = component, target: float = target) -> float:
             return float(dense(t)[component]) - target
 
-        start = missed(before)
-        if start == 0.0 or start * missed(solver.t) > 0.0:
-            when = solver.t if start * missed(solver.t) > 0.0 else _behind_start(missed, before, solver.t)
+        start = distance_to_target(before)
+        if start == 0.0 or start * distance_to_target(solver.t) > 0.0:
+            when = (
+                solver.t
+                if start * distance_to_target(solver.t) > 0.0
+                else _behind_start(distance_to_target, before, solver.t)
+            )
         else:
-            when = root(missed, before, solver.t)
+            when = root(distance_to_target, before, solver.t)
         found.append((when, component, target))
     return min(found, default=None)
 
@@ -353,7 +359,7 @@ def _behind_start(missed: Callable[[float], float], first: float, last: float) -
     return last
 
 
-def arrived(
+def refine_event(
     rates: Callable[[float, State], State], t: float, y: State, component: int, target: float
 ) -> tuple[float, State]:
     """From a place very near to an event to the event itself, by Taylor's polynomial."""
@@ -453,11 +459,11 @@ class Watch:
         # away from zero: beyond it friction would be another one
         more = rate + copysign(ASIDE * max(abs(rate), float(solver.atol[1]), LEAST_RATE), rate or leg.sense)
 
-        def slowed(speed: float) -> float:
+        def slowness(speed: float) -> float:
             forces: DriveForces = self.field.forces(leg, solver.t, value, speed)
             return float(forces.acceleration(speed))
 
-        damping = abs(slowed(more) - slowed(rate)) / (more - rate)
+        damping = abs(slowness(more) - slowness(rate)) / (more - rate)
         held = damping * (solver.step_size or 0.0) > EDGE
         self.held_back = self.held_back + 1 if held else 0
         if self.held_back >= HELD_BACK:
@@ -621,7 +627,7 @@ class Stepper:
     def _rest(self, t: float, state: State) -> float | None:
         """Until when it rests; None where nothing will ever move it, or not before the end."""
         value = float(state[VALUE])
-        later = loosening(self.field, value, t, self.until.time) if self.field.of_time else None
+        later = break_loose_time(self.field, value, t, self.until.time) if self.field.of_time else None
         held = state.copy()
         if later is None:
             self._note("standstill", t, state)
@@ -667,7 +673,7 @@ class Stepper:
                 continue
             when, component, target = event
             t, y = self._exactly(rates, before, y_before, when, begun, leg)
-            t, y = arrived(rates, t, y, component, target)
+            t, y = refine_event(rates, t, y, component, target)
             ended = y + begun * _RELATIVE
             if component == VALUE:
                 ended[VALUE] = min(max(ended[VALUE], leg.low), leg.high)

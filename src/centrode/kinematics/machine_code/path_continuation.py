@@ -12,9 +12,18 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from centrode.kinematics.compiled.newton import Names, numbers_of
-from centrode.kinematics.compiled.trace import Traced, chains_of
-from centrode.kinematics.compiled.variables import (
+from centrode.kinematics.higher_class.evaluation import starts
+from centrode.kinematics.higher_class.newton import newton
+from centrode.kinematics.higher_class.system import (
+    GroupSystem,
+    Surroundings,
+    add_in_shape,
+    flatten_positions,
+    needed_positions,
+)
+from centrode.kinematics.machine_code.newton import Names, numbers_of
+from centrode.kinematics.machine_code.trace import Traced, chains_of
+from centrode.kinematics.machine_code.variables import (
     ALONG,
     AWAY,
     FIRST,
@@ -26,12 +35,9 @@ from centrode.kinematics.compiled.variables import (
     TURN,
     before_of,
 )
-from centrode.kinematics.higher_class.evaluation import starts
-from centrode.kinematics.higher_class.newton import newton
-from centrode.kinematics.higher_class.system import GroupSystem, Surroundings, flattened, needed, shaped
 from centrode.kinematics.path import Path
 from centrode.kinematics.plan_evaluation import EvaluationPolicy
-from centrode.kinematics.prepared import Ready
+from centrode.kinematics.preparation import Ready
 from centrode.kinematics.solve import of_batch
 from centrode.numerics.executors import runner
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
@@ -59,7 +65,7 @@ def beginnings(ready: Ready, numbers: Dimensions, lanes: int) -> dict[str, Array
     parts = []
     for first in range(0, lanes, AT_ONCE):
         rows = slice(first, min(first + AT_ONCE, lanes))
-        some = numbers.mapped(lambda x, rows=rows: x if isinstance(x, float) else x[rows])  # type: ignore[misc]
+        some = numbers.map_numbers(lambda x, rows=rows: x if isinstance(x, float) else x[rows])  # type: ignore[misc]
         parts.append(_of_some(ready, some, rows.stop - first))
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]} if parts else {}
 
@@ -69,7 +75,7 @@ def _of_some(ready: Ready, numbers: Dimensions, lanes: int) -> dict[str, Array]:
     initial, found = kinematics.path.initial, dict[str, Array]()
     everyone = np.arange(lanes)
     hooks = _Beginning(ready)
-    for group, chain in chains_of(ready, kinematics.taken(everyone).numbers).items():
+    for group, chain in chains_of(ready, kinematics.take(everyone).numbers).items():
         around = Surroundings(kinematics, group, hooks.at_lanes)
         state = starts(around, ready.kinematics.numbers, ready.assembled.positions, initial, lanes)
         hooks.states[group] = around, state
@@ -109,11 +115,11 @@ class _OfLanes(EvaluationPolicy):
     def higher(self, group: int, m: Namespace, at: Positions) -> None:
         around, states = self.states[group]
         equations, shape = around.equations, self.lanes.shape
-        known = flattened(needed(equations, at), shape)
-        system = GroupSystem(equations, around.kinematics.taken(self.lanes).numbers, known, len(self.lanes))
+        known = flatten_positions(needed_positions(equations, at), shape)
+        system = GroupSystem(equations, around.kinematics.take(self.lanes).numbers, known, len(self.lanes))
         found = newton(system, states[self.lanes])
         state = np.where(found.found[:, None], found.state, np.nan)
-        shaped(system.at(m, known, state), equations, shape, at)
+        add_in_shape(system.at(m, known, state), equations, shape, at)
 
 
 # The order in which a walk passes places of the path: from the initial position onwards, then from there
@@ -174,7 +180,7 @@ def way_of(path: Path, inputs: Mapping[str, Array]) -> Way:
 
 
 def _leg(initial: float, longest: float, inputs: Mapping[str, Array], asked: Places) -> PathLeg:
-    parameter, places = _filled(initial, longest, inputs[PARAMETER][asked])
+    parameter, places = _fill_places(initial, longest, inputs[PARAMETER][asked])
     found = {name: np.zeros(len(parameter)) for name in (*inputs, STEP, SHARE, FIRST, SAMPLE)}
     for name, values in inputs.items():
         found[name][places] = values[asked]
@@ -188,7 +194,7 @@ def _leg(initial: float, longest: float, inputs: Mapping[str, Array], asked: Pla
     return PathLeg(found, places, asked)
 
 
-def _filled(initial: float, longest: float, asked: Array) -> tuple[Array, Places]:
+def _fill_places(initial: float, longest: float, asked: Array) -> tuple[Array, Places]:
     """Places with no longer steps than that, and which of them are those asked for."""
     if not len(asked):
         return np.array([initial]), np.zeros(0, dtype=np.intp)
@@ -302,9 +308,11 @@ class Walking:
         state: dict[str, Array] = {}
         for leg in way.legs:
             state = self._run(leg, values, self._begun(values, state), kernels, threads, None)
-        return self._left(state)
+        return self._end_states(state)
 
-    def written(self, way: Way, values: Values, kernels: str, threads: int, out: Array) -> dict[str, Array]:
+    def write_samples(
+        self, way: Way, values: Values, kernels: str, threads: int, out: Array
+    ) -> dict[str, Array]:
         """Write outputs at the samples into `out` (outputs, lanes, samples); returns what is left at the end."""
         lanes, each = out.shape[1], out.itemsize * len(self.outputs)
         longest = max(leg.steps for leg in way.legs)
@@ -323,14 +331,14 @@ class Walking:
                     buffer = room[: math.prod(shape)].reshape(shape)
                     state = self._run(part, some, state, kernels, threads, buffer)
                     out[:, rows, part.asked] = np.moveaxis(buffer[:, part.places], 1, 2)
-            parts.append(self._left(state))
+            parts.append(self._end_states(state))
         return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def _begun(self, values: Values, before: Values) -> dict[str, Array]:
         """All states in the initial position; what is kept goes on from where it stood before."""
         lanes = len(next(iter(values.values())))
         start = self.walk.start | dict(self.reduction.start)
-        kept = self._left(before)
+        kept = self._end_states(before)
         return {
             name: kept[name]
             if name in kept
@@ -340,7 +348,7 @@ class Walking:
             for name in self.scan.state
         }
 
-    def _left(self, state: Values) -> dict[str, Array]:
+    def _end_states(self, state: Values) -> dict[str, Array]:
         """Of all states what does not tell of a place."""
         return {name: state[name] for name in (*self.reduction.state, SURE) if name in state}
 

@@ -19,23 +19,23 @@ import numpy.typing as npt
 from centrode.errors import Status
 from centrode.kinematics.angular_velocity import attitudes_of, spins_of
 from centrode.kinematics.assembly import with_phases
-from centrode.kinematics.compiled.bends import bent_guards
-from centrode.kinematics.compiled.newton import NewtonStep, newton_step
-from centrode.kinematics.compiled.variables import (
+from centrode.kinematics.higher_class.system import LinkChain, pattern_of, plain
+from centrode.kinematics.machine_code.bends import bent_guards
+from centrode.kinematics.machine_code.newton import NewtonStep, newton_step
+from centrode.kinematics.machine_code.variables import (
     NODE_JETS,
     PARAMETER,
     TURN,
     Varied,
     before_of,
-    boxed,
-    span_of_variables,
+    box_array,
+    grid_of_variables,
     traced_path,
     turns_along,
     turns_of,
     whole_turns,
     winders_of,
 )
-from centrode.kinematics.higher_class.system import LinkChain, pattern_of, plain
 from centrode.kinematics.path import SampleGrid
 from centrode.kinematics.plan_evaluation import (
     EvaluationPolicy,
@@ -45,8 +45,8 @@ from centrode.kinematics.plan_evaluation import (
     layout_of,
     positions_from,
 )
-from centrode.kinematics.prepared import Ready
-from centrode.kinematics.sampling import ORDERS, UnitLength, each_residual
+from centrode.kinematics.preparation import Ready
+from centrode.kinematics.samples import ORDERS, UnitLength, each_residual
 from centrode.kinematics.solve import Solved
 from centrode.locale import mark
 from centrode.numerics.bends import Bent
@@ -106,7 +106,7 @@ class Deciding(EvaluationPolicy):
         self.divisors[group] = divisor
         return divisor
 
-    def continued(self, group: int, key: str, angle: Number) -> Number:
+    def continue_angle(self, group: int, key: str, angle: Number) -> Number:
         if not self.chains:
             raise Untraceable(mark("gears or wheels whose turns are counted"))
         value = plain(angle)
@@ -194,7 +194,7 @@ class Traced:
         return found
 
 
-def traced(
+def trace_motion(
     ready: Ready,
     span: SampleGrid,
     varied: Varied,
@@ -218,7 +218,7 @@ def traced(
     columns = _columns(layout.numbers(NODE_JETS, kinematics.numbers, at))
     winders = winders_of(path)
     angles, turning = _angles(layout, at, columns, ready.assembled.angles, _turns(bool(chains), winders))
-    solved = _solved(_Parts(ready, kinematics, layout, columns, angles), span, varied)
+    solved = _motion_of_parts(_Parts(ready, kinematics, layout, columns, angles), span, varied)
     bends = bent_guards(ready, span, varied, signs)
     return Traced(
         solved, hooks.radicands, hooks.divisors, bends, turning, winders, hooks.steps, hooks.counted
@@ -241,7 +241,7 @@ class _Parts:
 
 def _columns(numbers: Sequence[Number]) -> Nodes:
     """Value, first and second derivative of numbers: (3, numbers)."""
-    return np.stack([boxed([_derivative(x, order) for x in numbers]) for order in range(ORDERS)])
+    return np.stack([box_array([_derivative(x, order) for x in numbers]) for order in range(ORDERS)])
 
 
 def _derivative(x: Number, order: int) -> Operand:
@@ -266,7 +266,7 @@ def _angles(
         cosine, sine = columns[:, layout.rotor(link)].T
         if isinstance(cosine[0], float) and isinstance(sine[0], float):
             found[:, k] = 0.0
-            found[0, k] = _standing(cosine[0], sine[0], start[link])
+            found[0, k] = _constant_angle(cosine[0], sine[0], start[link])
             continue
         turning[link] = cosine[0], sine[0]
         found[0, k] = EXPRESSIONS.atan2(sine[0], cosine[0]) + TURN * turns(link, cosine[0], sine[0])
@@ -275,20 +275,20 @@ def _angles(
     return found, turning
 
 
-def _standing(cosine: float, sine: float, start: float) -> float:
+def _constant_angle(cosine: float, sine: float, start: float) -> float:
     """The angle of a link that never turns, on the turn of the initial position."""
     angle = float(np.arctan2(sine, cosine))
     return angle + TURN * round((start - angle) / TURN)
 
 
-def _solved(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
+def _motion_of_parts(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
     layout, kinematics = parts.layout, parts.kinematics
     fixed = Positions.of_frame(kinematics.numbers, {}, EXPRESSIONS).points
     frame = np.full((ORDERS, layout.axes * len(fixed)), 0.0, dtype=object)
-    frame[0] = boxed([x for place in fixed.values() for x in place])
+    frame[0] = box_array([x for place in fixed.values() for x in place])
     parameter = variable(PARAMETER)
     at = positions_from(
-        kinematics, layout, parts.columns[0], parts.angles[0], boxed([parameter])[0], EXPRESSIONS
+        kinematics, layout, parts.columns[0], parts.angles[0], box_array([parameter])[0], EXPRESSIONS
     )
     points = parts.columns[:, : layout.first_attitude]
     columns = parts.columns.reshape(ORDERS, layout.width, 1, 1)
@@ -299,7 +299,7 @@ def _solved(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
     path = kinematics.path
     return Solved(
         replace(parts.ready, kinematics=kinematics),
-        span_of_variables(span),
+        grid_of_variables(span),
         layout,
         branches_at_start(path, start.signs, start.angles, smooth=True),
         np.concatenate([frame, points], axis=1).reshape(ORDERS, 1, 1, -1, layout.axes),
@@ -309,9 +309,9 @@ def _solved(parts: _Parts, span: SampleGrid, varied: Varied) -> Solved:
         spins_of(layout, columns),
         attitudes_of(layout, columns),
         np.full((1, 1), Status.OK, dtype=np.int8),
-        boxed([worst]).reshape(1, 1),
+        box_array([worst]).reshape(1, 1),
         UnitLength(""),
-        boxed(contacts).reshape(1, 1, -1, 2),
+        box_array(contacts).reshape(1, 1, -1, 2),
     )
 
 

@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-from centrode.geometry.plane import Vector, dot, is_literal_zero, turned
-from centrode.kinematics.compiled.variables import FIRST, NODE_JETS, SHARE, STEP, TURN, whole_turns
-from centrode.kinematics.higher_class.system import LinkChain, Posture, cut, needed, plain
+from centrode.geometry.plane import Vector, dot, is_literal_zero, rotate_vector
+from centrode.kinematics.higher_class.system import LinkChain, Posture, needed_positions, plain, truncate_jet
+from centrode.kinematics.machine_code.variables import FIRST, NODE_JETS, SHARE, STEP, TURN, whole_turns
 from centrode.numerics.expressions import EXPRESSIONS, Node, Operand, as_node, variable
 from centrode.numerics.jets import Jet
 from centrode.structure.constraints import Positions
@@ -67,14 +67,14 @@ def numbers_of(posture: Posture) -> list[Number]:
     return [*pairs, *posture.angles.values()]
 
 
-def moved(chain: LinkChain, posture: Posture, by: Sequence[Operand], far: bool = False) -> Posture:
+def move_posture(chain: LinkChain, posture: Posture, by: Sequence[Operand], far: bool = False) -> Posture:
     """A posture with its free coordinates changed by small numbers, or by such as stand in `far`."""
     rotors, angles, places = dict(posture.rotors), dict(posture.angles), dict(posture.places)
     for follow in chain.pattern.follows:
         name = follow.entity.name
         if follow.entity.kind == "link":
             turn = by[follow.turn]
-            rotors[name] = _righted(turned(rotors[name], _rotor(turn, far)))
+            rotors[name] = _normalise_rotor(rotate_vector(rotors[name], _rotor(turn, far)))
             angles[name] = angles[name] + turn
         if follow.by is None:
             x, y = places[name]
@@ -103,7 +103,7 @@ def _rotor(turn: Operand, far: bool) -> Vector:
     )
 
 
-def _righted(rotor: Vector) -> Vector:
+def _normalise_rotor(rotor: Vector) -> Vector:
     """A rotor of nearly unit length made one: 1 / sqrt(1 + e) by its tangent."""
     cosine, sine = rotor
     factor = 1.5 - 0.5 * (cosine * cosine + sine * sine)
@@ -143,7 +143,7 @@ def product(matrix: Rows, vector: Operands) -> list[Operand]:
     return [scalar_product(row, vector) for row in matrix]
 
 
-def multiplied(first: Rows, second: Rows) -> list[list[Operand]]:
+def matrix_product(first: Rows, second: Rows) -> list[list[Operand]]:
     """Product of two matrices."""
     columns = list(zip(*second, strict=True))
     return [[scalar_product(row, column) for column in columns] for row in first]
@@ -197,7 +197,7 @@ def _by_elimination(matrix: Rows) -> list[list[Operand]]:
     rows = [[*row, *(1.0 if i == j else 0.0 for j in range(size))] for i, row in enumerate(matrix)]
     for k in range(size):
         for i in range(k + 1, size):
-            _exchanged(rows, k, i)
+            _exchange_rows(rows, k, i)
         over = 1.0 / rows[k][k]
         rows[k] = [0.0 if c <= k else times(x, over) for c, x in enumerate(rows[k])]
         for i in range(size):
@@ -210,7 +210,7 @@ def _by_elimination(matrix: Rows) -> list[list[Operand]]:
     return [row[size:] for row in rows]
 
 
-def _exchanged(rows: list[list[Operand]], k: int, i: int) -> None:
+def _exchange_rows(rows: list[list[Operand]], k: int, i: int) -> None:
     """Exchange two rows where the lower one has the greater number in column k."""
     first, second = rows[k][k], rows[i][k]
     if is_literal_zero(second):
@@ -220,11 +220,11 @@ def _exchanged(rows: list[list[Operand]], k: int, i: int) -> None:
         return
     lower = m.less(m.abs(first), m.abs(second))
     pairs = list(zip(rows[k], rows[i], strict=True))
-    rows[k] = [x if x is y else _selected(lower, y, x) for x, y in pairs]
-    rows[i] = [y if x is y else _selected(lower, x, y) for x, y in pairs]
+    rows[k] = [x if x is y else _select(lower, y, x) for x, y in pairs]
+    rows[i] = [y if x is y else _select(lower, x, y) for x, y in pairs]
 
 
-def _selected(condition: Operand, x: Operand, y: Operand) -> Operand:
+def _select(condition: Operand, x: Operand, y: Operand) -> Operand:
     if is_literal_zero(x) and is_literal_zero(y):
         return 0.0
     return m.where(condition, x, y)  # type: ignore[arg-type]
@@ -341,7 +341,7 @@ def slack_of(
     """
     one, two, three = (_greatest(step) for step in steps)
     parts = [
-        (CHANGE - _changed(names, matrix)) * (1.0 / CHANGE),
+        (CHANGE - _relative_change(names, matrix)) * (1.0 / CHANGE),
         (FARTHEST - _greatest(ahead)) * (1.0 / FARTHEST),
         (WRONG - one) * (1.0 / WRONG),
         (SHRINKING * one + FAINT - two) * (1.0 / WRONG),
@@ -350,13 +350,13 @@ def slack_of(
     return as_node(functools.reduce(m.min, parts))
 
 
-def _changed(names: Names, matrix: Matrix) -> Operand:
+def _relative_change(names: Names, matrix: Matrix) -> Operand:
     """By how much the matrix has changed since the place before, in itself."""
     change: list[list[Operand]] = [[0.0] * len(matrix.core) for _row in matrix.core]
     for (i, j), x in matrix.changing:
         change[i][j] = x - variable(names.of_matrix(i, j))
-    moved = multiplied(matrix.inverse, change)
-    twice = [total(row) for row in sizes(multiplied(moved, moved))]
+    moved = matrix_product(matrix.inverse, change)
+    twice = [total(row) for row in sizes(matrix_product(moved, moved))]
     # where all numbers of a row are small its equation is no better known than its terms
     own = [plus(total(row), size) for row, size in zip(sizes(matrix.core), matrix.terms, strict=True)]
     condition = [scalar_product(row, own) for row in sizes(matrix.inverse)]
@@ -394,14 +394,14 @@ def newton_step(group: int, chain: LinkChain, before: Positions, differentiable:
     `before` is what is known there, as jets of second order. Where results are to be differentiated by dimensions,
     they are made to depend on these as the equations say (implicit functions).
     """
-    return _Stepping(group, chain, needed(chain.group, before), differentiable).step()
+    return _Stepping(group, chain, needed_positions(chain.group, before), differentiable).step()
 
 
 class _Stepping:
     def __init__(self, group: int, chain: LinkChain, known: Positions, differentiable: bool) -> None:
         self.chain, self.known, self.differentiable = chain, known, differentiable
         self.names = Names(group, chain)
-        self.values = known.mapped(plain)
+        self.values = known.map_numbers(plain)
         self.free = chain.pattern.free
         self.rests: list[Operand] = [0.0] * self.free
 
@@ -410,15 +410,15 @@ class _Stepping:
         start, along = names.posture, variable(STEP)
         first, second = (list(map(variable, names.derivatives(order))) for order in (1, 2))
         ahead: list[Operand] = [(x + y * (along * 0.5)) * along for x, y in zip(first, second, strict=True)]
-        foretold = moved(chain, start, ahead, far=True)
+        foretold = move_posture(chain, start, ahead, far=True)
         matrix = self._matrix(foretold)
         one = matrix.solved(self._gaps(foretold, matrix.arms))
-        near = moved(chain, foretold, one)
+        near = move_posture(chain, foretold, one)
         two = matrix.solved(self._gaps(near, matrix.arms))
-        nearer = moved(chain, near, two)
+        nearer = move_posture(chain, near, two)
         matrix = self._matrix(nearer)
         three = matrix.solved(self._gaps(nearer, matrix.arms))
-        found = moved(chain, nearer, three)
+        found = move_posture(chain, nearer, three)
         rates, bends = self._rates(nearer, matrix, self.rests, self.rests)
         rates, bends = self._rates(found, matrix, rates, bends)
         state = self._state(found, rates, bends, matrix)
@@ -461,7 +461,7 @@ class _Stepping:
     ) -> list[Operand]:
         """The last coefficients, made such that the equations hold to their order."""
         order = len(coefficients[0]) - 1
-        known = self.known.mapped(lambda x: cut(x, order))
+        known = self.known.map_numbers(lambda x: truncate_jet(x, order))
         motion = [0.0 if all(map(is_literal_zero, c)) else Jet(c) for c in coefficients]
         at = self.chain.positions(known, with_turns(posture), motion)
         equations = self.chain.equations(NODE_JETS, at, matrix.arms)
@@ -495,5 +495,5 @@ class _Stepping:
         """The same numbers by a last step of Newton's from where they stand, which moves with the dimensions."""
         at = self.chain.positions(self.values, found, self.rests)
         gaps = [minus(0.0, x) for x in self.chain.equations(m, at, matrix.arms)]
-        posture = moved(self.chain, found, matrix.solved(gaps))
+        posture = move_posture(self.chain, found, matrix.solved(gaps))
         return posture, *self._rates(posture, matrix, rates, bends)
