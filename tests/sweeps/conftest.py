@@ -21,8 +21,8 @@ links.AB.length = { from = "3.2 m", to = "3.8 m", count = 15 }
 PROCESS = """
 import os, signal, sys, threading
 from centrode.cli.main import main
-from centrode.sweeps import limits
-limits.BLOCK_POSITIONS = 1600
+from centrode.sweeps import designs
+designs.BLOCK_POSITIONS = 1600
 store, last = os.path.abspath(sys.argv[2]), int(sys.argv[3])
 EVENTS = {"open", "os.rename", "os.mkdir", "os.remove", "os.rmdir"}
 count, lock = 0, threading.Lock()

@@ -315,10 +315,10 @@ def test_a_study_with_blocks_that_take_all_memory_is_refused(tmp_path: Path, mon
 IN_LITTLE_MEMORY = """
 import resource, shutil, sys
 from centrode.cli.main import main
-from centrode.sweeps import limits
+from centrode.sweeps import designs
 import numpy, xarray, zarr, scipy.integrate
 study, store, bomb, chunk, label = sys.argv[1:]
-limits.BLOCK_POSITIONS = 1
+designs.BLOCK_POSITIONS = 1
 used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (used + 400_000_000,) * 2)
 for place in (chunk, label):
