@@ -93,7 +93,7 @@ def test_numbers_of_the_arrays(name: str, monkeypatch: pytest.MonkeyPatch) -> No
     vary = {path: ct.value_at(mechanism, path) * np.linspace(0.998, 1.002, 5)}
     counter = Counter(monkeypatch)
     found, expected = both(mechanism, vary, OUTPUTS, 9)
-    assert len(counter.take()) == 5, "those of the comparison alone"
+    assert len(counter.taken()) == 5, "those of the comparison alone"
     same_statuses(found, expected)
     assert (found["status"] == ct.Status.OK).all()
     motion = ct.motion(mechanism, 9)
@@ -168,7 +168,7 @@ def test_near_a_limit(where: str, monkeypatch: pytest.MonkeyPatch) -> None:
     values = np.concatenate([middle - aside, middle + aside])
     counter = Counter(monkeypatch)
     found = ct.sweep(mechanism, {path: values}, OUTPUTS, 9, executor=MACHINE)
-    left = counter.take()
+    left = counter.taken()
     expected = ct.sweep(mechanism, {path: values}, OUTPUTS, 9, executor=ARRAYS)
     same_statuses(found, expected)
     whole = (expected["samples_ok"] == 9).to_numpy()

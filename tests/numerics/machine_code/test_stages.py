@@ -12,7 +12,6 @@ from centrode.numerics.scans import Scan
 NEEDS = "machine code needs llvmlite: pip install 'centrode[fast]'"
 kernels = pytest.importorskip("centrode.numerics.machine_code.kernels", reason=NEEDS)
 loops = pytest.importorskip("centrode.numerics.machine_code.loops", reason=NEEDS)
-stages = pytest.importorskip("centrode.numerics.machine_code.loops", reason=NEEDS)
 
 m = EXPRESSIONS
 t, a = variable("t"), variable("a")
@@ -42,14 +41,14 @@ def selected() -> dict[str, Node]:
 
 def wide() -> dict[str, Node]:
     """More numbers that would have to wait than there is room for."""
-    parts = [m.sin(t * (i + 1.0)) * a for i in range(stages.MOST_LEFT + 1)]
+    parts = [m.sin(t * (i + 1.0)) * a for i in range(loops.MOST_LEFT + 1)]
     return {f"angle {i}": as_node(m.atan2(part, t + 3.0)) for i, part in enumerate(parts)}
 
 
 @pytest.mark.parametrize("graph, count", [(many_angles, 4), (selected, 1), (wide, 1)])
 def test_number_of_stages(graph: object, count: int) -> None:
     order = Graph(graph()).order  # type: ignore[operator]
-    found = stages.stages_of(order)
+    found = loops.stages_of(order)
     assert len(found) == count
     assert sorted(map(id, (x for stage in found for x in stage.nodes))) == sorted(map(id, order))
 
@@ -60,7 +59,7 @@ def test_stages_change_no_bit(graph: object, lanes: int, monkeypatch: pytest.Mon
     scan = Scan(("t",), ("a",), graph())  # type: ignore[operator]
     rows, steps = np.linspace(-3.0, 4.0, lanes)[None], np.array([[0.5, -1.25, 3.0]])
     staged = kernels.kernel_of(scan, lanes_inside=True).run(rows, steps).outputs
-    monkeypatch.setattr(loops, "stages_of", lambda order: [stages.Stage(tuple(order), ())])
+    monkeypatch.setattr(loops, "stages_of", lambda order: [loops.LoopStage(tuple(order), ())])
     kernels.forget()
     whole = kernels.kernel_of(scan, lanes_inside=True).run(rows, steps).outputs
     kernels.forget()
