@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +14,18 @@ from tools.snapshots.comparison import BITS, DIFFERS, NUMBERS, Verdict, compare,
 from tools.snapshots.files import table_artefact, text_artefact
 from tools.snapshots.record import FOLDER, read_record, write_record
 
+from centrode.locale import choose_language_of_process
+
 Change = Callable[[dict[str, Artefact]], None]
 CURVE = np.sin(np.linspace(0.0, 6.0, 101)) * 1e3
+
+
+@pytest.fixture(autouse=True)
+def spoken_before(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The commands of the record speak three languages in this process: the tests after them speak English again."""
+    monkeypatch.setenv("LANGUAGE", "en")
+    yield
+    choose_language_of_process("en")
 
 
 def given() -> dict[str, Artefact]:
