@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import functools
+
+import lazy_loader
+
 import centrode as ct
 from centrode.cli import output
 from centrode.locale import _
-from centrode.model import reading
+
+# What it imports is too much for a list of commands.
+_reading = functools.partial(lazy_loader.load, "centrode.model.reading", suppress_warning=True)
 
 ANNOUNCED_FROM = 200_000_000
 """Bytes of memory from which a run is announced."""
@@ -35,7 +41,7 @@ def announce_size(description: ct.Mechanism, samples: int | None) -> None:
 def announce_samples(count: int, coordinates: int = OF_A_CAM) -> None:
     """Tell how much memory so many samples of so many coordinates may take."""
     size = BYTES * coordinates * count
-    if size >= ANNOUNCED_FROM and count <= reading.SAMPLES:  # more are refused at once
+    if size >= ANNOUNCED_FROM and count <= _reading().SAMPLES:  # more are refused at once
         announcement = _("{count} samples: this may take {size:.2g} GB of memory")
         output.tell(announcement.format(count=count, size=size / 1e9))
 
