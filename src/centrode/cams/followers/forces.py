@@ -103,6 +103,10 @@ class ForceExtreme:
     angle: float
 
 
+TIE = 64.0 * float(np.finfo(np.float64).eps)
+"""Share by which two tops that rounding alone parts may differ."""
+
+
 def greatest(motion: Lifting, value: OfRows) -> ForceExtreme:
     """The greatest value over a turn; values that are NaN do not count, NaN where there are no others.
 
@@ -116,7 +120,8 @@ def greatest_between(edges: Sequence[float], value: Callable[[Array], Array]) ->
     best = ForceExtreme(math.nan, edges[0])
     for start, stop in pairwise(edges):
         places, values = tops(value, np.linspace(start, inside(start, stop), NODES), most=1)
-        if places.size and not values[0] <= best.value:
+        # of tops that are equal to rounding, as a rise and its mirrored return have them, the first counts
+        if places.size and not values[0] <= best.value + TIE * abs(best.value):
             best = ForceExtreme(float(values[0]), float(places[0]))
     return best
 
