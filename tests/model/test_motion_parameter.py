@@ -11,7 +11,8 @@ import xarray as xr
 
 import centrode as ct
 from centrode.errors import InputError
-from centrode.model.motion_parameter import TIME, MotionParameter
+from centrode.model.drives import motion_parameter_of
+from centrode.model.motion_parameter import TIME
 
 LINK, GUIDE = ct.Drive(link="OA", speed=2.0), ct.Drive(guide="C", speed=-0.5)
 CYLINDER = ct.Drive(distance=("A", "B"), speed=0.0)
@@ -41,7 +42,7 @@ def test_kinds_units_and_symbols(
     instant: tuple[str, str, str],
     speed: float | None,
 ) -> None:
-    found = MotionParameter.of(drives, space)
+    found = motion_parameter_of(drives, space)
     assert (found.variable.kind, found.variable.unit, found.variable.symbol) == parameter
     assert (found.instant.kind, found.instant.unit, found.instant.symbol) == instant
     assert found.constant_speed == speed
@@ -49,23 +50,23 @@ def test_kinds_units_and_symbols(
 
 
 def test_units_of_speeds_and_forces() -> None:
-    found = MotionParameter.of([LINK, GUIDE], "plane")
+    found = motion_parameter_of([LINK, GUIDE], "plane")
     assert [one.speed_unit for one in found.drives] == ["rad/s", "m/s"]
     assert [one.force_unit for one in found.drives] == ["N m", "N"]
-    arc = MotionParameter.of([GUIDE], "sphere").drives[0]
+    arc = motion_parameter_of([GUIDE], "sphere").drives[0]
     assert (arc.speed_unit, arc.force_unit) == ("rad/s", "N m")
 
 
 def test_only_the_angle_of_a_link_comes_round() -> None:
-    assert MotionParameter.of([LINK], "plane").turns
-    assert not MotionParameter.of([GUIDE], "sphere").turns
-    assert not MotionParameter.of([LINK, GUIDE], "plane").turns
+    assert motion_parameter_of([LINK], "plane").turns
+    assert not motion_parameter_of([GUIDE], "sphere").turns
+    assert not motion_parameter_of([LINK, GUIDE], "plane").turns
 
 
 def test_the_value_of_a_law_states_no_instant() -> None:
-    assert not MotionParameter.of([BY_LAW], "plane").states_instants
-    assert MotionParameter.of([LINK], "plane").states_instants
-    assert MotionParameter.of([LINK, BY_LAW], "plane").states_instants
+    assert not motion_parameter_of([BY_LAW], "plane").states_instants
+    assert motion_parameter_of([LINK], "plane").states_instants
+    assert motion_parameter_of([LINK, BY_LAW], "plane").states_instants
 
 
 @pytest.mark.parametrize(
@@ -79,13 +80,13 @@ def test_the_value_of_a_law_states_no_instant() -> None:
 def test_values_and_instants_of_a_motion(
     drives: list[ct.Drive], values: list[float], instants: list[float]
 ) -> None:
-    found = MotionParameter.of(drives, "plane")
+    found = motion_parameter_of(drives, "plane")
     assert found.values(MOTION).tolist() == values
     assert found.instants(MOTION).tolist() == instants
 
 
 def test_values_and_times_at_constant_speed() -> None:
-    found = MotionParameter.of([LINK], "plane")
+    found = motion_parameter_of([LINK], "plane")
     # a drive at 2 rad/s from 1 rad is at 4 rad after 1.5 s; at 6 rad/s in place of it after 0.5 s
     assert found.times(np.array([4.0]), 1.0).tolist() == [1.5]
     assert found.times(4.0, 1.0, 6.0) == 0.5
@@ -93,8 +94,8 @@ def test_values_and_times_at_constant_speed() -> None:
 
 
 def test_one_drive_of_several() -> None:
-    several = MotionParameter.of([LINK, GUIDE], "plane")
-    assert several.along("C") == MotionParameter.of([GUIDE], "plane")
+    several = motion_parameter_of([LINK, GUIDE], "plane")
+    assert several.along("C") == motion_parameter_of([GUIDE], "plane")
     assert several.along("C").in_time().variable is TIME
     with pytest.raises(InputError, match="there is no drive"):
         several.drive("X")
@@ -111,7 +112,7 @@ def test_one_drive_of_several() -> None:
     ],
 )
 def test_instants_are_read(drives: list[ct.Drive], space: str, text: Any, value: float) -> None:
-    assert MotionParameter.of(drives, space).instant.read(text, "--at") == value
+    assert motion_parameter_of(drives, space).instant.read(text, "--at") == value
 
 
 @pytest.mark.parametrize(
@@ -125,4 +126,4 @@ def test_instants_are_read(drives: list[ct.Drive], space: str, text: Any, value:
 )
 def test_instants_of_another_kind_are_refused(drives: list[ct.Drive], space: str, text: str) -> None:
     with pytest.raises(InputError, match="--at"):
-        MotionParameter.of(drives, space).instant.read(text, "--at")
+        motion_parameter_of(drives, space).instant.read(text, "--at")

@@ -12,7 +12,7 @@ from pydantic import AfterValidator, ModelWrapValidatorHandler, PlainValidator, 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model import reading
-from centrode.model.drives import Drive
+from centrode.model.drives import Drive, motion_parameter_of
 from centrode.model.links import Frame, Gear, Guide, Link, Rolling
 from centrode.model.loads import Load
 from centrode.model.motion_parameter import (
@@ -100,7 +100,7 @@ class Description(DescriptionPart):
     @property
     def motion_parameter(self) -> MotionParameter:
         """What a motion is a function of: the value of the one drive, or time; its unit and how instants are stated."""
-        return MotionParameter.of(self.drives, self.space)
+        return motion_parameter_of(self.drives, self.space)
 
     @property
     def link_names(self) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Self
 
 from pydantic import PlainValidator, ValidationInfo, field_validator, model_validator
@@ -12,7 +12,12 @@ from centrode.laws import Law, ShaftLaw, TableLaw, TextLaw, Uniform
 from centrode.locale import _
 from centrode.model.cam_of_drive import read_plate_cam
 from centrode.model.follower_cam import PlateCam
-from centrode.model.motion_parameter import SPEED_KINDS, kind_of_value
+from centrode.model.motion_parameter import (
+    SPEED_KINDS,
+    MotionParameter,
+    drive_coordinate,
+    kind_of_value,
+)
 from centrode.model.reading import FRAME, DescriptionPart, Problem, bounded_list, one_of
 from centrode.model.segments import Segment, law_of_segments, read_repeat, read_segments
 from centrode.model.values import (
@@ -188,3 +193,9 @@ def _check_cam(drive: Drive, cam: PlateCam) -> None:
         raise Problem(
             what, _("drive a displacement along a guide, or take an oscillating follower"), ("cam",)
         )
+
+
+def motion_parameter_of(drives: Sequence[Drive], space: str) -> MotionParameter:
+    """What a motion of a mechanism with these drives, in the plane or on the sphere, is a function of."""
+    coordinates = (drive_coordinate(one.id, one.kind, space, one.speed) for one in drives)
+    return MotionParameter(tuple(coordinates), by_time=len(drives) > 1)

@@ -7,17 +7,14 @@ because a law of time may pass the same value more than once.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from centrode.errors import InputError
 from centrode.locale import _
 from centrode.model.reading import nearest, value_text
 from centrode.model.units import KINDS, to_si
-
-if TYPE_CHECKING:
-    from centrode.model.drives import Drive
 
 Kind: TypeAlias = Literal["time", "angle", "length"]
 """A kind of quantity by its name in `units.KINDS`."""
@@ -114,13 +111,6 @@ class MotionParameter:
 
     drives: tuple[DriveCoordinate, ...]
     by_time: bool
-
-    @classmethod
-    def of(cls, drives: Sequence[Drive], space: str) -> MotionParameter:
-        """The parameter of a mechanism with these drives, in the plane or on the sphere."""
-        return cls(
-            tuple(drive_coordinate(one.id, one.kind, space, one.speed) for one in drives), len(drives) > 1
-        )
 
     @property
     def variable(self) -> MotionVariable:
