@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 
 from centrode import present
 from centrode.present import curves
-from centrode.present.style import PALETTE, in_panels, pens
+from centrode.present.style import PALETTE, pens
+from centrode.views.motion_plots import deal_to_panels
 
 ALWAYS = [
     "mechanism",
@@ -163,10 +164,10 @@ def test_few_curves_in_one_panel(make):
     for axes in figures["angular-velocities"].axes:
         assert len(axes.get_lines()) <= len(PALETTE)
     names = [f"P{k}" for k in range(20)]
-    groups = in_panels(names)
+    groups = deal_to_panels(names)
     assert [name for group in groups for name in group] == names
     assert max(map(len, groups)) <= len(PALETTE)
-    assert len(in_panels([f"P{k}" for k in range(200)])) <= 4
+    assert len(deal_to_panels([f"P{k}" for k in range(200)])) <= 4
 
 
 def test_curves_that_coincide_all_show(make):

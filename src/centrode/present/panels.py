@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -13,8 +12,9 @@ from numpy.typing import NDArray
 from centrode.present.abscissa import Abscissa
 from centrode.present.curves import Panel
 from centrode.present.shown import formula, labelled, shown_as
-from centrode.present.style import Pen, in_panels
+from centrode.present.style import Pen
 from centrode.quantities import QUANTITIES
+from centrode.views.motion_plots import MAGNITUDE, component, deal_to_panels, great_value, turning_links
 
 if TYPE_CHECKING:
     import xarray
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Rows = list[list[Panel]]
-MAGNITUDE = "magnitude"
 
 
 @dataclass(frozen=True)
@@ -49,19 +48,19 @@ class Motion:
 def of_links(motion: Motion, variable: str) -> Rows:
     """One panel below another, with as many links each as can be told apart; magnitudes of vectors."""
     part = MAGNITUDE if "axis" in motion.dataset[variable].dims else ""
-    groups = in_panels(turning_links(motion.mechanism))
+    groups = deal_to_panels(turning_links(motion.mechanism))
     return [[panel(motion, variable, "link", names, part)] for names in groups]
 
 
 def of_joints(motion: Motion, variable: str) -> Rows:
     """Links whose angle is measured from a reference arc."""
-    groups = in_panels(motion.dataset["joint"].to_numpy().tolist())
+    groups = deal_to_panels(motion.dataset["joint"].to_numpy().tolist())
     return [[panel(motion, variable, "joint", names)] for names in groups]
 
 
 def of_points(motion: Motion, variable: str) -> Rows:
     """Components and magnitude below each other; further points in further columns."""
-    groups = in_panels(motion.pens["point"])
+    groups = deal_to_panels(motion.pens["point"])
     parts = (*motion.components, MAGNITUDE)
     return [
         [panel(motion, variable, "point", names, part, part == "x") for names in groups] for part in parts
@@ -70,7 +69,7 @@ def of_points(motion: Motion, variable: str) -> Rows:
 
 def of_guides(motion: Motion) -> Rows:
     """Displacement, velocity and acceleration along the guides below each other."""
-    groups = in_panels(motion.pens["guide"])
+    groups = deal_to_panels(motion.pens["guide"])
     variables = ("slide", "slide_velocity", "slide_acceleration")
     return [
         [panel(motion, name, "guide", names, legend=name == "slide") for names in groups]
@@ -80,17 +79,17 @@ def of_guides(motion: Motion) -> Rows:
 
 def of_coefficients(motion: Motion) -> Rows:
     """Velocity coefficients at the left, acceleration coefficients at the right: links, points, guides."""
-    points = in_panels(motion.pens["point"])
-    turning = in_panels(turning_links(motion.mechanism))
+    points = deal_to_panels(motion.pens["point"])
+    turning = deal_to_panels(turning_links(motion.mechanism))
     if motion.axes > 2:
-        joints = in_panels(motion.dataset["joint"].to_numpy().tolist())
+        joints = deal_to_panels(motion.dataset["joint"].to_numpy().tolist())
         first = [both(motion, "joint_", "joint", names) for names in joints]
     else:
         first = [both(motion, "angular_", "link", names) for names in turning]
     rows = [
         *first,
         *(both(motion, "", "point", names, part) for part in motion.components for names in points),
-        *(both(motion, "slide_", "guide", names) for names in in_panels(motion.pens["guide"])),
+        *(both(motion, "slide_", "guide", names) for names in deal_to_panels(motion.pens["guide"])),
     ]
     return [row for row in rows if row[0].curves]
 
@@ -103,12 +102,6 @@ def both(motion: Motion, prefix: str, dim: str, names: Sequence[str], part: str 
     ]
 
 
-def turning_links(mechanism: Mechanism) -> list[str]:
-    """The links without those that a guide of the frame keeps from turning."""
-    still = {guide.link for guide in mechanism.guides if guide.on == "frame"}
-    return [name for name in mechanism.link_names if name not in still]
-
-
 def panel(
     motion: Motion, variable: str, dim: str, names: Iterable[str], part: str = "", legend: bool = True
 ) -> Panel:
@@ -116,32 +109,7 @@ def panel(
     values = motion.dataset[variable]
     unit = str(values.attrs.get("units", QUANTITIES[variable].unit))
     factor, shown = shown_as(unit, motion.mechanism.display)
-    curves = {name: factor * one_part(values.sel({dim: name}), part) for name in names}
+    curves = {name: factor * component(values.sel({dim: name}), part) for name in names}
     text = formula(QUANTITIES[variable].symbol, part if part != MAGNITUDE else "")
-    scale = factor * scale_of(motion.dataset, variable)
+    scale = factor * great_value(motion.dataset, variable)
     return Panel(labelled(text, shown), shown, curves, motion.pens[dim], scale, legend)
-
-
-def one_part(values: xarray.DataArray, part: str) -> Array:
-    """A curve of a scalar, or of a vector's component or magnitude."""
-    if part == MAGNITUDE:
-        return np.asarray(functools.reduce(np.hypot, values.transpose("axis", ...).to_numpy()))
-    return np.asarray((values.sel(axis=part) if part else values).to_numpy())
-
-
-def scale_of(dataset: xarray.Dataset, variable: str) -> float:
-    """A great value of a variable: its greatest, or for angular accelerations the squared angular velocity.
-
-    So a link that translates shows accelerations of zero, not noise.
-    """
-    greatest = peak(dataset, variable)
-    if "angular_acceleration" in variable:
-        greatest = max(greatest, peak(dataset, variable.replace("acceleration", "velocity")) ** 2)
-    return greatest
-
-
-def peak(dataset: xarray.Dataset, variable: str) -> float:
-    """The greatest magnitude of a variable; 0 if it has no value."""
-    values = dataset[variable].to_numpy()
-    known = np.abs(values[np.isfinite(values)])
-    return float(known.max()) if known.size else 0.0

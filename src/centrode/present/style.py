@@ -8,7 +8,6 @@ import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import matplotlib
@@ -91,11 +90,3 @@ class Decimals(ScalarFormatter):
         """The common factor of the ticks: "×10⁻⁶"."""
         power = re.fullmatch(r"1e(.?\d+)", super().get_offset().replace("−", "-"))
         return "×10" + power.group(1).translate(RAISED) if power else super().get_offset()
-
-
-def in_panels(names: Iterable[str], curves: int = len(PALETTE), panels: int = 4) -> list[list[str]]:
-    """The names dealt evenly to as few panels as keep at most `curves` in one; more than `panels` grow crowded."""
-    names = list(names)
-    count = min(panels, max(1, -(-len(names) // curves)))
-    cuts = [round(number * len(names) / count) for number in range(count + 1)]
-    return [names[first:last] for first, last in pairwise(cuts)]

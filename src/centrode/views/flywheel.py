@@ -114,16 +114,20 @@ def sheet(results: MachineResults) -> Sheet:
     """Everything there is to say about the energies, the flywheel and the real motion of a machine."""
     mechanism, flywheel = results.mechanism, results.flywheel
     points = mechanism.moving_points
+    facts = (*_energies(flywheel), *_inertias(flywheel), _speed(flywheel), *_sizes(flywheel))
     tables = {"machine": motion_table(results.steady, points)}
     if results.instants is not None:
         tables["machine-instants"] = motion_table(results.instants, points)
     return Sheet(
-        facts=(*_energies(flywheel), *_inertias(flywheel), _speed(flywheel), *_sizes(flywheel)),
+        facts=facts,
         scalars=dict(scalars(flywheel)),
         tables=tables,
         datasets={"machine": results.steady},
         pictures=dict(_pictures(results)),
-        chapters={"flywheel": _flywheel_chapter(results), "real-motion": _real_motion_chapter(results)},
+        chapters={
+            "flywheel": _flywheel_chapter(results, facts),
+            "real-motion": _real_motion_chapter(results),
+        },
     )
 
 
@@ -373,7 +377,7 @@ def _touching(steady: xr.Dataset, at: float, slope: float, start: float) -> np.n
 # Chapters
 
 
-def _flywheel_chapter(results: MachineResults) -> Chapter:
+def _flywheel_chapter(results: MachineResults, facts: tuple[Fact, ...]) -> Chapter:
     """Energies of the machine over a cycle, and the flywheel that keeps its speed even enough."""
     flywheel = results.flywheel
     pictures = ("moments", "works", "energies", "wittenbauer")
@@ -382,7 +386,6 @@ def _flywheel_chapter(results: MachineResults) -> Chapter:
             "Wittenbauer's diagram: work over the inertia of the links, with both tangents"
         )
     }
-    facts = (*_energies(flywheel), *_inertias(flywheel), _speed(flywheel), *_sizes(flywheel))
     course = _over_cycle(
         results.steady, ENERGIES_IN_TABLE, Sentence("Moments, works and energies over the cycle")
     )

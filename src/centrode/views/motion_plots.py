@@ -55,13 +55,13 @@ class PlottedMotion:
 def panels_of_links(motion: PlottedMotion, variable: str) -> Rows:
     """One panel below another, with as many links each as can be told apart; magnitudes of vectors."""
     part = MAGNITUDE if "axis" in motion.dataset[variable].dims else ""
-    groups = dealt(turning_links(motion.mechanism))
+    groups = deal_to_panels(turning_links(motion.mechanism))
     return tuple((_panel(motion, variable, "link", names, part),) for names in groups)
 
 
 def panels_of_points(motion: PlottedMotion, variable: str) -> Rows:
     """Components and magnitude below each other; further points in further columns."""
-    groups = dealt(motion.places["point"])
+    groups = deal_to_panels(motion.places["point"])
     return tuple(
         tuple(_panel(motion, variable, "point", names, part, legend=part == "x") for names in groups)
         for part in (*motion.components, MAGNITUDE)
@@ -74,7 +74,7 @@ def turning_links(mechanism: Mechanism) -> list[str]:
     return [name for name in mechanism.link_names if name not in still]
 
 
-def dealt(names: Iterable[str]) -> list[list[str]]:
+def deal_to_panels(names: Iterable[str]) -> list[list[str]]:
     """The names dealt evenly to as few panels as keep at most `CURVES` in one."""
     names = list(names)
     count = min(PANELS, max(1, -(-len(names) // CURVES)))
@@ -118,20 +118,23 @@ def _panel(
     values = motion.dataset[variable]
     unit = str(values.attrs.get("units", QUANTITIES[variable].unit))
     curves = tuple(
-        Curve(Name(name), _part(values.sel({kind: name}), part), motion.places[kind][name]) for name in names
+        Curve(Name(name), component(values.sel({kind: name}), part), motion.places[kind][name])
+        for name in names
     )
     symbol = Symbol(QUANTITIES[variable].symbol, part if part != MAGNITUDE else "", slanted=True)
-    return CurvePanel(AxisLabel(symbol=symbol, unit=unit), curves, _scale(motion.dataset, variable), legend)
+    return CurvePanel(
+        AxisLabel(symbol=symbol, unit=unit), curves, great_value(motion.dataset, variable), legend
+    )
 
 
-def _part(values: xarray.DataArray, part: str) -> Array:
+def component(values: xarray.DataArray, part: str) -> Array:
     """A curve of a scalar, or of a vector's component or magnitude."""
     if part == MAGNITUDE:
         return np.asarray(functools.reduce(np.hypot, values.transpose("axis", ...).to_numpy()))
     return np.asarray((values.sel(axis=part) if part else values).to_numpy())
 
 
-def _scale(dataset: xarray.Dataset, variable: str) -> float:
+def great_value(dataset: xarray.Dataset, variable: str) -> float:
     """A great value of a variable: its greatest, or for angular accelerations the squared angular velocity.
 
     So a link that translates shows accelerations of zero, not noise.

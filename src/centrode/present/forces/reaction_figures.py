@@ -15,9 +15,10 @@ from centrode.model.labels import reaction_name, side_name
 from centrode.present.abscissa import main_abscissa
 from centrode.present.curves import Panel, sheet
 from centrode.present.shown import formula, labelled
-from centrode.present.style import DASHES, INK, Pen, house_style, in_panels, pens
+from centrode.present.style import DASHES, INK, Pen, house_style, pens
 from centrode.quantities import QUANTITIES
 from centrode.study.forces.bearing_loads import mean_over_time
+from centrode.views.motion_plots import deal_to_panels
 
 if TYPE_CHECKING:
     import xarray
@@ -185,7 +186,7 @@ def _panels(
     # a drive along a guide or of a cylinder gives a force
     symbol = "F_b" if (variable, unit) == ("balancing", "N") else quantity.symbol
     text = labelled(formula(symbol, along), unit or quantity.unit)
-    groups: Sequence[Sequence[str]] = in_panels(known) if split else [list(known)]
+    groups: Sequence[Sequence[str]] = deal_to_panels(known) if split else [list(known)]
     return [
         Panel(
             text,
