@@ -8,18 +8,19 @@ from pathlib import Path
 
 import pytest
 
-from centrode.cli.output import output_folder, table, write_file
+from centrode.cli.output import output_folder, write_file
 from centrode.errors import InputError
+from centrode.render.terminal import aligned
 
 
 def test_table_aligns_columns() -> None:
-    text = table([["OA", "0.5"], ["шатун", "12.25"]], header=["link", "length, m"], right=[1])
+    text = aligned([["OA", "0.5"], ["шатун", "12.25"]], header=["link", "length, m"], right=[1])
     assert text == "link   length, m\nOA           0.5\nшатун      12.25"
 
 
 def test_table_without_rows() -> None:
-    assert table([]) == ""
-    assert table([], header=["a", "b"]) == "a  b"
+    assert aligned([]) == ""
+    assert aligned([], header=["a", "b"]) == "a  b"
 
 
 def test_folder_gets_its_files_at_the_end(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import (
@@ -47,5 +48,5 @@ def angles(mechanism: str, samples: int | None, dark: bool, out: Path | None, no
         names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(ct.transmission_rows(found), right=(1, 2, 3)))
+    click.echo(render.aligned(ct.transmission_rows(found), right=(1, 2, 3)))
     click.echo("\n" + output.files_in(folder, names))

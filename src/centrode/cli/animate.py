@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, range_option, start_option, stop_option
@@ -113,7 +114,7 @@ def animate(
                 said=said,
             )
     click.echo(_(description.title) or described)
-    click.echo("\n" + output.table(_rows(made)))
+    click.echo("\n" + render.aligned(_rows(made)))
     for note in made.notes:
         click.echo(_("note: {note}").format(note=note))
     click.echo("\n" + _("wrote {file}").format(file=path))

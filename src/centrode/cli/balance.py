@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about as naming
 from centrode.cli.arguments import (
@@ -120,9 +121,9 @@ def balance(
             names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(ct.balance_rows(found)))
+    click.echo(render.aligned(ct.balance_rows(found)))
     header, rows = ct.balance_effects(found)
-    click.echo("\n" + output.table(rows, header, right=(2, 3, 4)))
+    click.echo("\n" + render.aligned(rows, header, right=(2, 3, 4)))
     steps = ct.balance_steps(found)
     if steps:
         click.echo("\n" + "\n".join([_("masses replaced at the joints:"), *(f"  {step}" for step in steps)]))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
@@ -113,10 +114,10 @@ def _check_animation(cam: ct.Cam | ct.PlateCam, out: Path | None, animate: bool)
 
 def _text(part: CamPart) -> str:
     """A part as it is printed: heading, rows, tables."""
-    text = f"{part.heading}\n\n{output.table(part.rows)}"
+    text = f"{part.heading}\n\n{render.aligned(part.rows)}"
     for table in part.tables:
         numbers = range(1 if table.named else 0, len(table.header))
-        text += f"\n\n{table.heading}\n\n{output.table(table.lines, table.header, numbers)}"
+        text += f"\n\n{table.heading}\n\n{render.aligned(table.lines, table.header, numbers)}"
     return text
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, written_option
@@ -150,7 +151,7 @@ def _text(
 ) -> str:
     """A heading with the place and a table of its centres; of pairs asked for also what they were found from."""
     rows = ct.centres_rows(description, found, sample, names, made)
-    text = f"{ct.place_words(description, motion, sample)}\n{output.table(rows, ct.centres_header(found))}"
+    text = f"{ct.place_words(description, motion, sample)}\n{render.aligned(rows, ct.centres_header(found))}"
     if asked is None or made is None:
         return text
     steps = [_unbroken(step) for step in ct.steps_leading_to(made, asked)]

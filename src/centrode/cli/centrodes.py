@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import (
@@ -104,10 +105,10 @@ def centrodes(
                 ct.animate_centrodes(description, motion, found, draft / "centrodes.gif", dark)
         names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
-    click.echo(f"\n{output.table(ct.centrode_rows(description, found))}")
+    click.echo(f"\n{render.aligned(ct.centrode_rows(description, found))}")
     for sample in range(len(at)):
         assert bent is not None
-        click.echo(f"\n{output.table(ct.curvature_rows(description, bent, sample))}")
+        click.echo(f"\n{render.aligned(ct.curvature_rows(description, bent, sample))}")
     click.echo("\n" + output.files_in(folder, names))
     if looked is not None:
         tell_absent(mechanism, looked)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 import centrode as ct
-from centrode.cli import output
+from centrode import render
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
 from centrode.locale import _, mark
@@ -21,4 +21,4 @@ def check(mechanism: str) -> None:
     steps = [(_("plan") if not i else "", f"{i + 1}. {step}") for i, step in enumerate(checked.plan)]
     click.echo(_(checked.title) or mechanism)
     click.echo()
-    click.echo(output.table([*ct.check_rows(checked), *steps]))
+    click.echo(render.aligned([*ct.check_rows(checked), *steps]))

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, results_option
@@ -103,5 +104,5 @@ def number(text: str) -> float:
 
 def report(check: ct.GraphicCheck) -> str:
     """What is printed of one instant."""
-    table = output.table(ct.graphic_rows(check), right=(2, 3, 4, 5))
-    return "\n".join([output.table(ct.graphic_about(check)), *ct.graphic_steps(check), "", table])
+    table = render.aligned(ct.graphic_rows(check), right=(2, 3, 4, 5))
+    return "\n".join([render.aligned(ct.graphic_about(check)), *ct.graphic_steps(check), "", table])

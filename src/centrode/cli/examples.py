@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.locale import _, mark, ngettext
 
@@ -42,7 +43,7 @@ def _listing() -> str:
     linkages, cams = ct.example_names(), ct.example_names("cam")
     count = ngettext("{count} mechanism", "{count} mechanisms", len(linkages)).format(count=len(linkages))
     use = _("print one with: centrode examples NAME; compute it with: centrode run NAME")
-    lines = output.table(_rows((*linkages, *cams))).splitlines()
+    lines = render.aligned(_rows((*linkages, *cams))).splitlines()
     counted = ngettext("{count} cam", "{count} cams", len(cams)).format(count=len(cams))
     behind = _("compute one with: centrode cam NAME")
     first, second = "\n".join(lines[: len(linkages)]), "\n".join(lines[len(linkages) :])

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, results_option, stop_option
@@ -71,7 +72,7 @@ def integrate(
         names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(ct.integration_rows(description, found)))
+    click.echo(render.aligned(ct.integration_rows(description, found)))
     click.echo("\n" + output.files_in(folder, names))
     stopped = ct.integration_failure(description, found)
     if stopped is not None:

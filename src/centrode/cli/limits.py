@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about as about_file
 from centrode.cli.arguments import mechanism_argument
@@ -58,6 +59,6 @@ def limits(
             draft.write_text(text, encoding="utf-8", newline="\n")
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(ct.limits_rows(description, found)))
+    click.echo(render.aligned(ct.limits_rows(description, found)))
     if out is not None:
         click.echo("\n" + output.wrote(table_files(out)))

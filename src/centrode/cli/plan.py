@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, results_option
@@ -45,5 +46,5 @@ def plan(
         names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(ct.plan_rows(description, found)))
+    click.echo(render.aligned(ct.plan_rows(description, found)))
     click.echo("\n" + output.files_in(folder, names))

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, mechanism_argument, no_figures_option, results_option
@@ -74,12 +75,12 @@ def report(found: ct.ForcePolygons) -> str:
     """What is printed of one instant."""
     return "\n".join(
         [
-            output.table(ct.polygon_about(found)),
+            render.aligned(ct.polygon_about(found)),
             "",
             *ct.polygon_steps(found),
             "",
-            output.table(ct.polygon_rows(found), right=(2, 3, 4, 5)),
+            render.aligned(ct.polygon_rows(found), right=(2, 3, 4, 5)),
             "",
-            output.table(ct.polygon_balance_rows(found), right=(2, 3, 4, 5)),
+            render.aligned(ct.polygon_balance_rows(found), right=(2, 3, 4, 5)),
         ]
     )

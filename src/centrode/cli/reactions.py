@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import (
@@ -148,19 +149,19 @@ def report(mechanism: ct.Mechanism, found: xarray.Dataset, instants: tuple[str, 
     """What is printed: what acts, the table of joints, and extremes or instants."""
     header, joints = ct.joint_table(mechanism)
     texts = [
-        output.table(ct.reaction_rows(mechanism, found)),
-        output.table(joints, header, right=range(1, len(header))),
+        render.aligned(ct.reaction_rows(mechanism, found)),
+        render.aligned(joints, header, right=range(1, len(header))),
     ]
     if not instants:
         header, rows = ct.reaction_extremes(mechanism, found)
-        texts.append(output.table(rows, header, right=(2, 4)))
+        texts.append(render.aligned(rows, header, right=(2, 4)))
         losses = ct.friction_losses(found)
         if losses is not None:
-            texts.append(output.table(losses[1], losses[0], right=(1, 2, 3)))
+            texts.append(render.aligned(losses[1], losses[0], right=(1, 2, 3)))
     for number, text in enumerate(instants):
         header, rows = ct.reactions_at_instant(mechanism, found, number)
         heading = _("at {value}").format(value=text)
-        texts.append(heading + "\n" + output.table(rows, header, right=(2, 3, 4, 5)))
+        texts.append(heading + "\n" + render.aligned(rows, header, right=(2, 3, 4, 5)))
     return "\n\n".join(texts)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import (
@@ -66,9 +67,9 @@ def reduce(
             names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(ct.reduction_rows(description, found)))
+    click.echo(render.aligned(ct.reduction_rows(description, found)))
     header, rows = ct.reduction_parts(found, description)
-    click.echo("\n" + output.table(rows, header, right=(2, 3, 4)))
+    click.echo("\n" + render.aligned(rows, header, right=(2, 3, 4)))
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
     _tell_failure(mechanism, description, found)

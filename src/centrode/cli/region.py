@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, results_option
@@ -79,7 +80,7 @@ def region(
         names = output.finished(draft)
     click.echo(_(description.title) or mechanism)
     click.echo()
-    click.echo(output.table(ct.region_rows(description, found)))
+    click.echo(render.aligned(ct.region_rows(description, found)))
     click.echo("\n" + output.files_in(folder, names))
 
 

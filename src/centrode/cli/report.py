@@ -10,6 +10,7 @@ import click
 import lazy_loader
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import results_option
@@ -100,7 +101,7 @@ def _listed(text: str) -> tuple[str, ...]:
 def _summary(made: Report) -> str:
     """Title, and chapters with their numbers."""
     chapters = [(str(number), chapter.title) for number, chapter in enumerate(made.chapters, start=1)]
-    return f"{made.title}\n\n{output.table(chapters)}"
+    return f"{made.title}\n\n{render.aligned(chapters)}"
 
 
 def _told(made: Report, description: str) -> None:

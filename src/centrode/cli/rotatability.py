@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument
@@ -69,7 +70,7 @@ def rotatability(
             progress=lambda done, of: progress.say(_("seeking a repair"), done, of),
         )
     _heading(description, mechanism)
-    click.echo(output.table(ct.repair_rows(description, found)))
+    click.echo(render.aligned(ct.repair_rows(description, found)))
     if out is not None:
         _write_repair(description, found, out, force)
     if not found.found:
@@ -82,7 +83,7 @@ def _analyse(name: str, description: ct.Mechanism, out: Path | None, force: bool
     with about(name):
         found = ct.rotatability(description)
     _heading(description, name)
-    click.echo(output.table(ct.rotatability_rows(description, found)))
+    click.echo(render.aligned(ct.rotatability_rows(description, found)))
     if out is not None:
         with speaking("en"):  # what files hold is English
             text = ct.rotatability_text(ct.rotatability(description))

@@ -120,7 +120,7 @@ def summary_text(study: StudyResults, name: str) -> str:
     rows = [*ct.check_rows(study.check), *ct.motion_rows(study)]
     if study.reactions is not None:
         rows += ct.greatest_reaction(study.mechanism, study.reactions)
-    lines = [_(study.mechanism.title) or name, "", output.table(rows)]
+    lines = [_(study.mechanism.title) or name, "", render.aligned(rows)]
     if study.machine is not None:
         facts = ct.sheet_of(study.machine).facts
         lines += ["", render.facts_text(facts, study.mechanism.display)]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option, written_option
@@ -62,7 +63,7 @@ def simulate(
     click.echo(_(description.title) or mechanism)
     click.echo()
     rows = [*ct.simulation_rows(description, found), *_regime(description, settings, found)]
-    click.echo(output.table(rows))
+    click.echo(render.aligned(rows))
     if out is not None:
         click.echo("\n" + output.files_in(out, names))
     _tell_ending(mechanism, found)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TextIO
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.progress import Progress
@@ -49,7 +50,7 @@ def sweep(study: str, out: Path | None, force: bool) -> None:
         raise InputError(
             str(target), _("it is neither a .zarr nor a .csv"), _("name a folder x.zarr or a file x.csv")
         )
-    click.echo(output.table(ct.sweep_rows(data)))
+    click.echo(render.aligned(ct.sweep_rows(data)))
     click.echo("\n" + output.wrote([target] if target.suffix == STORE else table_files(target)))
     if data.attrs["mechanisms_none"] == data.attrs["mechanisms"]:
         raise MotionError(

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, tables_options
@@ -81,7 +82,7 @@ def variants(
         raise
     rows = ct.spoken_variants(description, table, rows)
     header = (_("variant"), _("turns fully"), _("limit"), _("group"), _("status"))
-    click.echo(output.table(ct.variant_rows(rows), header))
+    click.echo(render.aligned(ct.variant_rows(rows), header))
     summary, failure = ct.variants_summary(rows)
     written = ["summary.csv", *(f"answers.{kind}" for kind in dict.fromkeys(kinds) if reports)]
     lines = [_("wrote {file}").format(file=folder / name) for name in written]
