@@ -82,18 +82,11 @@ from .dynamics.reduction import reduce as reduce
 from .dynamics.kinetostatics.reactions import reactions as reactions
 from .study.forces.reducing import reduction_rows as reduction_rows
 from .study.forces.reducing import reduction_parts as reduction_parts
-from .study.forces.joints import joint_table as joint_table
-from .study.forces.reacting import reaction_rows as reaction_rows
-from .study.forces.reacting import reaction_extremes as reaction_extremes
-from .study.forces.reacting import reactions_at_instant as reactions_at_instant
-from .study.forces.reacting import greatest_reaction as greatest_reaction
-from .study.forces.rubbing import friction_losses as friction_losses
-from .study.forces.bearings import bearings as bearings
-from .study.forces.bearings import motion_beside as motion_beside
-from .study.forces.bearing_loads import bearing_loads as bearing_loads
-from .study.forces.bearing_loads import BearingLoad as BearingLoad
-from .study.forces.bearing_loads import bearing_load_rows as bearing_load_rows
-from .study.forces.bearing_loads import bearing_load_scalars as bearing_load_scalars
+from .dynamics.bearings.wear import bearings as bearings
+from .dynamics.bearings.wear import motion_beside as motion_beside
+from .dynamics.bearings.extremes import bearing_loads as bearing_loads
+from .dynamics.bearings.extremes import BearingLoad as BearingLoad
+from .dynamics.bearings.results import reaction_results as reaction_results
 
 # Forces by hand
 from .dynamics.force_polygons.solving import force_polygons as force_polygons
@@ -275,8 +268,6 @@ from .present import spell_with_comma as spell_with_comma
 from .present import TableSpelling as TableSpelling
 from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_reduction_csv as write_reduction_csv
-from .present import write_reactions_csv as write_reactions_csv
-from .present import write_joint_table_csv as write_joint_table_csv
 from .present import write_region_csv as write_region_csv
 from .present import write_centres_csv as write_centres_csv
 from .present import write_centrodes_csv as write_centrodes_csv
@@ -288,9 +279,6 @@ from .present import write_integration_csv as write_integration_csv
 from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
 from .present import reduction_figures as reduction_figures
-from .present import reaction_figures as reaction_figures
-from .present import bearing_figures as bearing_figures
-from .present import write_bearing_loads_csv as write_bearing_loads_csv
 from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures

@@ -29,9 +29,7 @@ def texts(figure: Figure) -> Iterator[str]:
 
 
 def reactions(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    found, motion = ct.reactions(mechanism, samples=37), ct.motion(mechanism, 37)
-    figures = ct.reaction_figures(mechanism, found)
-    return figures | ct.bearing_figures(mechanism, found, ct.bearings(mechanism, found), motion)
+    return ct.figures(ct.reaction_results(mechanism, 37))
 
 
 def reduction(mechanism: ct.Mechanism) -> Mapping[str, Figure]:

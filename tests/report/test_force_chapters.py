@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.dynamics import link_motion
 from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph, Picture, Table
 from centrode.report.chapters import CHAPTERS
-from centrode.report.chapters.forces import by_links, reduced_sums
+from centrode.report.chapters.forces import reduced_sums
 from centrode.report.making import report
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
@@ -108,9 +109,9 @@ def test_all_checks_hold(corrected: dict[str, Chapter]) -> None:
 
 
 def test_a_wrong_sum_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    motions = by_links.motions_of_links
+    motions = link_motion.motions_of_links
 
-    def off(*args: object) -> list[by_links.LinkMotion]:
+    def off(*args: object) -> list[link_motion.LinkMotion]:
         first, *others = motions(*args)  # type: ignore[arg-type]
         return [replace(first, turning=first.turning * (1.0 + 1e-9)), *others]
 

@@ -23,12 +23,13 @@ from centrode.cli.arguments import (
 )
 from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
-from centrode.cli.reactions import write as write_reactions
 from centrode.cli.tables import tables_options
 from centrode.cli.topic_command import write_sheet
 from centrode.errors import MotionError
 from centrode.locale import _, mark
 from centrode.views.flywheel import sheet as machine_sheet
+from centrode.views.reactions import greatest_joint_force
+from centrode.views.reactions import sheet as reactions_sheet
 
 if TYPE_CHECKING:
     from centrode.study.running import StudyResults
@@ -94,8 +95,7 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
     if study.machine is not None:
         write_sheet(machine_sheet(study.machine), folder, mechanism.display, progress, figures=figures)
     if study.reactions is not None:
-        loads = study.bearing_loads
-        write_reactions(mechanism, study.reactions, folder, progress, figures=figures, loads=loads)
+        write_sheet(reactions_sheet(study.reactions), folder, mechanism.display, progress, figures=figures)
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
     (folder / "summary.json").write_text(text, encoding="utf-8")
@@ -120,7 +120,7 @@ def summary_text(study: StudyResults, name: str) -> str:
     """What a run prints: structure, range, limits, change points, statuses, worst residual, notes."""
     rows = [*ct.check_rows(study.check), *ct.motion_rows(study)]
     if study.reactions is not None:
-        rows += ct.greatest_reaction(study.mechanism, study.reactions)
+        rows += render.fact_rows(greatest_joint_force(study.reactions), study.mechanism.display)
     lines = [_(study.mechanism.title) or name, "", output.table(rows)]
     if study.machine is not None:
         facts = machine_sheet(study.machine).facts

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.dynamics.link_motion import LinkMotion, motions_of_links
 from centrode.locale import _
 from centrode.model.spoken import load_name
 from centrode.render.document.blocks import Block, Check, Formula, Paragraph, Section, Table, shown
 from centrode.render.document.formulas import factor, in_si, indexed, squared, sum_of, with_unit
-from centrode.report.chapters.forces.by_links import LinkMotion, motions_of_links
 from centrode.report.chapters.forces.places import not_reached, titles
 from centrode.report.chapters.forces.results import motion_at_instants, reduced_at_instants
 from centrode.report.telling import measured

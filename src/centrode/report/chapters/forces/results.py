@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from centrode.dynamics.balancing.balance import Balance, balance
 from centrode.dynamics.balancing.shaking import shaking
+from centrode.dynamics.bearings.results import has_forces as bears_forces
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.reduction import reduce
 from centrode.dynamics.simulation.simulate import simulate
@@ -20,10 +21,7 @@ if TYPE_CHECKING:
 
 def has_forces(study: ReportStudy) -> bool:
     """Whether a linkage is reported on that has masses or loads."""
-    if study.is_cam:
-        return False
-    mechanism = study.mechanism
-    return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
+    return not study.is_cam and bears_forces(study.mechanism)
 
 
 def reduced(study: ReportStudy) -> xr.Dataset:
@@ -39,11 +37,6 @@ def reduced_at_instants(study: ReportStudy) -> xr.Dataset:
 def motion_at_instants(study: ReportStudy) -> xr.Dataset:
     """The motion at the instants."""
     return moments_of(study)[0].data
-
-
-def reactions_of(study: ReportStudy) -> xr.Dataset:
-    """Forces in every joint over the motion; raises where they cannot be computed."""
-    return study.study.reactions or study.once("reactions", lambda: reactions(study.mechanism))
 
 
 def reactions_at_instants(study: ReportStudy) -> xr.Dataset:
