@@ -4,19 +4,53 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
 
 from centrode.render.spelling import PlainSpelling
+from centrode.sheets.sheet import Items, Paragraph, Table
+from centrode.sheets.texts import Number
 
 if TYPE_CHECKING:
     from centrode.model.asked import Display
-    from centrode.sheets.sheet import Fact
+    from centrode.sheets.sheet import Fact, Sheet
 
 
 def facts_text(facts: Iterable[Fact], display: Display) -> str:
     """Facts below each other, their values aligned."""
     spelling = PlainSpelling(display)
     return aligned([(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts])
+
+
+def sheet_text(sheet: Sheet, display: Display) -> str:
+    """What a terminal prints of a sheet: its facts, and tables, paragraphs and items below them."""
+    spelling, text = PlainSpelling(display), facts_text(sheet.facts, display)
+    for block in sheet.printed:
+        match block:
+            case Table():
+                text += "\n\n" + table_text(block, spelling)
+            case Paragraph(sentences):
+                text += "\n\n" + spelling.text(sentences)
+            case Items(texts):
+                text += "".join(f"\n  {spelling.text(item)}" for item in texts)
+            case _:
+                assert_never(block)
+    return text
+
+
+def table_text(table: Table, spelling: PlainSpelling) -> str:
+    """A table of texts with its heads, columns of numbers flush right."""
+    heads = [spelling.text(column.head) or column.name for column in table.columns]
+    cells = [
+        [
+            spelling.text(Number(value, column.unit, unit_hidden=True))
+            if isinstance(value, float)
+            else spelling.text(value)
+            for value in column.values
+        ]
+        for column in table.columns
+    ]
+    right = [number for number, column in enumerate(table.columns) if column.is_numeric]
+    return aligned(list(zip(*cells, strict=True)), heads, right)
 
 
 def aligned(rows: Sequence[Sequence[str]], header: Sequence[str] = (), right: Sequence[int] = ()) -> str:

@@ -21,6 +21,14 @@ class EventKind(Enum):
     CHANGE_POINT = "change point"
 
 
+class CurveRole(Enum):
+    """What a curve of a panel stands for: a thing by itself, a part of a sum, or the sum, which alone is black."""
+
+    THING = "thing"
+    PART = "part"
+    SUM = "sum"
+
+
 @dataclass(frozen=True)
 class AxisLabel:
     """What an axis shows.
@@ -71,12 +79,14 @@ class Curve:
     values : (sample), in the unit of the panel; NaN is a gap
     place : its place among the things of its kind, which have the same pen in every figure
     approximate : drawn beside the exact curve, dashed
+    role : a thing by itself, a part of a sum, or the sum
     """
 
     name: Text
     values: Array
     place: int
     approximate: bool = False
+    role: CurveRole = CurveRole.THING
 
 
 @dataclass(frozen=True)

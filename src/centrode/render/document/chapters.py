@@ -21,6 +21,7 @@ from centrode.sheets.sheet import (
     FactTable,
     Formula,
     Illustration,
+    Items,
     Paragraph,
     Picture,
     Section,
@@ -64,14 +65,17 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return picture(figure, spelling.text(shown.title if caption is None else caption))
         case Check():
             return _check(block, spelling)
+        case Items(texts):
+            return blocks.Items(tuple(map(spelling.text, texts)))
         case _:
             assert_never(block)
 
 
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:
-    heads = tuple(map(spelling.head, table.columns))
-    cells = [_cells(column, table.rows, spelling) for column in table.columns]
-    numbers = tuple(isinstance(column.values, np.ndarray) for column in table.columns)
+    columns = [column for column in table.columns if not column.is_empty]
+    heads = tuple(map(spelling.head, columns))
+    cells = [_cells(column, table.rows, spelling) for column in columns]
+    numbers = tuple(column.is_numeric for column in columns)
     return blocks.Table(heads, tuple(zip(*cells, strict=True)), spelling.text(table.caption), numbers)
 
 
@@ -81,7 +85,9 @@ def _cells(column: Column, rows: Sequence[int] | None, spelling: DocumentSpellin
     if not isinstance(values, np.ndarray):
         return [spelling.text(values[row]) for row in (range(len(values)) if rows is None else rows)]
     least = ROUNDING * float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
-    return spelling.numbers.column(values if rows is None else values[list(rows)], column.unit, least)
+    return spelling.of_column(column).column(
+        values if rows is None else values[list(rows)], column.unit, least
+    )
 
 
 def _facts(facts: Sequence[Fact], caption: str, spelling: DocumentSpelling) -> blocks.Table:
