@@ -65,7 +65,7 @@ from .study.transmission import transmission_csv as transmission_csv
 from .study.running import study as study
 from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
-from .study.running import repair_of_range as repair_of_range
+from .study.limiting import repair_of_range as repair_of_range
 from .study.running import with_range as with_range
 from .study.limiting import limits_rows as limits_rows
 from .study.limiting import limits_text as limits_text
@@ -80,8 +80,8 @@ from .study.summary import motion_rows as motion_rows
 # Forces
 from .dynamics.reduction import reduce as reduce
 from .dynamics.kinetostatics.reactions import reactions as reactions
-from .study.forces.reducing import reduction_rows as reduction_rows
-from .study.forces.reducing import reduction_parts as reduction_parts
+from .dynamics.reduction_results import reduction_results as reduction_results
+from .dynamics.reduction_results import ReductionResults as ReductionResults
 from .study.forces.joints import joint_table as joint_table
 from .study.forces.reacting import reaction_rows as reaction_rows
 from .study.forces.reacting import reaction_extremes as reaction_extremes
@@ -274,7 +274,6 @@ from .present import workbook_of_csv as workbook_of_csv
 from .present import spell_with_comma as spell_with_comma
 from .present import TableSpelling as TableSpelling
 from .present import write_coefficients_csv as write_coefficients_csv
-from .present import write_reduction_csv as write_reduction_csv
 from .present import write_reactions_csv as write_reactions_csv
 from .present import write_joint_table_csv as write_joint_table_csv
 from .present import write_region_csv as write_region_csv
@@ -287,7 +286,6 @@ from .present import darkened as darkened
 from .present import write_integration_csv as write_integration_csv
 from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
-from .present import reduction_figures as reduction_figures
 from .present import reaction_figures as reaction_figures
 from .present import bearing_figures as bearing_figures
 from .present import write_bearing_loads_csv as write_bearing_loads_csv

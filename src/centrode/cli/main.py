@@ -38,7 +38,6 @@ from centrode.cli.limits import limits
 from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
 from centrode.cli.reactions import reactions
-from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
@@ -63,13 +62,12 @@ COMMANDS: tuple[click.Command, ...] = (
     equations,
     integrate,
     rotatability,
-    reduce,
     reactions,
     polygons,
     variants,
     limits,
     region,
-    *map(topic_command, TOPICS),
+    *(topic_command(topic) for topic in TOPICS if topic.has_command),
     simulate,
     balance,
     cam,

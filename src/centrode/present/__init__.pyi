@@ -38,8 +38,6 @@ from .equations.latex import equations_latex as equations_latex
 from .equations.latex import equations_markdown as equations_markdown
 
 # Forces
-from .forces.reduction_tables import write_reduction_csv as write_reduction_csv
-from .forces.reduction_figures import reduction_figures as reduction_figures
 from .forces.reaction_tables import write_joint_table_csv as write_joint_table_csv
 from .forces.reaction_tables import write_reactions_csv as write_reactions_csv
 from .forces.reaction_figures import reaction_figures as reaction_figures

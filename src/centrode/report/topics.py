@@ -24,11 +24,14 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
     if study.is_cam or not topic.concerns(study.mechanism):
         return None
     try:
-        return document_chapter(chapter.name, _sheet(topic, study), study.numbers)
+        sheet = _sheet(topic, study)
     except (MotionError, NotComputedYet) as reason:
-        if study.wishes.chapters is not None:
+        if study.wishes.chapters is not None or not topic.may_be_left_out:
             raise
         return left_out(chapter.name, _(chapter.title), reason)
+    if chapter.name not in sheet.chapters:
+        return None
+    return document_chapter(chapter.name, sheet, study.numbers)
 
 
 def _sheet(topic: Topic, study: ReportStudy) -> Sheet:

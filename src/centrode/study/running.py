@@ -23,10 +23,9 @@ from centrode.model.mechanism import Mechanism, Study
 from centrode.sheets.sheet import Scalar
 from centrode.study.checking import Check, check_of
 from centrode.study.forces.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
+from centrode.study.limiting import NOT_REACHED
 from centrode.study.wording import Words, extremes
 from centrode.views import flywheel
-
-NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 
 
 @dataclass(frozen=True)
@@ -158,16 +157,6 @@ def with_range(mechanism: Mechanism, asked: str | None) -> Mechanism:
     own = mechanism.study
     study = Study(samples=own.samples, instants=own.instants, range=asked)
     return mechanism.model_copy(update={"study": study})
-
-
-def repair_of_range(mechanism: Mechanism) -> str:
-    """What to ask for where samples are not reached: between the limits, by a word where one drive has them."""
-    if not mechanism.motion_parameter.is_uniform:
-        return _("ask for a range between the limits, or change the dimensions")
-    return _(
-        'ask for the range between the limits (range = "reachable" under [study], or --range reachable), or '
-        "change the dimensions"
-    )
 
 
 def range_value(mechanism: Mechanism, text: float | str, where: str) -> float:

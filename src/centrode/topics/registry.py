@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from centrode.locale import mark
-from centrode.topics.topic import ChapterOfTopic, Choice, Lazily, Topic
+from centrode.topics.topic import ChapterOfTopic, Choice, Lazily, MotionRange, Topic
 
 FLYWHEEL = Topic(
     name="flywheel",
@@ -29,7 +29,20 @@ FLYWHEEL = Topic(
         ChapterOfTopic("flywheel", mark("Flywheel")),
         ChapterOfTopic("real-motion", mark("Real motion")),
     ),
+    may_be_left_out=True,
 )
 
-TOPICS: tuple[Topic, ...] = (FLYWHEEL,)
+REDUCTION = Topic(
+    name="reduce",
+    help=mark("Reduce masses and loads to the drive, part by part."),
+    compute=Lazily("centrode.dynamics.reduction_results", "reduction_results"),
+    result=Lazily("centrode.dynamics.reduction_results", "ReductionResults"),
+    view=Lazily("centrode.views.reduction", "sheet"),
+    concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
+    options=(MotionRange(),),
+    chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive")),),
+    ending=Lazily("centrode.study.limiting", "check_reached"),
+)
+
+TOPICS: tuple[Topic, ...] = (REDUCTION, FLYWHEEL)
 """Every topic."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 
 @dataclass(frozen=True)
@@ -34,19 +34,65 @@ class Choice:
     name : of the option and of the parameter of the computation
     words : what it may be, the rule first
     help : sentence, marked for the catalogues
+    has_rule : without the option the first word is meant; otherwise nothing, and the computation knows what to do
     """
 
     name: str
     words: tuple[str, ...]
     help: str
+    has_rule: bool = True
+
+
+@dataclass(frozen=True)
+class Written:
+    """An option of a computation that takes a text or a number; nothing where it is left out.
+
+    Attributes
+    ----------
+    name : of the option and of the parameter of the computation
+    metavar : what is written behind it, marked for the catalogues
+    help : sentence, marked for the catalogues
+    kind : str, int or float
+    several : it may be given more than once, and is a tuple
+    """
+
+    name: str
+    metavar: str
+    help: str
+    kind: type[str] | type[int] | type[float] = str
+    several: bool = False
+
+
+@dataclass(frozen=True)
+class Flag:
+    """An option of a computation that is given or not."""
+
+    name: str
+    help: str
+
+
+@dataclass(frozen=True)
+class MotionRange:
+    """The range of the motion: `--from`, `--to` and `--range`, as `start` and `stop` in SI of the computation."""
+
+
+Option: TypeAlias = Choice | Written | Flag | MotionRange
 
 
 @dataclass(frozen=True)
 class ChapterOfTopic:
-    """A chapter of documents: its name, and its title marked for the catalogues."""
+    """A chapter of documents.
+
+    Attributes
+    ----------
+    name : of the chapter
+    title : marked for the catalogues
+    after : name of the chapter that it follows; empty where the order of the registry is that of the document
+    """
 
     name: str
     title: str
+    after: str = ""
 
 
 @dataclass(frozen=True)
@@ -64,6 +110,13 @@ class Topic:
     needs : raises InputError where a mechanism lacks what the command needs, although a document does without
     options : of the computation and the command
     chapters : of documents, in the order of the document
+    arguments : options as they are written -> arguments of the computation; the same if None
+    extent : (mechanism, samples, **arguments) -> samples, and turns of the drive, that a command announces
+    progress : sentence that a command shows while the computation calls its `progress` with the share that is done
+    ending : result -> raises where it is not whole, once it has been shown
+    dark : pictures may be dark
+    has_command : whether it is a command; otherwise only documents and Python have it
+    may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     """
 
     name: str
@@ -73,5 +126,12 @@ class Topic:
     view: Lazily
     concerns: Lazily
     needs: Lazily | None = None
-    options: tuple[Choice, ...] = ()
+    options: tuple[Option, ...] = ()
     chapters: tuple[ChapterOfTopic, ...] = ()
+    arguments: Lazily | None = None
+    extent: Lazily | None = None
+    progress: str = ""
+    ending: Lazily | None = None
+    dark: bool = False
+    has_command: bool = True
+    may_be_left_out: bool = False

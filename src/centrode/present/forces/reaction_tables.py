@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from centrode.present.forces.reduction_tables import force_columns
 from centrode.present.tables import write_columns
+from centrode.views.columns import force_columns
 
 if TYPE_CHECKING:
     import xarray

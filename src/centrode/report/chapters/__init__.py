@@ -31,7 +31,6 @@ from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.forces.joints import reactions_chapter
 from centrode.report.chapters.forces.polygons import polygons_chapter
-from centrode.report.chapters.forces.reduction import reduction_chapter
 from centrode.report.chapters.forces.running import simulation_chapter
 from centrode.report.chapters.forces.shaken import balance_chapter
 from centrode.report.chapters.linkages.centres import centres_chapter
@@ -74,6 +73,15 @@ def either(*makers: Make) -> Make:
     return make
 
 
+def in_order(kinds: Mapping[str, Kind]) -> dict[str, Kind]:
+    """The chapters with those that follow another one behind it."""
+    follows = {chapter.name: chapter.after for topic in TOPICS for chapter in topic.chapters if chapter.after}
+    order = [name for name in kinds if name not in follows]
+    for name, before in follows.items():
+        order.insert(order.index(before) + 1, name)
+    return {name: kinds[name] for name in order}
+
+
 def topic_chapters() -> dict[str, Kind]:
     """The chapters of every topic of the registry."""
     return {
@@ -83,38 +91,41 @@ def topic_chapters() -> dict[str, Kind]:
     }
 
 
-CHAPTERS: Mapping[str, Kind] = {
-    "data": Kind(
-        mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
-    ),
-    "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
-    "words": Kind(mark("How it works"), words_chapter),
-    "structure": Kind(mark("Structure"), structure_chapter),
-    "equations": Kind(mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)),
-    "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
-    "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
-    "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
-    "positions": Kind(mark("Plan of positions"), positions_chapter),
-    "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
-    "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
-    "integration": Kind(mark("Integration of the equations"), integration_chapter),
-    "rotatability": Kind(mark("Rotatability"), turning_chapter),
-    "axes": Kind(mark("Instantaneous axes"), axes_chapter),
-    "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
-    "reduction": Kind(mark("Reduction to the drive"), reduction_chapter),
-    **topic_chapters(),
-    "simulation": Kind(mark("Motion under loads"), simulation_chapter),
-    "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
-    "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
-    "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
-    "lift": Kind(mark("Motion of the follower"), lift_chapter),
-    "laws": Kind(mark("Laws of motion for one rise"), laws_chapter),
-    "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
-    "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
-    "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
-    "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
-    "cam-forces": Kind(mark("Forces on cam and follower"), cam_forces_chapter),
-    "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
-    "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
-    "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
-}
+CHAPTERS: Mapping[str, Kind] = in_order(
+    {
+        "data": Kind(
+            mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
+        ),
+        "motion": Kind(mark("Motion"), either(motion_chapter, cam_motion_chapter, follower_motion_chapter)),
+        "words": Kind(mark("How it works"), words_chapter),
+        "structure": Kind(mark("Structure"), structure_chapter),
+        "equations": Kind(
+            mark("Constraint equations"), either(constraints_chapter, sphere_equations_chapter)
+        ),
+        "derivation": Kind(mark("Velocities and accelerations"), derivation_chapter),
+        "tables": Kind(mark("Tables of the motion"), either(tables_chapter, sphere_tables_chapter)),
+        "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
+        "positions": Kind(mark("Plan of positions"), positions_chapter),
+        "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
+        "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
+        "integration": Kind(mark("Integration of the equations"), integration_chapter),
+        "rotatability": Kind(mark("Rotatability"), turning_chapter),
+        "axes": Kind(mark("Instantaneous axes"), axes_chapter),
+        "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
+        **topic_chapters(),
+        "simulation": Kind(mark("Motion under loads"), simulation_chapter),
+        "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
+        "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
+        "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
+        "lift": Kind(mark("Motion of the follower"), lift_chapter),
+        "laws": Kind(mark("Laws of motion for one rise"), laws_chapter),
+        "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
+        "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
+        "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
+        "profile": Kind(mark("Profile of the cam"), either(cam_profile_chapter, follower_profile_chapter)),
+        "cam-forces": Kind(mark("Forces on cam and follower"), cam_forces_chapter),
+        "walking": Kind(mark("Walking wheel"), cam_walking_chapter),
+        "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
+        "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
+    }
+)

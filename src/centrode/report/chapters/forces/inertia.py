@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.dynamics.link_motions import motions_of_links
 from centrode.locale import _
 from centrode.render.document.blocks import Block, Table, shown
 from centrode.render.document.formulas import in_si
-from centrode.report.chapters.forces.by_links import motions_of_links
 from centrode.report.chapters.forces.results import motion_at_instants, reactions_at_instants
 
 if TYPE_CHECKING:
