@@ -117,9 +117,8 @@ from .model.simulations import Motor as Motor
 from .dynamics.simulation.simulate import simulate as simulate
 from .dynamics.simulation.regime import steady_regime as steady_regime
 from .dynamics.simulation.regime import Regime as Regime
-from .study.forces.simulating import simulation_rows as simulation_rows
-from .study.forces.simulating import regime_rows as regime_rows
-from .present import simulation_figures as simulation_figures
+from .dynamics.simulation.results import simulation_results as simulation_results
+from .dynamics.simulation.results import SimulationResults as SimulationResults
 
 # Shaking forces and counterweights
 from .dynamics.balancing.shaking import shaking as shaking

@@ -43,7 +43,6 @@ from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
 from centrode.cli.schema import schema
-from centrode.cli.simulate import simulate
 from centrode.cli.sweep import sweep
 from centrode.cli.topic_command import topic_command
 from centrode.cli.translation import language_option, translated, wished_language, with_language
@@ -68,7 +67,6 @@ COMMANDS: tuple[click.Command, ...] = (
     limits,
     region,
     *(topic_command(topic) for topic in TOPICS if topic.has_command),
-    simulate,
     balance,
     cam,
     centres,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from centrode.locale import mark
-from centrode.topics.topic import ChapterOfTopic, Choice, Lazily, MotionRange, Topic
+from centrode.topics.topic import ChapterOfTopic, Choice, Flag, Lazily, MotionRange, Topic, Written
 
 FLYWHEEL = Topic(
     name="flywheel",
@@ -44,5 +44,33 @@ REDUCTION = Topic(
     ending=Lazily("centrode.study.limiting", "check_reached"),
 )
 
-TOPICS: tuple[Topic, ...] = (REDUCTION, FLYWHEEL)
+SIMULATION = Topic(
+    name="simulate",
+    help=mark("Let a machine run: loads, friction and a motor move it."),
+    compute=Lazily("centrode.dynamics.simulation.results", "simulation_results"),
+    result=Lazily("centrode.dynamics.simulation.results", "SimulationResults"),
+    view=Lazily("centrode.views.simulation", "sheet"),
+    concerns=Lazily("centrode.dynamics.simulation.results", "has_simulation"),
+    options=(
+        Written("duration", mark("T"), mark('How long it runs: "20 s".')),
+        Written("turns", mark("N"), mark("End after so many turns of the drive."), float),
+        Written("driving", mark("FORMULA"), mark('Moment of the drive in t, q and v: "20 - 2*v".')),
+        Written("speed", mark("V"), mark('Speed of the drive at the start: "65 rpm".')),
+        Choice(
+            "scheme",
+            ("adaptive", "stiff", "runge-kutta-4"),
+            mark("How to integrate: adaptive (the rule), for stiff laws, or fixed steps."),
+            has_rule=False,
+        ),
+        Written("steps", mark("N"), mark("Number of fixed steps."), int),
+        Flag("motion", mark("Write the motion of all points and links too.")),
+    ),
+    chapters=(ChapterOfTopic("simulation", mark("Motion under loads")),),
+    extent=Lazily("centrode.dynamics.simulation.results", "simulation_extent"),
+    progress=mark("integrating, %"),
+    ending=Lazily("centrode.dynamics.simulation.results", "check_ended"),
+    has_instants=False,
+)
+
+TOPICS: tuple[Topic, ...] = (REDUCTION, FLYWHEEL, SIMULATION)
 """Every topic."""

@@ -116,6 +116,7 @@ class Topic:
     ending : result -> raises where it is not whole, once it has been shown
     dark : pictures may be dark
     has_command : whether it is a command; otherwise only documents and Python have it
+    has_instants : the computation takes the instants of a document
     may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     """
 
@@ -134,4 +135,5 @@ class Topic:
     ending: Lazily | None = None
     dark: bool = False
     has_command: bool = True
+    has_instants: bool = True
     may_be_left_out: bool = False

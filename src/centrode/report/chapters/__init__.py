@@ -31,7 +31,6 @@ from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.forces.joints import reactions_chapter
 from centrode.report.chapters.forces.polygons import polygons_chapter
-from centrode.report.chapters.forces.running import simulation_chapter
 from centrode.report.chapters.forces.shaken import balance_chapter
 from centrode.report.chapters.linkages.centres import centres_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
@@ -113,7 +112,6 @@ CHAPTERS: Mapping[str, Kind] = in_order(
         "axes": Kind(mark("Instantaneous axes"), axes_chapter),
         "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
         **topic_chapters(),
-        "simulation": Kind(mark("Motion under loads"), simulation_chapter),
         "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
         "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
         "balance": Kind(mark("Shaking forces and balance"), balance_chapter),

@@ -9,7 +9,6 @@ from centrode.dynamics.balancing.shaking import shaking
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.reduction import reduce
-from centrode.dynamics.simulation.simulate import simulate
 from centrode.report.chapters.forces.places import instants
 from centrode.report.moments import moments_of
 
@@ -42,11 +41,6 @@ def reactions_of(study: ReportStudy) -> xr.Dataset:
 def reactions_at_instants(study: ReportStudy) -> xr.Dataset:
     """Forces in every joint at the instants."""
     return study.once("reactions at instants", lambda: reactions(study.mechanism, at=instants(study)))
-
-
-def simulated(study: ReportStudy) -> xr.Dataset:
-    """The motion under loads and a drive, as `[simulation]` wants it."""
-    return study.once("simulation", lambda: simulate(study.mechanism))
 
 
 def shaken(study: ReportStudy) -> xr.Dataset:
