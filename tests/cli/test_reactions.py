@@ -16,6 +16,7 @@ import xarray as xr
 import centrode as ct
 from centrode.dynamics.bearings.joint_table import JointKind, tabled_joints
 from centrode.render.spelling import PlainSpelling
+from centrode.sheets.sheet import Table
 from centrode.topics.presentation import sheet_of
 
 Centrode = Callable[..., Any]
@@ -57,6 +58,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 def extremes_of(mechanism: ct.Mechanism, samples: int) -> dict[str, list[str]]:
     """The printed table of extremes: name -> unit, least, at, greatest, at."""
     table = sheet_of(ct.reaction_results(mechanism, samples, complete=False)).printed[1]
+    assert isinstance(table, Table)
     spelling = PlainSpelling(mechanism.display)
     cells = [[spelling.text(text) for text in column.values] for column in table.columns]
     return {name: list(row) for name, *row in zip(*cells, strict=True)}

@@ -33,7 +33,7 @@ def reactions(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
 
 
 def reduction(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    return ct.reduction_figures(mechanism, ct.reduce(mechanism, samples=37))
+    return ct.figures(ct.reduction_results(mechanism, 37))
 
 
 def integration(mechanism: ct.Mechanism) -> Mapping[str, Figure]:

@@ -37,13 +37,11 @@ from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
 from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
-from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
 from centrode.cli.schema import schema
-from centrode.cli.simulate import simulate
 from centrode.cli.sweep import sweep
 from centrode.cli.topic_command import topic_command
 from centrode.cli.translation import language_option, translated, wished_language, with_language
@@ -63,12 +61,10 @@ OWN: tuple[click.Command, ...] = (
     equations,
     integrate,
     rotatability,
-    reduce,
     polygons,
     variants,
     limits,
     region,
-    simulate,
     balance,
     cam,
     centres,

@@ -1,4 +1,4 @@
-"""Commands of the topics of the registry: print what a sheet has for a terminal, write its tables and figures."""
+"""Commands of the topics of the registry: print what a sheet has for a terminal, write tables, figures and numbers."""
 
 from __future__ import annotations
 
@@ -64,11 +64,10 @@ def topic_command(topic: Topic) -> click.Command:
                 result = _result(topic, description, samples, options, progress)
                 sheet = topic.view(result)
         else:
-            with output.output_folder(out) as draft, Progress() as progress:
+            with about(mechanism), output.output_folder(out) as draft, Progress() as progress:
                 progress.say(_("solving"))
-                with about(mechanism):
-                    result = _result(topic, description, samples, options, progress)
-                    sheet = topic.view(result)
+                result = _result(topic, description, samples, options, progress)
+                sheet = topic.view(result)
                 write_sheet(sheet, draft, description.display, progress, figures=not no_figures, dark=dark)
                 if topic.summary:
                     render.write_summary(sheet.scalars, draft / "summary.json")
@@ -100,9 +99,17 @@ def _parameters(option: Option) -> Iterator[click.Parameter]:
         case Instants(text):
             yield click.Option(["--at"], multiple=True, metavar=mark("VALUE"), help=text)
         case MotionRange():
-            yield from click.command()(start_option(stop_option(range_option(lambda: None)))).params
+            yield from _range_options.params
         case _:
             assert_never(option)
+
+
+@click.command()
+@start_option
+@stop_option
+@range_option
+def _range_options(**_options: str) -> None:
+    """Holds the options of a range."""
 
 
 def _option(name: str) -> str:

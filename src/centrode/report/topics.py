@@ -39,6 +39,8 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
     """The sheet of a topic at the instants of the report, computed once."""
 
     def compute() -> Sheet:
+        if not topic.has_instants:
+            return cast("Sheet", topic.view(topic.compute(study.mechanism)))
         instants = tuple(moment.at for moment in moments_of(study))
         done = None if topic.add_instants is None else study.study.results.get(topic.name)
         if topic.add_instants is None or done is None:

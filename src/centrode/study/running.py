@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from centrode.dynamics.bearings.results import ReactionResults, has_forces, with_bearings
+from centrode.dynamics.bearings.results import ReactionResults, with_bearings
 from centrode.dynamics.burden import Burden
 from centrode.dynamics.friction.contacts import contacts_of
 from centrode.dynamics.kinetostatics.moving import pace_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
+from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.steady_motion.steady import MachineResults, machine_results
 from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.dataset import dataset_of
@@ -25,11 +26,10 @@ from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
 from centrode.sheets.sheet import Scalar
 from centrode.study.checking import Check, check_of
+from centrode.study.limiting import NOT_REACHED, not_reached_sentence
 from centrode.study.wording import Words, extremes
 from centrode.views import flywheel
 from centrode.views import reactions as reactions_view
-
-NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ def _machine(mechanism: Mechanism, samples: int | None) -> tuple[MachineResults 
 
 def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[ReactionResults | None, list[str]]:
     """Reactions of a motion; a note where masses or loads are there, but not complete or not computed yet."""
-    if not has_forces(mechanism):
+    if not has_masses_or_loads(mechanism):
         return None, []
     try:
         burden = Burden.for_reactions(mechanism)
@@ -135,15 +135,6 @@ def self_locking_sentence(samples: int) -> str:
         "self-locking: at {n} samples no drive overcomes the friction",
         samples,
     ).format(n=samples)
-
-
-def not_reached_sentence(missing: int, samples: int) -> str:
-    """How many samples the mechanism does not reach."""
-    return ngettext(
-        "the mechanism locks: {missing} of {all} samples is not reached",
-        "the mechanism locks: {missing} of {all} samples are not reached",
-        missing,
-    ).format(missing=missing, all=samples)
 
 
 def _by_each_drive(solved: Solved) -> bool:
@@ -176,16 +167,6 @@ def with_range(mechanism: Mechanism, asked: str | None) -> Mechanism:
     own = mechanism.study
     study = Study(samples=own.samples, instants=own.instants, range=asked)
     return mechanism.model_copy(update={"study": study})
-
-
-def repair_of_range(mechanism: Mechanism) -> str:
-    """What to ask for where samples are not reached: between the limits, by a word where one drive has them."""
-    if not mechanism.motion_parameter.is_uniform:
-        return _("ask for a range between the limits, or change the dimensions")
-    return _(
-        'ask for the range between the limits (range = "reachable" under [study], or --range reachable), or '
-        "change the dimensions"
-    )
 
 
 def range_value(mechanism: Mechanism, text: float | str, where: str) -> float:

@@ -132,12 +132,13 @@ class Topic:
     ending : result -> raises where it is not whole, once it has been shown
     dark : pictures may be dark
     has_command : whether it is a command; otherwise only documents and Python have it
-    may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     after : name of the command that its own follows in the list of commands; that of the topic before it if empty
     summary : whether the command writes the scalars of the sheet as `summary.json`
     complete : parameter of the computation that is False where nothing is written: then only what is printed is needed
     add_instants : (result of a run, instants) -> result: a document goes on with what a run has computed
     may_be_incomplete : it may be left out as well where the description lacks what the computation needs
+    has_instants : the computation takes the instants of a document
+    may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
     """
 
     name: str
@@ -155,6 +156,7 @@ class Topic:
     ending: Lazily | None = None
     dark: bool = False
     has_command: bool = True
+    has_instants: bool = True
     may_be_left_out: bool = False
     after: str = ""
     summary: bool = True

@@ -25,7 +25,7 @@ from centrode.sheets.plots import (
 )
 from centrode.sheets.sheet import Picture
 from centrode.sheets.texts import Joined, Name, Number, Sentence, Symbol, Text, Title
-from centrode.views.abscissas import main_abscissa
+from centrode.views.abscissa import motion_abscissa
 from centrode.views.motion_plots import dealt
 from centrode.views.reaction_names import body_text, contact_text, side_text
 
@@ -47,7 +47,7 @@ NAMED = 12
 def pictures(results: ReactionResults) -> Iterator[tuple[str, Picture]]:
     """Figures by name: curves of what there is and is determined; in the plane the bearings and the forces to scale."""
     mechanism, reactions = results.mechanism, results.reactions
-    abscissa, title = main_abscissa(mechanism, reactions), Title(mechanism.title)
+    abscissa, title = motion_abscissa(mechanism, reactions), Title(mechanism.title)
     plots = {
         "joint-forces": (Sentence("Forces in the hinges"), _hinges(reactions)),
         "joint-components": (Sentence("Forces in the hinges by components"), _components(reactions)),
@@ -253,7 +253,7 @@ def _bearing_name(bearing: xarray.Dataset) -> Sentence:
 def _hodographs(mechanism: Mechanism, bearings: xarray.Dataset, variable: str) -> Iterator[Hodograph]:
     """The load of each bearing, with round values of the drive, or of time, along it."""
     marks = list(_marks(mechanism, bearings))
-    abscissa, symbol = main_abscissa(mechanism, bearings), QUANTITIES[variable].symbol
+    abscissa, symbol = motion_abscissa(mechanism, bearings), QUANTITIES[variable].symbol
     x, y = (AxisLabel(symbol=Symbol(symbol, axis, slanted=True), unit="N") for axis in ("x", "y"))
     for bearing in _each_bearing(bearings):
         force = bearing[variable].transpose("sample", "axis").to_numpy()

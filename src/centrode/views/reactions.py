@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from centrode.dynamics.bearings.joint_table import JointKind, TabledJoint, tabled_joints
 from centrode.dynamics.bearings.reaction_series import ROUNDING, ReactionSeries, reaction_series
-from centrode.dynamics.link_motion import motions_of_links
+from centrode.dynamics.link_motions import motions_of_links
 from centrode.dynamics.masses import massless_links
 from centrode.errors import Status
 from centrode.model.mechanism import FRAME

@@ -115,8 +115,3 @@ def with_instants(results: ReactionResults, instants: npt.ArrayLike) -> Reaction
             reduced = reduce(mechanism, at=places)
     there = ReactionsAtInstants(reactions(mechanism, at=places), motion(mechanism, at=places), reduced)
     return replace(results, instants=there)
-
-
-def has_forces(mechanism: Mechanism) -> bool:
-    """Whether a description has masses or loads."""
-    return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())

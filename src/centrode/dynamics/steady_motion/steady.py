@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.steady_motion.balance import Mean
 from centrode.dynamics.steady_motion.flywheel import Flywheel, flywheel_of
 from centrode.dynamics.steady_motion.quadrature import Array
@@ -113,8 +114,7 @@ def machine_results(
 
 def is_machine(mechanism: Mechanism) -> bool:
     """Whether a description has a machine, and masses or loads that move it unevenly."""
-    heavy = bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
-    return mechanism.machine is not None and heavy
+    return mechanism.machine is not None and has_masses_or_loads(mechanism)
 
 
 def turned_at(found: Solution, samples: int | None = None, at: npt.ArrayLike | None = None) -> Array:

@@ -40,7 +40,7 @@ class DocumentSpelling(Spelling):
         factor, unit = self.shown_unit(number)
         value = number.value * factor if factor != 1.0 else number.value
         text = self._digits(value, number.digits)
-        # numbers that are as long as the document has them stand closer to their units
+        # a number that only the document gives its digits stands in titles, which keep it and its unit together
         gap = " " if number.digits else NARROW
         if number.degrees_too and unit == "rad" and value:
             return f"{text}{gap}rad ({self.numbers.plain(math.degrees(value))}°)"

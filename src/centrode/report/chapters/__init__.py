@@ -30,8 +30,6 @@ from centrode.report.chapters.followers.sizing import base_radius_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.forces.polygons import polygons_chapter
-from centrode.report.chapters.forces.reduction import reduction_chapter
-from centrode.report.chapters.forces.running import simulation_chapter
 from centrode.report.chapters.forces.shaken import balance_chapter
 from centrode.report.chapters.linkages.centres import centres_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
@@ -92,8 +90,6 @@ OWN: Mapping[str, Kind] = {
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
     "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
-    "reduction": Kind(mark("Reduction to the drive"), reduction_chapter),
-    "simulation": Kind(mark("Motion under loads"), simulation_chapter),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
     "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
     "lift": Kind(mark("Motion of the follower"), lift_chapter),

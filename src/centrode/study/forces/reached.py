@@ -8,13 +8,8 @@ import numpy as np
 
 from centrode.errors import MotionError, Status
 from centrode.locale import _
-from centrode.study.limiting import limits_sentence
-from centrode.study.running import (
-    NOT_REACHED,
-    not_reached_sentence,
-    repair_of_range,
-    self_locking_sentence,
-)
+from centrode.study.limiting import NOT_REACHED, limits_sentence, not_reached_sentence, repair_of_range
+from centrode.study.running import self_locking_sentence
 
 if TYPE_CHECKING:
     from centrode.dynamics.bearings.results import ReactionResults

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 from centrode.dynamics.balancing.balance import Balance, balance
 from centrode.dynamics.balancing.shaking import shaking
-from centrode.dynamics.bearings.results import has_forces as bears_forces
 from centrode.dynamics.kinetostatics.reactions import reactions
+from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.reduction import reduce
-from centrode.dynamics.simulation.simulate import simulate
 from centrode.report.chapters.forces.places import instants
 from centrode.report.moments import moments_of
 
@@ -21,16 +20,11 @@ if TYPE_CHECKING:
 
 def has_forces(study: ReportStudy) -> bool:
     """Whether a linkage is reported on that has masses or loads."""
-    return not study.is_cam and bears_forces(study.mechanism)
-
-
-def reduced(study: ReportStudy) -> xr.Dataset:
-    """Masses and loads reduced to the drives, over the motion."""
-    return study.once("reduced", lambda: reduce(study.mechanism))
+    return not study.is_cam and has_masses_or_loads(study.mechanism)
 
 
 def reduced_at_instants(study: ReportStudy) -> xr.Dataset:
-    """The same at the instants."""
+    """Masses and loads reduced to the drives, at the instants."""
     return study.once("reduced at instants", lambda: reduce(study.mechanism, at=instants(study)))
 
 
@@ -42,11 +36,6 @@ def motion_at_instants(study: ReportStudy) -> xr.Dataset:
 def reactions_at_instants(study: ReportStudy) -> xr.Dataset:
     """Forces in every joint at the instants."""
     return study.once("reactions at instants", lambda: reactions(study.mechanism, at=instants(study)))
-
-
-def simulated(study: ReportStudy) -> xr.Dataset:
-    """The motion under loads and a drive, as `[simulation]` wants it."""
-    return study.once("simulation", lambda: simulate(study.mechanism))
 
 
 def shaken(study: ReportStudy) -> xr.Dataset:

@@ -1,8 +1,7 @@
-"""What curves of a motion are drawn over: the drive's value or time, the gaps in it, and the events along it."""
+"""What curves of a motion are drawn over: the value of the drive or time, the gaps in it, the events along it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -11,7 +10,7 @@ from numpy.typing import NDArray
 from centrode.errors import Status
 from centrode.quantities import QUANTITIES
 from centrode.sheets.plots import Abscissa, AxisLabel, EventKind
-from centrode.sheets.texts import Name, Sentence, Symbol
+from centrode.sheets.texts import Name, Sentence, Symbol, Text
 
 if TYPE_CHECKING:
     import xarray
@@ -20,56 +19,59 @@ if TYPE_CHECKING:
     from centrode.model.motion_parameter import DriveCoordinate
 
 Array: TypeAlias = NDArray[np.float64]
-Event: TypeAlias = tuple[float, EventKind]
+LIMIT, CHANGE_POINT = 0, 1
+"""Kinds of events in a dataset."""
+EVENTS = {LIMIT: EventKind.LIMIT, CHANGE_POINT: EventKind.CHANGE_POINT}
 
-EVENT_KINDS = (EventKind.LIMIT, EventKind.CHANGE_POINT)
-"""By the number that datasets have for each."""
 
-
-def main_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
-    """The drive's value if one drive turns or moves uniformly, else time."""
+def motion_abscissa(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
+    """The value of the drive if one drive turns or moves uniformly, else time."""
     return over_drive(mechanism, dataset) if mechanism.motion_parameter.is_uniform else over_time(dataset)
 
 
 def over_drive(mechanism: Mechanism, dataset: xarray.Dataset) -> Abscissa:
-    """The value of the only drive [rad or m]."""
+    """The value of the only drive."""
+    coordinate = mechanism.motion_parameter.drives[0]
     values, order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
     return Abscissa(
-        drive_label(mechanism.motion_parameter.drives[0]),
+        AxisLabel(text_of_drive(coordinate), unit=coordinate.unit),
         values,
         order,
         limits_between(dataset, values),
         dataset["status"].to_numpy() == Status.CUT_OFF,
-        tuple(within(values, events_of(dataset))),
+        _events(within(values, events(dataset))),
     )
 
 
-def drive_label(coordinate: DriveCoordinate) -> AxisLabel:
-    """What a drive gives, with its symbol."""
-    symbol, name = Symbol(coordinate.symbol), Name(coordinate.name)
-    text = {
-        "angle": Sentence("angle {symbol} of link {name}", symbol=symbol, name=name),
-        "displacement": Sentence("displacement {symbol} along guide {name}", symbol=symbol, name=name),
-        "distance": Sentence("distance {symbol} of {name}", symbol=symbol, name=name),
-    }[coordinate.driven]
-    return AxisLabel(text, unit=coordinate.unit)
+def text_of_drive(coordinate: DriveCoordinate) -> Text:
+    """What a drive moves, with its symbol."""
+    name, symbol = Name(coordinate.name), Symbol(coordinate.symbol)
+    match coordinate.driven:
+        case "angle":
+            return Sentence("angle {symbol} of link {name}", symbol=symbol, name=name)
+        case "displacement":
+            return Sentence("displacement {symbol} along guide {name}", symbol=symbol, name=name)
+        case _:
+            return Sentence("distance {symbol} of {name}", symbol=symbol, name=name)
 
 
 def over_time(dataset: xarray.Dataset) -> Abscissa:
-    """Time [s]; events stand where the only drive passes them, with several drives at their own times."""
+    """Time; events stand where the only drive passes them, with several drives at their own times."""
     times, order = in_time(dataset, dataset["time"].to_numpy())
     if dataset.sizes["drive"] == 1:
         values, _order = in_time(dataset, dataset["drive_value"].isel(drive=0).to_numpy())
         breaks = limits_between(dataset, values)
-        marks = [
-            (time, kind) for value, kind in events_of(dataset) for time in passings(times, values, value)
-        ]
+        marks = [(time, kind) for value, kind in events(dataset) for time in passings(times, values, value)]
     else:
-        breaks, marks = limits_between(dataset, times), events_of(dataset)
+        breaks, marks = limits_between(dataset, times), events(dataset)
+    cut = dataset["status"].to_numpy() == Status.CUT_OFF
     quantity = QUANTITIES["time"]
     label = AxisLabel(Sentence(quantity.long_name), Symbol(quantity.symbol), quantity.unit)
-    cut = dataset["status"].to_numpy() == Status.CUT_OFF
-    return Abscissa(label, times, order, breaks, cut, tuple(within(times, marks)))
+    return Abscissa(label, times, order, breaks, cut, _events(within(times, marks)))
+
+
+def _events(marks: list[tuple[float, int]]) -> tuple[tuple[float, EventKind], ...]:
+    return tuple((value, EVENTS[kind]) for value, kind in marks)
 
 
 def in_time(dataset: xarray.Dataset, values: Array) -> tuple[Array, NDArray[np.intp]]:
@@ -78,18 +80,18 @@ def in_time(dataset: xarray.Dataset, values: Array) -> tuple[Array, NDArray[np.i
     return values[order], order
 
 
-def events_of(dataset: xarray.Dataset) -> list[Event]:
-    """Value of the drive [rad or m] (the time [s], with several drives) and kind of every event."""
+def events(dataset: xarray.Dataset) -> list[tuple[float, int]]:
+    """Value of the drive (the time, with several drives) and kind of every event."""
     if "event_value" not in dataset:
         return []
-    codes = dataset["event_kind"].to_numpy().tolist()
-    return [
-        (value, EVENT_KINDS[code])
-        for value, code in zip(dataset["event_value"].to_numpy().tolist(), codes, strict=True)
-    ]
+    return list(
+        zip(
+            dataset["event_value"].to_numpy().tolist(), dataset["event_kind"].to_numpy().tolist(), strict=True
+        )
+    )
 
 
-def within(values: Array, marks: Iterable[Event]) -> list[Event]:
+def within(values: Array, marks: list[tuple[float, int]]) -> list[tuple[float, int]]:
     """The marks that lie in the range of the values."""
     if not np.isfinite(values).any():
         return []
@@ -100,12 +102,13 @@ def within(values: Array, marks: Iterable[Event]) -> list[Event]:
 
 def limits_between(dataset: xarray.Dataset, values: Array) -> NDArray[np.intp]:
     """Numbers of the samples before which a limit lies, strictly after the sample before."""
+    found: set[int] = set()
     before, after = values[:-1], values[1:]
-    passed = np.zeros_like(before, dtype=bool)
-    for value, kind in events_of(dataset):
-        if kind is EventKind.LIMIT:
-            passed |= (np.minimum(before, after) < value) & (value < np.maximum(before, after))
-    return np.flatnonzero(passed) + 1
+    for value, kind in events(dataset):
+        if kind == LIMIT:
+            passed = (np.minimum(before, after) < value) & (value < np.maximum(before, after))
+            found |= set((np.flatnonzero(passed) + 1).tolist())
+    return np.array(sorted(found), dtype=np.intp)
 
 
 def passings(times: Array, values: Array, wanted: float) -> list[float]:
