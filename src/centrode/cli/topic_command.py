@@ -27,7 +27,7 @@ from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError
 from centrode.locale import _, mark
-from centrode.topics.topic import Choice, Flag, Instants, MotionRange, Option, Topic, Written
+from centrode.topics.topic import Choice, Flag, InstantsOption, MotionRange, Option, Topic, Written
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Display, Mechanism
@@ -96,7 +96,7 @@ def _parameters(option: Option) -> Iterator[click.Parameter]:
             yield click.Option([_option(name), name], type=kind, metavar=metavar, help=text, multiple=several)
         case Flag(name, text):
             yield click.Option([_option(name)], is_flag=True, help=text)
-        case Instants(text):
+        case InstantsOption(text):
             yield click.Option(["--at"], multiple=True, metavar=mark("VALUE"), help=text)
         case MotionRange():
             yield from _range_options.params
@@ -128,7 +128,7 @@ def _in_range(mechanism: Mechanism, options: dict[str, Any]) -> Mechanism:
 def _check_instants(topic: Topic, mechanism: Mechanism, samples: int | None, options: dict[str, Any]) -> None:
     """Refuse instants that cannot be read, too many of them to print, and instants beside a range."""
     places = options.get("at") or ()
-    most = next((option.most for option in topic.options if isinstance(option, Instants)), 0)
+    most = next((option.most for option in topic.options if isinstance(option, InstantsOption)), 0)
     if len(places) > most:
         raise InputError(
             "--at",

@@ -7,7 +7,7 @@ from centrode.topics.topic import (
     ChapterOfTopic,
     Choice,
     Flag,
-    Instants,
+    InstantsOption,
     Lazily,
     MotionRange,
     Topic,
@@ -91,7 +91,9 @@ REACTIONS = Topic(
     view=Lazily("centrode.views.reactions", "sheet"),
     concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
     options=(
-        Instants(mark('Only at this value of the drive ("120 deg"), or time ("1 s"); as often as needed.')),
+        InstantsOption(
+            mark('Only at this value of the drive ("120 deg"), or time ("1 s"); as often as needed.')
+        ),
         Flag("steady", mark("At the real speed of a machine in steady motion, not at its mean speed.")),
         Flag("frictionless", mark("Leave out friction that is given by coefficients.")),
         MotionRange(),

@@ -79,7 +79,7 @@ class MotionRange:
 
 
 @dataclass(frozen=True)
-class Instants:
+class InstantsOption:
     """Single places in place of the range: `--at`, as often as needed, as texts `at` of the computation.
 
     Attributes
@@ -92,7 +92,7 @@ class Instants:
     most: int = 100
 
 
-Option: TypeAlias = Choice | Written | Flag | MotionRange | Instants
+Option: TypeAlias = Choice | Written | Flag | MotionRange | InstantsOption
 
 
 @dataclass(frozen=True)
