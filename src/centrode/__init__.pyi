@@ -65,7 +65,7 @@ from .study.transmission import transmission_csv as transmission_csv
 from .study.running import study as study
 from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
-from .study.running import repair_of_range as repair_of_range
+from .study.limiting import repair_of_range as repair_of_range
 from .study.running import with_range as with_range
 from .study.limiting import limits_rows as limits_rows
 from .study.limiting import limits_text as limits_text
@@ -80,20 +80,14 @@ from .study.summary import motion_rows as motion_rows
 # Forces
 from .dynamics.reduction import reduce as reduce
 from .dynamics.kinetostatics.reactions import reactions as reactions
-from .study.forces.reducing import reduction_rows as reduction_rows
-from .study.forces.reducing import reduction_parts as reduction_parts
-from .study.forces.joints import joint_table as joint_table
-from .study.forces.reacting import reaction_rows as reaction_rows
-from .study.forces.reacting import reaction_extremes as reaction_extremes
-from .study.forces.reacting import reactions_at_instant as reactions_at_instant
-from .study.forces.reacting import greatest_reaction as greatest_reaction
-from .study.forces.rubbing import friction_losses as friction_losses
-from .study.forces.bearings import bearings as bearings
-from .study.forces.bearings import motion_beside as motion_beside
-from .study.forces.bearing_loads import bearing_loads as bearing_loads
-from .study.forces.bearing_loads import BearingLoad as BearingLoad
-from .study.forces.bearing_loads import bearing_load_rows as bearing_load_rows
-from .study.forces.bearing_loads import bearing_load_scalars as bearing_load_scalars
+from .dynamics.bearings.wear import bearings as bearings
+from .dynamics.bearings.wear import motion_beside as motion_beside
+from .dynamics.bearings.extremes import bearing_loads as bearing_loads
+from .dynamics.bearings.extremes import BearingLoad as BearingLoad
+from .dynamics.bearings.results import reaction_results as reaction_results
+from .dynamics.bearings.results import ReactionResults as ReactionResults
+from .dynamics.reduction_results import reduction_results as reduction_results
+from .dynamics.reduction_results import ReductionResults as ReductionResults
 
 # Forces by hand
 from .dynamics.force_polygons.polygons import force_polygons as force_polygons
@@ -117,9 +111,8 @@ from .model.simulation import Motor as Motor
 from .dynamics.simulation.simulate import simulate as simulate
 from .dynamics.simulation.steady_state import steady_regime as steady_regime
 from .dynamics.simulation.steady_state import Regime as Regime
-from .study.forces.simulating import simulation_rows as simulation_rows
-from .study.forces.simulating import regime_rows as regime_rows
-from .present import simulation_figures as simulation_figures
+from .dynamics.simulation.results import simulation_results as simulation_results
+from .dynamics.simulation.results import SimulationResults as SimulationResults
 
 # Shaking forces and counterweights
 from .dynamics.balancing.shaking_forces import shaking as shaking
@@ -274,9 +267,6 @@ from .present import workbook_of_csv as workbook_of_csv
 from .present import spell_with_comma as spell_with_comma
 from .present import TableSpelling as TableSpelling
 from .present import write_coefficients_csv as write_coefficients_csv
-from .present import write_reduction_csv as write_reduction_csv
-from .present import write_reactions_csv as write_reactions_csv
-from .present import write_joint_table_csv as write_joint_table_csv
 from .present import write_region_csv as write_region_csv
 from .present import write_centres_csv as write_centres_csv
 from .present import write_centrodes_csv as write_centrodes_csv
@@ -287,10 +277,6 @@ from .present import darkened as darkened
 from .present import write_integration_csv as write_integration_csv
 from .present import write_variants as write_variants
 from .present import motion_figures as motion_figures
-from .present import reduction_figures as reduction_figures
-from .present import reaction_figures as reaction_figures
-from .present import bearing_figures as bearing_figures
-from .present import write_bearing_loads_csv as write_bearing_loads_csv
 from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures

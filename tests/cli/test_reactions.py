@@ -14,6 +14,10 @@ import pytest
 import xarray as xr
 
 import centrode as ct
+from centrode.dynamics.bearings.joint_table import JointKind, tabled_joints
+from centrode.render.spelling import PlainSpelling
+from centrode.sheets.sheet import Table
+from centrode.topics.presentation import sheet_of
 
 Centrode = Callable[..., Any]
 
@@ -49,6 +53,15 @@ sides = { B = "ahead" }
 def rows_of(path: Path) -> list[dict[str, str]]:
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def extremes_of(mechanism: ct.Mechanism, samples: int) -> dict[str, list[str]]:
+    """The printed table of extremes: name -> unit, least, at, greatest, at."""
+    table = sheet_of(ct.reaction_results(mechanism, samples, complete=False)).printed[1]
+    assert isinstance(table, Table)
+    spelling = PlainSpelling(mechanism.display)
+    cells = [[spelling.text(text) for text in column.values] for column in table.columns]
+    return {name: list(row) for name, *row in zip(*cells, strict=True)}
 
 
 def test_the_press(centrode: Centrode, folder: Path) -> None:
@@ -100,12 +113,16 @@ def test_the_table_of_joints_of_the_source(centrode: Centrode, folder: Path) -> 
 
 
 def test_hinges_of_several_links_and_wheels_have_columns_of_their_own() -> None:
-    header, rows = ct.joint_table(ct.example("planetary-gear-train"))
-    assert [one for one in header if one.startswith("gear")]
-    table = [[int(cell) for cell in row[1:]] for row in rows]
-    assert all(sorted(column) == [-1, *[0] * (len(rows) - 2), 1] for column in zip(*table, strict=True))
-    header, _rows = ct.joint_table(ct.example("slider-between-cranks"))
-    assert header[1:] == ["O", "A", "C", "B", "D", "guide C"]
+    train = ct.example("planetary-gear-train")
+    joints = tabled_joints(train)
+    assert [one for one in joints if one.kind is JointKind.GEAR]
+    bodies = [*train.links, "frame"]
+    for joint in joints:
+        signs = sorted(joint.sign(body) for body in bodies)
+        assert signs == [-1, *[0] * (len(bodies) - 2), 1]
+    slider = tabled_joints(ct.example("slider-between-cranks"))
+    assert [one.name for one in slider] == ["O", "A", "C", "B", "D", "C"]
+    assert slider[-1].kind is JointKind.GUIDE
 
 
 @pytest.mark.drawn
@@ -171,7 +188,7 @@ def test_what_is_rounding_is_shown_as_zero(centrode: Centrode, folder: Path) -> 
     mechanism = ct.read_mechanism(folder / "w.toml")
     found = ct.reactions(mechanism, samples=361)
     assert found.frame_moment.to_numpy().any()  # but for rounding
-    rows = {row[0]: row[1:] for row in ct.reaction_extremes(mechanism, found)[1]}
+    rows = extremes_of(mechanism, 361)
     assert rows["moment on the frame"] == ["N m", "0", "", "0", ""]
     done = centrode("reactions", "w.toml", "--at", "100 deg", "--at", "200 deg")
     assert done.code == 0, done
@@ -184,8 +201,7 @@ def test_of_values_alike_the_first_is_named() -> None:
     found = ct.reactions(press, samples=5)
     size = np.hypot(*found.frame_force.to_numpy().T)
     assert np.isclose(size[0], size[-1], rtol=1e-12) and np.max(size) == max(size[0], size[-1])
-    rows = {row[0]: row for row in ct.reaction_extremes(press, found)[1]}
-    assert rows["force on the frame"][5] == "219.1 deg"
+    assert extremes_of(press, 5)["force on the frame"][4] == "219.1 deg"
 
 
 def test_extremes_of_a_drive_by_a_law_are_told_by_their_time(centrode: Centrode, folder: Path) -> None:

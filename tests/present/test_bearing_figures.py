@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 
 import centrode as ct
+from centrode import render
+from centrode.dynamics.bearings.results import with_bearings
+from centrode.sheets.plots import Plot
+from centrode.topics.presentation import sheet_of
 from mechanisms import parts_of
 
 NAMES = ["bearing-loads", "journal-loads", "bush-loads", "bearing-wear", "force-vectors"]
 
 
-def figures_of(mechanism: ct.Mechanism, reactions: object) -> dict[str, Figure]:
-    motion = ct.motion_beside(mechanism, reactions)
-    return ct.bearing_figures(mechanism, reactions, ct.bearings(mechanism, reactions, motion), motion)
+def figures_of(mechanism: ct.Mechanism, reactions: xr.Dataset) -> dict[str, Figure]:
+    """The figures that are no curves over the motion."""
+    pictures = sheet_of(with_bearings(mechanism, reactions)).pictures
+    bearings = {name: picture for name, picture in pictures.items() if not isinstance(picture, Plot)}
+    return render.figures_of(bearings, mechanism.display)
 
 
 def texts(figure: Figure, panel: int = 0) -> list[str]:

@@ -7,7 +7,17 @@ import pytest
 from matplotlib.figure import Figure
 
 import centrode as ct
+from centrode import render
+from centrode.sheets.plots import Plot
+from centrode.topics.presentation import sheet_of
 from mechanisms import parts_of
+
+
+def curves_of(mechanism: ct.Mechanism, samples: int) -> dict[str, Figure]:
+    """The figures of curves over the motion."""
+    pictures = sheet_of(ct.reaction_results(mechanism, samples)).pictures
+    plots = {name: picture for name, picture in pictures.items() if isinstance(picture, Plot)}
+    return render.figures_of(plots, mechanism.display)
 
 
 def names(figure: Figure, panel: int) -> list[str]:
@@ -20,7 +30,7 @@ def test_the_press() -> None:
     """Action and reaction are one curve; at the loaded pin each side has its own."""
     press = ct.example("six-bar-press")
     data = ct.reactions(press, samples=37)
-    figures = ct.reaction_figures(press, data)
+    figures = curves_of(press, 37)
     assert list(figures) == ["joint-forces", "other-reactions", "balancing", "frame-force"]
     assert names(figures["joint-forces"], 0) == ["O", "A", "B", "C", "D", "H/DH", "H/slider"]
     drawn = {line.get_label(): line.get_ydata() for line in figures["joint-forces"].axes[0].lines}
@@ -34,7 +44,7 @@ def test_the_press() -> None:
 def test_what_is_not_determined_is_not_drawn() -> None:
     load = {"kind": "torque", "link": "wheel", "value": 3.0}
     loaded = ct.Mechanism(**{**parts_of(ct.example("rolling-wheel-rod")), "loads": [load]})
-    figures = ct.reaction_figures(loaded, ct.reactions(loaded, samples=9))
+    figures = curves_of(loaded, 9)
     assert names(figures["joint-forces"], 0) == ["P", "B"]
     assert names(figures["other-reactions"], 0) == ["B", "wheel tangential"]
 
@@ -51,7 +61,7 @@ def test_drives_of_two_kinds_have_a_panel_each() -> None:
         drives=[{"guide": "A", "law": "t"}, {"link": "AB", "relative_to": "carriage", "law": "0.5*t"}],
         study={"to": 1.0},
     )
-    figures = ct.reaction_figures(crane, ct.reactions(crane, 5))
+    figures = curves_of(crane, 5)
     assert [axes.get_ylabel() for axes in figures["balancing"].axes] == ["$F_b$, N", "$M_b$, N m"]
     assert len(figures["other-reactions"].axes) == 2
 
@@ -63,7 +73,7 @@ def test_names_are_no_formulas(name: str) -> None:
         links={name: {"points": {"O": [0, 0], "A": [1, 0]}, "mass": 1, "shape": "rod"}},
         drives=[{"link": name, "speed": 1}],
     )
-    for figure in ct.reaction_figures(rod, ct.reactions(rod, samples=5)).values():
+    for figure in curves_of(rod, 5).values():
         figure.draw_without_rendering()
 
 
@@ -81,7 +91,7 @@ def test_friction_has_a_figure() -> None:
         assembly={"sides": {"B": "ahead"}},
     )
     data = ct.reactions(sled, 25)
-    figures = ct.reaction_figures(sled, data)
+    figures = curves_of(sled, 25)
     power, efficiency = figures["friction"].axes
     assert names(figures["friction"], 0) == ["guide B", "A/AB"]
     drawn = {line.get_label(): line.get_ydata() for line in power.lines}
@@ -93,7 +103,7 @@ def test_the_sphere() -> None:
     """Three components at the first link of each hinge, magnitudes of the rest."""
     rigid = ct.example("spherical-crank-rocker-rigid")
     data = ct.reactions(rigid, samples=13)
-    figures = ct.reaction_figures(rigid, data)
+    figures = curves_of(rigid, 13)
     assert list(figures) == ["joint-forces", "joint-components", "centre-forces", "balancing", "frame-force"]
     axes = figures["joint-components"].axes
     assert [one.get_ylabel() for one in axes] == ["${R}_{x}$, N", "${R}_{y}$, N", "${R}_{z}$, N"]

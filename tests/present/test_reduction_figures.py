@@ -17,8 +17,8 @@ def names(figure: Figure, panel: int) -> list[str]:
 
 def test_the_press() -> None:
     press = ct.example("six-bar-press")
-    data = ct.reduce(press, samples=37)
-    figures = ct.reduction_figures(press, data)
+    results = ct.reduction_results(press, 37)
+    data, figures = results.reduction, ct.figures(results)
     assert list(figures) == ["reduced-inertia", "reduced-moment"]
     assert names(figures["reduced-inertia"], 0) == ["AB", "CD", "DH", "slider", "sum"]
     assert names(figures["reduced-moment"], 1) == ["weight AB", "weight CD", "weight DH"]
@@ -37,7 +37,7 @@ def test_names_of_drives_are_no_formulas(name: str) -> None:
         drives=[{"link": name, "speed": 1}, {"link": "AB", "speed": 2}],
         gravity=[0, -10],
     )  # fmt: skip
-    figures = ct.reduction_figures(lifted, ct.reduce(lifted, samples=5))
+    figures = ct.figures(ct.reduction_results(lifted, 5))
     for figure in figures.values():
         figure.draw_without_rendering()
     assert name in figures["generalised-forces"].axes[0].get_ylabel()
@@ -50,4 +50,4 @@ def test_no_masses_no_picture_of_them() -> None:
         drives=[{"link": "OA", "speed": 1}],
         loads=[{"kind": "torque", "link": "OA", "value": "sin(x)"}],
     )
-    assert list(ct.reduction_figures(loaded, ct.reduce(loaded, samples=5))) == ["reduced-moment"]
+    assert list(ct.figures(ct.reduction_results(loaded, 5))) == ["reduced-moment"]

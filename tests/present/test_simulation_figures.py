@@ -10,8 +10,11 @@ from simulated import pendulum, rotor
 
 def test_every_curve_is_the_datasets() -> None:
     mechanism = rotor()
-    data = ct.simulate(mechanism, ct.Simulation(driving="3 - v", duration=4, samples=81))
-    figures = ct.simulation_figures(mechanism, data)
+    results = ct.simulation_results(
+        mechanism, settings=ct.Simulation(driving="3 - v", duration=4, samples=81)
+    )
+    data = results.simulation
+    figures = ct.figures(results)
     assert list(figures) == ["simulation-speed", "simulation-phase", "simulation-energies"]
     shown = {
         ("simulation-speed", 0): ["drive_speed"],
@@ -31,8 +34,11 @@ def test_every_curve_is_the_datasets() -> None:
 
 def test_turns_lie_one_upon_another() -> None:
     mechanism = rotor()
-    data = ct.simulate(mechanism, ct.Simulation(driving="3 - v", duration=8, samples=161))
-    line = ct.simulation_figures(mechanism, data)["simulation-phase"].axes[0].get_lines()[0]
+    results = ct.simulation_results(
+        mechanism, settings=ct.Simulation(driving="3 - v", duration=8, samples=161)
+    )
+    data = results.simulation
+    line = ct.figures(results)["simulation-phase"].axes[0].get_lines()[0]
     places = np.asarray(line.get_xdata(), dtype=float)
     known = places[np.isfinite(places)]
     assert known.min() >= 0.0
@@ -43,6 +49,7 @@ def test_turns_lie_one_upon_another() -> None:
 
 def test_a_swing_is_one_curve() -> None:
     mechanism = pendulum()
-    data = ct.simulate(mechanism, ct.Simulation(duration=3, samples=61))
-    line = ct.simulation_figures(mechanism, data)["simulation-phase"].axes[0].get_lines()[0]
+    results = ct.simulation_results(mechanism, settings=ct.Simulation(duration=3, samples=61))
+    data = results.simulation
+    line = ct.figures(results)["simulation-phase"].axes[0].get_lines()[0]
     np.testing.assert_array_equal(line.get_xdata(), data.drive_value[:, 0])

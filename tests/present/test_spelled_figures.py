@@ -29,13 +29,11 @@ def texts(figure: Figure) -> Iterator[str]:
 
 
 def reactions(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    found, motion = ct.reactions(mechanism, samples=37), ct.motion(mechanism, 37)
-    figures = ct.reaction_figures(mechanism, found)
-    return figures | ct.bearing_figures(mechanism, found, ct.bearings(mechanism, found), motion)
+    return ct.figures(ct.reaction_results(mechanism, 37))
 
 
 def reduction(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    return ct.reduction_figures(mechanism, ct.reduce(mechanism, samples=37))
+    return ct.figures(ct.reduction_results(mechanism, 37))
 
 
 def integration(mechanism: ct.Mechanism) -> Mapping[str, Figure]:

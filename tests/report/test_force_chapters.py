@@ -11,9 +11,9 @@ import pytest
 
 import centrode as ct
 from blank_canvas import blank_pictures
+from centrode.dynamics import link_motions, reduction_results
 from centrode.render.document.blocks import Chapter, Check, Formula, Paragraph, Picture, Table
 from centrode.report.chapters import CHAPTERS
-from centrode.report.chapters.forces import by_links, reduced_sums
 from centrode.report.making import report
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
@@ -107,13 +107,13 @@ def test_all_checks_hold(corrected: dict[str, Chapter]) -> None:
 
 
 def test_a_wrong_sum_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    motions = by_links.motions_of_links
+    motions = link_motions.motions_of_links
 
-    def off(*args: object) -> list[by_links.LinkMotion]:
+    def off(*args: object) -> list[link_motions.LinkMotion]:
         first, *others = motions(*args)  # type: ignore[arg-type]
         return [replace(first, turning=first.turning * (1.0 + 1e-9)), *others]
 
-    monkeypatch.setattr(reduced_sums, "motions_of_links", off)
+    monkeypatch.setattr(reduction_results, "motions_of_links", off)
     (chapter,) = made("six-bar-press", ("reduction",))
     assert not blocks_of(chapter, Check)[0].holds
 

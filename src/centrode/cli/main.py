@@ -37,14 +37,11 @@ from centrode.cli.integrate import integrate
 from centrode.cli.limits import limits
 from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
-from centrode.cli.reactions import reactions
-from centrode.cli.reduce import reduce
 from centrode.cli.region import region
 from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
 from centrode.cli.schema import schema
-from centrode.cli.simulate import simulate
 from centrode.cli.sweep import sweep
 from centrode.cli.topic_command import topic_command
 from centrode.cli.translation import language_option, translated, wished_language, with_language
@@ -53,8 +50,9 @@ from centrode.errors import CentrodeError
 from centrode.files.inputs import guarded
 from centrode.locale import _, choose_language_of_process, mark
 from centrode.topics.registry import TOPICS
+from centrode.topics.topic import placed
 
-COMMANDS: tuple[click.Command, ...] = (
+OWN: tuple[click.Command, ...] = (
     run,
     report,
     animate,
@@ -63,14 +61,10 @@ COMMANDS: tuple[click.Command, ...] = (
     equations,
     integrate,
     rotatability,
-    reduce,
-    reactions,
     polygons,
     variants,
     limits,
     region,
-    *map(topic_command, TOPICS),
-    simulate,
     balance,
     cam,
     centres,
@@ -84,7 +78,13 @@ COMMANDS: tuple[click.Command, ...] = (
     examples,
     schema,
 )
-"""In the order that `centrode --help` lists them."""
+COMMANDS: tuple[click.Command, ...] = tuple(
+    placed(
+        {str(command.name): command for command in OWN},
+        ((topic.name, topic.after, topic_command(topic)) for topic in TOPICS if topic.has_command),
+    ).values()
+)
+"""Those of the topics among the others, in the order that `centrode --help` lists them."""
 
 FAULT, INTERRUPTED, READER_GONE = 70, 130, 141
 

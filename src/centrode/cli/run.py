@@ -23,14 +23,18 @@ from centrode.cli.arguments import (
 )
 from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
-from centrode.cli.reactions import write as write_reactions
 from centrode.cli.tables import tables_options
 from centrode.cli.topic_command import write_sheet
 from centrode.errors import MotionError
 from centrode.locale import _, mark
+from centrode.topics.presentation import sheet_of
+from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
     from centrode.study.running import StudyResults
+
+GREATEST = Lazily("centrode.views.reactions", "greatest_joint_force")
+"""The fact about reactions that a run prints among its own."""
 
 
 @click.command(help=mark("Compute the motion of a mechanism: tables and pictures."))
@@ -90,11 +94,8 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
             study.coefficients, folder / "coefficients.csv", mechanism.display, mechanism.moving_points
         )
         ct.write_motion_netcdf(study.coefficients, folder / "coefficients.nc")
-    if study.machine is not None:
-        write_sheet(ct.sheet_of(study.machine), folder, mechanism.display, progress, figures=figures)
-    if study.reactions is not None:
-        loads = study.bearing_loads
-        write_reactions(mechanism, study.reactions, folder, progress, figures=figures, loads=loads)
+    for result in study.results.values():
+        write_sheet(sheet_of(result), folder, mechanism.display, progress, figures=figures)
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
     (folder / "summary.json").write_text(text, encoding="utf-8")
@@ -119,10 +120,10 @@ def summary_text(study: StudyResults, name: str) -> str:
     """What a run prints: structure, range, limits, change points, statuses, worst residual, notes."""
     rows = [*ct.check_rows(study.check), *ct.motion_rows(study)]
     if study.reactions is not None:
-        rows += ct.greatest_reaction(study.mechanism, study.reactions)
+        rows += render.fact_rows(GREATEST(study.reactions), study.mechanism.display)
     lines = [_(study.mechanism.title) or name, "", render.aligned(rows)]
     if study.machine is not None:
-        facts = ct.sheet_of(study.machine).facts
+        facts = sheet_of(study.machine).facts
         lines += ["", render.facts_text(facts, study.mechanism.display)]
     lines += [_("note: {note}").format(note=note) for note in study.notes]
     return "\n".join(lines)

@@ -231,6 +231,11 @@ def centre_of(
     return _MassReader(link, mechanism.links[link], given or {}).centre()
 
 
+def has_masses_or_loads(mechanism: Mechanism) -> bool:
+    """Whether a description has anything for dynamics."""
+    return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
+
+
 def massless_links(mechanism: Mechanism) -> tuple[str, ...]:
     """Links without mass and without inertia."""
     heavy = {mass.link for mass in masses_of(mechanism)}

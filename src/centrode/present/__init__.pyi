@@ -38,18 +38,10 @@ from .equations.latex import equations_latex as equations_latex
 from .equations.latex import equations_markdown as equations_markdown
 
 # Forces
-from .forces.reduction_tables import write_reduction_csv as write_reduction_csv
-from .forces.reduction_figures import reduction_figures as reduction_figures
-from .forces.reaction_tables import write_joint_table_csv as write_joint_table_csv
-from .forces.reaction_tables import write_reactions_csv as write_reactions_csv
-from .forces.reaction_figures import reaction_figures as reaction_figures
-from .forces.bearing_tables import write_bearing_loads_csv as write_bearing_loads_csv
-from .forces.bearing_figures import bearing_figures as bearing_figures
 from .forces.polygon_drawing import polygon_figures as polygon_figures
 from .forces.balance_tables import write_balance_csv as write_balance_csv
 from .forces.balance_tables import write_harmonics_csv as write_harmonics_csv
 from .forces.balance_figures import balance_figures as balance_figures
-from .forces.simulation_figures import simulation_figures as simulation_figures
 
 # Cams
 from .cams.bodies import cam_body_figures as cam_body_figures

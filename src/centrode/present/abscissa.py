@@ -11,10 +11,21 @@ from matplotlib.axis import Axis
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 from numpy.typing import NDArray
 
+from centrode.equations.instants import CHANGE_POINT as CHANGE_POINT
 from centrode.errors import Status
 from centrode.locale import _
 from centrode.present.shown import formula, labelled, plain, shown_as
 from centrode.quantities import QUANTITIES
+from centrode.views.abscissa import (
+    LIMIT as LIMIT,
+)
+from centrode.views.abscissa import (
+    events,
+    in_time,
+    limits_between,
+    passings,
+    within,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -23,7 +34,6 @@ if TYPE_CHECKING:
     from centrode.model.motion_parameter import DriveCoordinate
 
 Array = NDArray[np.float64]
-LIMIT, CHANGE_POINT = 0, 1
 STEPS = {
     "deg": (1, 2, 5, 10, 15, 30, 45, 90, 180, 360, 720, 1440, 3600),
     "rad": tuple(np.pi * part for part in (1 / 12, 1 / 6, 1 / 4, 1 / 2, 1, 2, 4, 8, 20)),
@@ -114,52 +124,6 @@ def over_time(dataset: xarray.Dataset) -> Abscissa:
     quantity = QUANTITIES["time"]
     label = labelled(f"{quantity.title} {formula(quantity.symbol)}", quantity.unit)
     return Abscissa(times, order, breaks, cut, tuple(within(times, marks)), label, quantity.unit)
-
-
-def in_time(dataset: xarray.Dataset, values: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Values in the order of time, and that order."""
-    order = np.argsort(dataset["time"].to_numpy(), kind="stable")
-    return values[order], order
-
-
-def events(dataset: xarray.Dataset) -> list[tuple[float, int]]:
-    """Value of the drive (the time, with several drives) and kind of every event."""
-    if "event_value" not in dataset:
-        return []
-    return list(
-        zip(
-            dataset["event_value"].to_numpy().tolist(), dataset["event_kind"].to_numpy().tolist(), strict=True
-        )
-    )
-
-
-def within(values: Array, marks: list[tuple[float, int]]) -> list[tuple[float, int]]:
-    """The marks that lie in the range of the values."""
-    if not np.isfinite(values).any():
-        return []
-    slack = 1e-9 * float(np.nanmax(np.abs(values)))
-    low, high = float(np.nanmin(values)) - slack, float(np.nanmax(values)) + slack
-    return [(value, kind) for value, kind in marks if low <= value <= high]
-
-
-def limits_between(dataset: xarray.Dataset, values: Array) -> NDArray[np.intp]:
-    """Numbers of the samples before which a limit lies, strictly after the sample before."""
-    found: set[int] = set()
-    before, after = values[:-1], values[1:]
-    for value, kind in events(dataset):
-        if kind == LIMIT:
-            passed = (np.minimum(before, after) < value) & (value < np.maximum(before, after))
-            found |= set((np.flatnonzero(passed) + 1).tolist())
-    return np.array(sorted(found), dtype=np.intp)
-
-
-def passings(times: Array, values: Array, wanted: float) -> list[float]:
-    """Times at which the polygon through (time, value) passes a value."""
-    before, after = values[:-1] - wanted, values[1:] - wanted
-    steps = np.flatnonzero((before * after < 0) | (after == 0))
-    share = before[steps] / (before[steps] - after[steps])
-    found = times[steps] + share * (times[steps + 1] - times[steps])
-    return [float(times[0])] * bool(values[0] == wanted) + [float(time) for time in found]
 
 
 def angle_ticks(axis: Axis, low: float, high: float, unit: str, most: int) -> None:

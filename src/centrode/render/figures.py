@@ -14,10 +14,25 @@ from centrode.locale import _
 from centrode.present.abscissa import CHANGE_POINT, LIMIT
 from centrode.present.abscissa import Abscissa as DrawnAbscissa
 from centrode.present.curves import Panel, sheet, write_legend, write_title
+from centrode.present.dark import darkened
 from centrode.present.saving import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
+from centrode.render.panel_grids import grid_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
-from centrode.sheets.plots import Abscissa, CurvePanel, Diagram, EventKind, Plot, Trace, TraceKind
+from centrode.render.vector_pages import vector_page
+from centrode.sheets.plots import (
+    Abscissa,
+    Curve,
+    CurvePanel,
+    CurveRole,
+    Diagram,
+    EventKind,
+    PanelGrid,
+    Plot,
+    Trace,
+    TraceKind,
+    VectorPage,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +42,8 @@ if TYPE_CHECKING:
 
 INCHES = 4.6
 """Height of a diagram's axes, which its legend may take."""
+COLOURED = PALETTE[:-1]
+"""The palette without its black, which is the sum's among parts."""
 EVENTS = {EventKind.LIMIT: LIMIT, EventKind.CHANGE_POINT: CHANGE_POINT}
 
 
@@ -44,12 +61,14 @@ def write_pictures(
     folder: Path,
     display: Display,
     say: Callable[[str, int, int], None] = lambda *_progress: None,
+    *,
+    dark: bool = False,
 ) -> None:
     """Write the pictures of a sheet as PNG and SVG; `say` hears which is drawn, its number and how many there are."""
     drawn = figures_of(pictures, display)
     for number, (name, figure) in enumerate(drawn.items(), start=1):
         say(_("drawing {name}").format(name=name), number, len(drawn))
-        save_figures({name: figure}, folder)
+        save_figures({name: darkened(figure) if dark else figure}, folder)
 
 
 def figure_of(picture: Picture, display: Display) -> Figure:
@@ -60,6 +79,10 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return _plot(picture, display)
             case Diagram():
                 return _diagram(picture, display)
+            case PanelGrid():
+                return grid_figure(picture, display)
+            case VectorPage():
+                return vector_page(picture)
             case _:
                 assert_never(picture)
 
@@ -83,16 +106,20 @@ def _panel(panel: CurvePanel, spelling: FigureSpelling) -> Panel:
     # legends write names as they are: plain text, in which dollar signs are escaped where it is drawn
     names = [PlainSpelling(spelling.display).text(curve.name) for curve in panel.curves]
     curves = {name: factor * curve.values for name, curve in zip(names, panel.curves, strict=True)}
-    pens = {
-        name: _pen(curve.place, curve.approximate) for name, curve in zip(names, panel.curves, strict=True)
-    }
+    pens = {name: _pen(curve) for name, curve in zip(names, panel.curves, strict=True)}
     return Panel(label, unit, curves, pens, factor * panel.scale, panel.legend)
 
 
-def _pen(place: int, approximate: bool) -> Pen:
-    """Colours in turn, then the same colours dashed; what is approximate is dashed at once."""
-    dashes = DASHES[1] if approximate else DASHES[place // len(PALETTE) % len(DASHES)]
-    return Pen(PALETTE[place % len(PALETTE)], dashes)
+def _pen(curve: Curve) -> Pen:
+    """Colours in turn, then the same colours dashed; what is approximate is dashed at once, black is a sum's alone."""
+    if curve.role is CurveRole.LEVEL:
+        return Pen(INK, DASHES[1])
+    if curve.role is CurveRole.SUM:
+        return Pen(INK)
+    place = curve.place
+    colours: tuple[str, ...] = COLOURED if curve.role is CurveRole.PART else PALETTE
+    dashes = DASHES[1] if curve.approximate else DASHES[place // len(colours) % len(DASHES)]
+    return Pen(colours[place % len(colours)], dashes)
 
 
 def _diagram(diagram: Diagram, display: Display) -> Figure:

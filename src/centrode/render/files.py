@@ -24,15 +24,22 @@ BLOCK = 10_000
 
 
 def write_tables(sheet: Sheet, folder: Path, display: Display, spelling: TableSpelling = PLAIN) -> None:
-    """Write the tables of a sheet as CSV (and as workbooks where `spelling` says so), its datasets as netCDF."""
+    """Write the tables of a sheet as CSV (and as workbooks where `spelling` says so), its datasets as netCDF.
+
+    Further files are written as they are.
+    """
     for name, table in sheet.tables.items():
         write_table(table, folder / f"{name}.csv", display, spelling)
     for name, dataset in sheet.datasets.items():
         write_motion_netcdf(dataset, folder / f"{name}.nc")
+    for name, text in sheet.files.items():
+        (folder / name).write_text(text, encoding="utf-8")
 
 
 def write_summary(scalars: Mapping[str, Scalar], path: Path) -> None:
-    """Write numbers with their SI units as JSON."""
+    """Write numbers with their SI units as JSON; no file where there are none."""
+    if not scalars:
+        return
     text = json.dumps({name: one.as_dict() for name, one in scalars.items()}, indent=2, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
 
@@ -59,7 +66,7 @@ def write_table(table: Table, path: Path, display: Display, spelling: TableSpell
 
 def header(column: Column, display: Display) -> str:
     """Name of a column with the unit it is shown in: "velocity_B_x [mm/s]"."""
-    unit = shown_as(column.unit, display)[1]
+    unit = shown_as(column.unit, None if column.unit_fixed else display)[1]
     return f"{column.name} [{unit}]" if unit not in ("", "1") else column.name
 
 
@@ -68,7 +75,7 @@ def _cells(column: Column, words: PlainSpelling, rows: slice = slice(None)) -> l
     values = column.values[rows]
     if not isinstance(values, np.ndarray):
         return [words.text(text) for text in values]
-    factor = shown_as(column.unit, words.display)[0]
+    factor = shown_as(column.unit, None if column.unit_fixed else words.display)[0]
     numbers: list[float] = (values if factor == 1.0 else values * factor).tolist()
     return numbers
 

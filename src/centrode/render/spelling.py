@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
@@ -16,10 +17,12 @@ from centrode.sheets.texts import (
     Joined,
     Name,
     Number,
+    Part,
     Sentence,
     Symbol,
     Text,
     Title,
+    Unit,
 )
 
 if TYPE_CHECKING:
@@ -51,13 +54,19 @@ class Spelling(ABC):
             case Sentence(message, values):
                 return self._filled(_(message), values)
             case Counted(singular, plural, count, values):
-                return self._filled(ngettext(singular, plural, count), {**values, "n": Number(count)})
+                return self._filled(
+                    ngettext(singular, plural, count), {**values, "n": Number(count, digits="d")}
+                )
             case Joined(parts, between):
                 return between.join(map(self.text, parts))
             case Symbol():
                 return self.symbol(text)
             case Expression():
                 return self.expression(text)
+            case Unit(unit):
+                return self.unit(unit)
+            case Part(part):
+                return self.part(self.text(part))
             case _:
                 assert_never(text)
 
@@ -89,6 +98,14 @@ class Spelling(ABC):
     def expression(self, expression: Expression) -> str:
         """A piece of mathematics."""
 
+    @abstractmethod
+    def unit(self, unit: str) -> str:
+        """A unit on its own."""
+
+    @abstractmethod
+    def part(self, text: str) -> str:
+        """What belongs to the entry above it."""
+
 
 class PlainSpelling(Spelling):
     """Plain text, as terminals print it: a decimal point in every language, units with raised digits."""
@@ -101,7 +118,10 @@ class PlainSpelling(Spelling):
         """A number with its unit behind a blank."""
         factor, unit = self.shown_unit(number)
         digits = format(number.value * factor if factor != 1.0 else number.value, number.digits or ".6g")
-        return digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
+        text = digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
+        return (
+            f"{text} ({math.degrees(number.value):.6g} deg)" if number.degrees_too and unit == "rad" else text
+        )
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""
@@ -116,6 +136,23 @@ class PlainSpelling(Spelling):
             for name, leaf in expression.values.items()
         }
         return expression.notation.format(**holes)
+
+    def unit(self, unit: str) -> str:
+        """A unit as tables head their columns: "kg m^2"."""
+        return unit
+
+    def part(self, text: str) -> str:
+        """What belongs to the entry above it, indented."""
+        return f"  {text}"
+
+
+class DrawingSpelling(PlainSpelling):
+    """Plain texts within drawings, where room is short: degrees by their sign, and a minus as in print."""
+
+    def number(self, number: Number) -> str:
+        """A number with its unit behind a blank, degrees with their sign."""
+        text = super().number(number).replace("-", "−")
+        return f"{text.removesuffix(' deg')}°" if text.endswith(" deg") else text
 
 
 class FigureSpelling(PlainSpelling):

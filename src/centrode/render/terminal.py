@@ -4,19 +4,73 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
 
 from centrode.render.spelling import PlainSpelling
+from centrode.sheets.sheet import Items, Paragraph, Table
+from centrode.sheets.texts import Number
 
 if TYPE_CHECKING:
     from centrode.model.settings import Display
-    from centrode.sheets.sheet import Fact
+    from centrode.sheets.sheet import Column, Fact, Sheet
 
 
 def facts_text(facts: Iterable[Fact], display: Display) -> str:
     """Facts below each other, their values aligned."""
+    return aligned(fact_rows(facts, display))
+
+
+def fact_rows(facts: Iterable[Fact], display: Display) -> list[tuple[str, str]]:
+    """Labels and values of facts, to stand among other rows."""
     spelling = PlainSpelling(display)
-    return aligned([(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts])
+    return [(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts]
+
+
+def sheet_text(sheet: Sheet, display: Display) -> str:
+    """What a terminal prints of a sheet: its facts, and tables, paragraphs and items below them."""
+    spelling, text = PlainSpelling(display), facts_text(sheet.facts, display)
+    for block in sheet.printed:
+        match block:
+            case Table():
+                text += "\n\n" + table_text(block, spelling)
+            case Paragraph(sentences):
+                text += "\n\n" + spelling.text(sentences)
+            case Items(texts):
+                text += "".join(f"\n  {spelling.text(item)}" for item in texts)
+            case _:
+                assert_never(block)
+    return text
+
+
+def table_text(table: Table, spelling: PlainSpelling) -> str:
+    """A table of texts below its caption; numbers without units of their own stand flush right."""
+    heads = [_head(column, spelling) for column in table.columns]
+    cells = [
+        [
+            spelling.text(Number(value, column.unit, unit_hidden=True))
+            if isinstance(value, float)
+            else spelling.text(value)
+            for value in column.values
+        ]
+        for column in table.columns
+    ]
+    right = [number for number, column in enumerate(table.columns) if _stands_right(column)]
+    caption = spelling.text(table.caption)
+    return (f"{caption}\n" if caption else "") + aligned(list(zip(*cells, strict=True)), heads, right)
+
+
+def _head(column: Column, spelling: PlainSpelling) -> str:
+    """What a column holds, with its unit behind it."""
+    name = spelling.text(column.head) or column.name
+    return f"{name}, {column.unit}" if column.unit not in ("", "1") else name
+
+
+def _stands_right(column: Column) -> bool:
+    return isinstance(column.values, np.ndarray) or any(
+        isinstance(text, Number) and (text.unit_hidden or text.unit in ("", "1")) for text in column.values
+    )
 
 
 def aligned(rows: Sequence[Sequence[str]], header: Sequence[str] = (), right: Sequence[int] = ()) -> str:

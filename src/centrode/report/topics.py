@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from centrode.errors import CentrodeError, MotionError, NotComputedYet
+from centrode.errors import CentrodeError, InputError, MotionError, NotComputedYet
 from centrode.locale import _
 from centrode.render.document.blocks import Chapter, Paragraph, Section, shown
 from centrode.render.document.chapters import document_chapter
@@ -24,19 +24,28 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
     if study.is_cam or not topic.concerns(study.mechanism):
         return None
     try:
-        return document_chapter(chapter.name, _sheet(topic, study), study.numbers)
-    except (MotionError, NotComputedYet) as reason:
-        if study.wishes.chapters is not None:
+        sheet = _sheet(topic, study)
+    except (InputError, MotionError, NotComputedYet) as reason:
+        may_be = topic.may_be_incomplete if isinstance(reason, InputError) else topic.may_be_left_out
+        if study.wishes.chapters is not None or not may_be:
             raise
         return left_out(chapter.name, _(chapter.title), reason)
+    if chapter.name not in sheet.chapters:
+        return None
+    return document_chapter(chapter.name, sheet, study.numbers)
 
 
 def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
     """The sheet of a topic at the instants of the report, computed once."""
 
     def compute() -> Sheet:
+        if not topic.has_instants:
+            return cast("Sheet", topic.view(topic.compute(study.mechanism)))
         instants = tuple(moment.at for moment in moments_of(study))
-        return cast("Sheet", topic.view(topic.compute(study.mechanism, instants=instants)))
+        done = None if topic.add_instants is None else study.study.results.get(topic.name)
+        if topic.add_instants is None or done is None:
+            return cast("Sheet", topic.view(topic.compute(study.mechanism, instants=instants)))
+        return cast("Sheet", topic.view(topic.add_instants(done, instants)))
 
     return study.once(("sheet", topic.name), compute)
 

@@ -5,11 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.sheets.texts import NOTHING, Sentence, Symbol, Text, Title
+from centrode.sheets.texts import NOTHING, Number, Sentence, Symbol, Text, Title
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 
@@ -19,6 +25,18 @@ class EventKind(Enum):
 
     LIMIT = "limit"
     CHANGE_POINT = "change point"
+
+
+class CurveRole(Enum):
+    """What a curve of a panel stands for: a thing by itself, a part of a sum, or the sum, which alone is black.
+
+    A level is a line across for the mean of another curve, black and dashed.
+    """
+
+    THING = "thing"
+    PART = "part"
+    SUM = "sum"
+    LEVEL = "level"
 
 
 @dataclass(frozen=True)
@@ -71,12 +89,14 @@ class Curve:
     values : (sample), in the unit of the panel; NaN is a gap
     place : its place among the things of its kind, which have the same pen in every figure
     approximate : drawn beside the exact curve, dashed
+    role : a thing by itself, a part of a sum, or the sum
     """
 
     name: Text
     values: Array
     place: int
     approximate: bool = False
+    role: CurveRole = CurveRole.THING
 
 
 @dataclass(frozen=True)
@@ -160,4 +180,103 @@ class Diagram:
     across: tuple[float, float]
 
 
-Figures = Mapping[str, "Plot | Diagram"]
+@dataclass(frozen=True)
+class Hodograph:
+    """The curve that the end of a vector describes, from an origin that is marked.
+
+    Attributes
+    ----------
+    name : of the vector, above the panel
+    x, y : labels of the axes; their unit is that of the vector
+    ends : (sample, 2), NaN where nothing is known
+    order, breaks : as of an abscissa
+    marks : values that stand beside places of the curve
+    """
+
+    name: Text
+    x: AxisLabel
+    y: AxisLabel
+    ends: Array
+    order: NDArray[np.intp]
+    breaks: NDArray[np.intp]
+    marks: tuple[tuple[Number, tuple[float, float]], ...] = ()
+
+
+@dataclass(frozen=True)
+class SectorRings:
+    """Shares of the sectors of a circle, those of one surface inside it and of another outside, to one scale.
+
+    Attributes
+    ----------
+    name : above the panel
+    middles : (sector) directions of the middles of the sectors [rad]
+    inside, outside : (sector) shares; NaN where nothing is known
+    text : in the middle
+    """
+
+    name: Text
+    middles: Array
+    inside: Array
+    outside: Array
+    text: Text
+
+
+@dataclass(frozen=True)
+class PanelGrid:
+    """Panels of equal size beside and below each other, each with a shape of its own."""
+
+    title: Sentence
+    mechanism: Title
+    panels: tuple[Hodograph | SectorRings, ...]
+
+
+@dataclass(frozen=True)
+class VectorOnBody:
+    """A vector that acts at a point of a mechanism.
+
+    Attributes
+    ----------
+    name : beside its end
+    point : where it acts
+    components : (x, y), NaN where it is not determined
+    link : whose colour it has, the frame's too; ink where empty
+    """
+
+    name: Text
+    point: str
+    components: tuple[float, float]
+    link: str = ""
+
+
+@dataclass(frozen=True)
+class MomentOnBody:
+    """A moment about a point of a mechanism, counter-clockwise where it is positive; `symbol` stands beside its arc."""
+
+    symbol: str
+    point: str
+    value: float
+
+
+@dataclass(frozen=True)
+class VectorPage:
+    """A mechanism at an instant, to scale, with the vectors that act on it to theirs; a column of texts beside it.
+
+    Attributes
+    ----------
+    title : what it shows
+    pose : description, motion and sample of it: what the mechanism looks like
+    symbol, unit : letter of the vectors' scale ("μ_F"), and their unit
+    vectors, moments : in drawing order
+    lines : of the column
+    """
+
+    title: Sentence
+    pose: tuple[Mechanism, xarray.Dataset, int]
+    symbol: str
+    unit: str
+    vectors: tuple[VectorOnBody, ...]
+    moments: tuple[MomentOnBody, ...]
+    lines: tuple[Text, ...]
+
+
+Figures = Mapping[str, "Plot | Diagram | PanelGrid | VectorPage"]

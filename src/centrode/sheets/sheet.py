@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.sheets.plots import Diagram, Plot
-from centrode.sheets.texts import NOTHING, Leaf, Sentence, Text
+from centrode.sheets.plots import Diagram, PanelGrid, Plot, VectorPage
+from centrode.sheets.texts import NOTHING, Leaf, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
-Picture: TypeAlias = Plot | Diagram
+Picture: TypeAlias = Plot | Diagram | PanelGrid | VectorPage
 
 
 @dataclass(frozen=True)
@@ -40,12 +40,30 @@ class Column:
         SI unit; the renderer converts lengths and angles to the units of the display.
     head : text
         In documents; the name of the column if left out.
+    unit_fixed : bool
+        The unit stays whatever the display says: terms of a sum in SI.
     """
 
     name: str
-    values: NDArray[np.float64] | tuple[Text, ...]
+    values: NDArray[np.float64] | NDArray[np.int64] | tuple[Text, ...]
     unit: str = "1"
     head: Text = NOTHING
+    unit_fixed: bool = False
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether it holds numbers alone, which stand flush right."""
+        if isinstance(self.values, np.ndarray):
+            return True
+        known = [text for text in self.values if text != NOTHING]
+        return bool(known) and all(isinstance(text, Number) for text in known)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it has rows, and no text in any of them."""
+        if isinstance(self.values, np.ndarray) or not self.values:
+            return False
+        return all(text == NOTHING for text in self.values)
 
 
 @dataclass(frozen=True)
@@ -116,7 +134,14 @@ class Check:
     bound: float
 
 
-Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check
+@dataclass(frozen=True)
+class Items:
+    """Texts below each other; on a terminal a paragraph before them is their heading."""
+
+    texts: tuple[Text, ...]
+
+
+Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check | Items
 
 
 @dataclass(frozen=True)
@@ -159,6 +184,8 @@ class Sheet:
     datasets : name of a file without its ending -> dataset, as netCDF
     pictures : name -> plot, diagram or scene
     chapters : name -> chapter of a document
+    printed : tables, paragraphs and items that a terminal prints below the facts
+    files : name of a further file -> its text
     """
 
     facts: tuple[Fact, ...] = ()
@@ -167,6 +194,8 @@ class Sheet:
     datasets: Mapping[str, xarray.Dataset] = field(default_factory=dict)
     pictures: Mapping[str, Picture] = field(default_factory=dict)
     chapters: Mapping[str, Chapter] = field(default_factory=dict)
+    printed: tuple[Table | Paragraph | Items, ...] = ()
+    files: Mapping[str, str] = field(default_factory=dict)
 
 
 def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:

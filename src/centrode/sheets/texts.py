@@ -150,9 +150,23 @@ class Expression:
         object.__setattr__(self, "values", values)
 
 
+@dataclass(frozen=True)
+class Unit:
+    """An SI unit on its own, in a table whose rows have units of their own."""
+
+    unit: str
+
+
+@dataclass(frozen=True)
+class Part:
+    """What belongs to the entry above it: indented on a terminal, behind a dash in a document."""
+
+    text: Text
+
+
 Leaf: TypeAlias = "str | Number | Factor | Name | Expression"
 """A piece of a formula; a string is notation without leaves of its own."""
-Text: TypeAlias = "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression"
+Text: TypeAlias = "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression | Unit | Part"
 
 NOTHING = Joined(())
 """An empty text."""

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from centrode.dynamics.bearings.results import ReactionResults, with_bearings
 from centrode.dynamics.kinetostatics.applied_forces import input_motion_of
 from centrode.dynamics.kinetostatics.friction import contacts_of
 from centrode.dynamics.kinetostatics.reactions import reactions_at
 from centrode.dynamics.loads import MassesAndLoads
+from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.steady_motion.machine import MachineResults, machine_results
 from centrode.errors import STATUSES_OF_MOTION, InputError, MotionError, NotComputedYet, Status
 from centrode.kinematics.motion import dataset_of
@@ -22,11 +26,10 @@ from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
 from centrode.sheets.sheet import Scalar
 from centrode.study.checking import Check, check_of
-from centrode.study.forces.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
+from centrode.study.limiting import NOT_REACHED, not_reached_sentence
 from centrode.study.wording import Words, extremes
 from centrode.views import flywheel
-
-NOT_REACHED = (Status.OPEN, Status.CUT_OFF, Status.UNCONVERGED)
+from centrode.views import reactions as reactions_view
 
 
 @dataclass(frozen=True)
@@ -40,8 +43,7 @@ class StudyResults:
     instants : the motion exactly at the instants the description asks for
     coefficients : kinematic coefficients by each drive, where there are several
     machine : energies, flywheel and real motion, where the description has a machine that can be computed
-    reactions : forces in every joint at the samples, where the description has masses or loads
-    bearing_loads : greatest, least and mean of each reaction
+    reactions : forces in every joint at the samples, loads and wear of bearings, where there are masses or loads
     scalars : name -> number and SI unit, as `summary.json` holds them
     failure : why the mechanism cannot do what was asked, in a sentence; None if it can
     notes : what a reader should know besides
@@ -54,12 +56,17 @@ class StudyResults:
     instants: xr.Dataset | None
     coefficients: xr.Dataset | None
     machine: MachineResults | None
-    reactions: xr.Dataset | None
-    bearing_loads: tuple[BearingLoad, ...]
+    reactions: ReactionResults | None
     scalars: dict[str, Scalar]
     failure: str | None
     notes: tuple[str, ...]
     words: Words
+
+    @property
+    def results(self) -> Mapping[str, Any]:
+        """What belongs to topics of the registry, by their names; without what the description has nothing for."""
+        made = {"flywheel": self.machine, "reactions": self.reactions}
+        return {name: result for name, result in made.items() if result is not None}
 
 
 def study(
@@ -73,7 +80,6 @@ def study(
     words = Words(solved)
     machine, notes = _machine(mechanism, samples)
     reactions, lacking = _reactions(mechanism, solved)
-    loads = () if reactions is None else bearing_loads(mechanism, reactions)
     notes = [*_notes(mechanism, solved, words), *notes, *lacking]
     return StudyResults(
         mechanism,
@@ -83,10 +89,9 @@ def study(
         coefficients_of(solved) if _by_each_drive(solved) else None,
         machine,
         reactions,
-        loads,
         _scalars(checked, solved)
         | dict(flywheel.scalars(machine.flywheel) if machine else ())
-        | bearing_load_scalars(mechanism, loads),
+        | dict(reactions_view.scalars(reactions) if reactions else ()),
         _failure(solved, words),
         tuple(notes),
         words,
@@ -104,28 +109,32 @@ def _machine(mechanism: Mechanism, samples: int | None) -> tuple[MachineResults 
         return None, [_("the machine is left out: {reason}").format(reason=what)]
 
 
-def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[xr.Dataset | None, list[str]]:
+def _reactions(mechanism: Mechanism, solved: Solved) -> tuple[ReactionResults | None, list[str]]:
     """Reactions of a motion; a note where masses or loads are there, but not complete or not computed yet."""
-    if not mechanism.loads and not any(link.mass or link.inertia for link in mechanism.links.values()):
+    if not has_masses_or_loads(mechanism):
         return None, []
     try:
         burden = MassesAndLoads.for_reactions(mechanism)
         found = reactions_at(solved, burden, input_motion_of(solved, burden), contacts_of(mechanism))
-        return found, _jams(found)
     except (InputError, NotComputedYet) as missing:
         what = f"{missing.where}: {missing.what}" if missing.where else missing.what
         return None, [_("reactions are left out: {reason}").format(reason=what)]
+    return with_bearings(mechanism, found), _jams(found)
 
 
 def _jams(reactions: xr.Dataset) -> list[str]:
     """A note where friction lets nothing move."""
     locked = int((reactions["reaction_status"] == Status.SELF_LOCKING).sum())
-    text = ngettext(
+    return [self_locking_sentence(locked)] if locked else []
+
+
+def self_locking_sentence(samples: int) -> str:
+    """At how many samples friction lets nothing move."""
+    return ngettext(
         "self-locking: at {n} sample no drive overcomes the friction",
         "self-locking: at {n} samples no drive overcomes the friction",
-        locked,
-    )
-    return [text.format(n=locked)] if locked else []
+        samples,
+    ).format(n=samples)
 
 
 def _by_each_drive(solved: Solved) -> bool:
@@ -158,16 +167,6 @@ def with_range(mechanism: Mechanism, asked: str | None) -> Mechanism:
     own = mechanism.study
     study = Study(samples=own.samples, instants=own.instants, range=asked)
     return mechanism.model_copy(update={"study": study})
-
-
-def repair_of_range(mechanism: Mechanism) -> str:
-    """What to ask for where samples are not reached: between the limits, by a word where one drive has them."""
-    if not mechanism.motion_parameter.is_uniform:
-        return _("ask for a range between the limits, or change the dimensions")
-    return _(
-        'ask for the range between the limits (range = "reachable" under [study], or --range reachable), or '
-        "change the dimensions"
-    )
 
 
 def range_value(mechanism: Mechanism, text: float | str, where: str) -> float:
@@ -222,12 +221,7 @@ def _failure(solved: Solved, words: Words) -> str | None:
     missing = np.isin(solved.status[0], NOT_REACHED)
     if not missing.any():
         return None
-    count = int(missing.sum())
-    what = ngettext(
-        "the mechanism locks: {missing} of {all} samples is not reached",
-        "the mechanism locks: {missing} of {all} samples are not reached",
-        count,
-    ).format(missing=count, all=len(missing))
+    what = not_reached_sentence(int(missing.sum()), len(missing))
     low, high = solved.branches.reach(0)
     where = "; ".join(words.limit(at) for at in (low, high) if np.isfinite(at))
     return f"{what} ({where})" if where else what

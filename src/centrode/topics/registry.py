@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from centrode.locale import mark
-from centrode.topics.topic import ChapterOfTopic, Choice, Lazily, Topic
+from centrode.topics.topic import (
+    ChapterOfTopic,
+    Choice,
+    Flag,
+    InstantsOption,
+    Lazily,
+    MotionRange,
+    Topic,
+    Written,
+)
 
 FLYWHEEL = Topic(
     name="flywheel",
@@ -26,10 +35,78 @@ FLYWHEEL = Topic(
         ),
     ),
     chapters=(
-        ChapterOfTopic("flywheel", mark("Flywheel")),
+        ChapterOfTopic("flywheel", mark("Flywheel"), after="reduction"),
         ChapterOfTopic("real-motion", mark("Real motion")),
     ),
+    may_be_left_out=True,
+    after="region",
 )
 
-TOPICS: tuple[Topic, ...] = (FLYWHEEL,)
+REDUCTION = Topic(
+    name="reduce",
+    help=mark("Reduce masses and loads to the drive, part by part."),
+    compute=Lazily("centrode.dynamics.reduction_results", "reduction_results"),
+    result=Lazily("centrode.dynamics.reduction_results", "ReductionResults"),
+    view=Lazily("centrode.views.reduction", "sheet"),
+    concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
+    options=(MotionRange(),),
+    chapters=(ChapterOfTopic("reduction", mark("Reduction to the drive"), after="masses-and-loads"),),
+    ending=Lazily("centrode.study.limiting", "check_reached"),
+    after="rotatability",
+)
+
+SIMULATION = Topic(
+    name="simulate",
+    help=mark("Let a machine run: loads, friction and a motor move it."),
+    compute=Lazily("centrode.dynamics.simulation.results", "simulation_results"),
+    result=Lazily("centrode.dynamics.simulation.results", "SimulationResults"),
+    view=Lazily("centrode.views.simulation", "sheet"),
+    concerns=Lazily("centrode.dynamics.simulation.results", "has_simulation"),
+    options=(
+        Written("duration", mark("T"), mark('How long it runs: "20 s".')),
+        Written("turns", mark("N"), mark("End after so many turns of the drive."), float),
+        Written("driving", mark("FORMULA"), mark('Moment of the drive in t, q and v: "20 - 2*v".')),
+        Written("speed", mark("V"), mark('Speed of the drive at the start: "65 rpm".')),
+        Choice(
+            "scheme",
+            ("adaptive", "stiff", "runge-kutta-4"),
+            mark("How to integrate: adaptive (the rule), for stiff laws, or fixed steps."),
+            has_rule=False,
+        ),
+        Written("steps", mark("N"), mark("Number of fixed steps."), int),
+        Flag("motion", mark("Write the motion of all points and links too.")),
+    ),
+    chapters=(ChapterOfTopic("simulation", mark("Motion under loads")),),
+    extent=Lazily("centrode.dynamics.simulation.results", "simulation_extent"),
+    progress=mark("integrating, %"),
+    ending=Lazily("centrode.dynamics.simulation.results", "check_ended"),
+    has_instants=False,
+)
+
+REACTIONS = Topic(
+    name="reactions",
+    help=mark("Find the forces in every joint and what the drives must give."),
+    compute=Lazily("centrode.dynamics.bearings.results", "reaction_results"),
+    result=Lazily("centrode.dynamics.bearings.results", "ReactionResults"),
+    view=Lazily("centrode.views.reactions", "sheet"),
+    concerns=Lazily("centrode.dynamics.masses", "has_masses_or_loads"),
+    options=(
+        InstantsOption(
+            mark('Only at this value of the drive ("120 deg"), or time ("1 s"); as often as needed.')
+        ),
+        Flag("steady", mark("At the real speed of a machine in steady motion, not at its mean speed.")),
+        Flag("frictionless", mark("Leave out friction that is given by coefficients.")),
+        MotionRange(),
+    ),
+    chapters=(ChapterOfTopic("reactions", mark("Reactions in the joints"), after="simulation"),),
+    ending=Lazily("centrode.study.forces.reached", "refuse_unreached"),
+    may_be_left_out=True,
+    after="reduce",
+    summary=False,
+    complete="complete",
+    add_instants=Lazily("centrode.dynamics.bearings.results", "with_instants"),
+    may_be_incomplete=True,
+)
+
+TOPICS: tuple[Topic, ...] = (REDUCTION, FLYWHEEL, SIMULATION, REACTIONS)
 """Every topic."""

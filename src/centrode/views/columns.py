@@ -82,6 +82,25 @@ def columns_of(values: xarray.DataArray, variable: str) -> Iterator[tuple[str, s
         yield header, unit_of(values), values.sel(dict(zip(dims, labels, strict=True)))
 
 
+def force_columns(
+    dataset: xarray.Dataset, variables: Sequence[str]
+) -> Iterator[tuple[str, str, xarray.DataArray]]:
+    """Time, values of the drives, and a column for each combination of labels: "reduced_inertia_part_AB".
+
+    Each is a name without unit, an SI unit and the values.
+    """
+    yield "time", unit_of(dataset["time"]), dataset["time"]
+    for number, name in enumerate(dataset["drive"].values):
+        yield f"drive_{name}", drive_units(dataset)[number], dataset["drive_value"].isel(drive=number)
+    for variable in variables:
+        if variable in dataset:
+            values = dataset[variable]
+            # there is one unit for all, or one for each drive; drives stand behind links and loads, so units come round
+            units = unit_of(values).split(", ")
+            for number, (header, _unit, chosen) in enumerate(columns_of(values, variable)):
+                yield header, units[number % len(units)], chosen
+
+
 def unit_of(values: xarray.DataArray) -> str:
     """SI unit of a variable; none for a plain number."""
     unit = str(values.attrs.get("units", ""))
@@ -107,8 +126,13 @@ def motion_table(dataset: xarray.Dataset, points: Sequence[str] | None = None) -
         raise ValueError(f"a table shows one motion: select along {sorted(map(str, extra))} first")
     selected = dataset if points is None else dataset.sel(point=list(points))
     columns = [Column(name, values.to_numpy(), unit) for name, unit, values in numeric_columns(selected)]
-    words = tuple(Name(Status(code).word) for code in dataset["status"].to_numpy().tolist())
-    return Table((*columns, Column("status", words), Column("residual", dataset["residual"].to_numpy())))
+    residual = Column("residual", dataset["residual"].to_numpy())
+    return Table((*columns, status_column(dataset["status"]), residual))
+
+
+def status_column(status: xarray.DataArray) -> Column:
+    """What each sample is worth, in the words of files."""
+    return Column("status", tuple(Name(Status(code).word) for code in status.to_numpy().tolist()))
 
 
 def rows_shown(count: int, most: int = SHOWN_ROWS) -> tuple[int, ...]:

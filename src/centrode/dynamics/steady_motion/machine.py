@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import xarray as xr
 
+from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.steady_motion.flywheel import Flywheel, flywheel_of
 from centrode.dynamics.steady_motion.speed import MeanSpeed
 from centrode.dynamics.steady_motion.steady import Method, solution_of, steady_dataset, turned_at
@@ -62,5 +63,4 @@ def machine_results(
 
 def is_machine(mechanism: Mechanism) -> bool:
     """Whether a description has a machine, and masses or loads that move it unevenly."""
-    heavy = bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
-    return mechanism.machine is not None and heavy
+    return mechanism.machine is not None and has_masses_or_loads(mechanism)

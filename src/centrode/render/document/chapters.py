@@ -12,7 +12,9 @@ from centrode.render import figures
 from centrode.render.document import blocks
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers, spelled_number
+from centrode.render.document.scaled import INCH, drawn_to_scale
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
+from centrode.sheets.plots import VectorPage
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -21,6 +23,7 @@ from centrode.sheets.sheet import (
     FactTable,
     Formula,
     Illustration,
+    Items,
     Paragraph,
     Picture,
     Section,
@@ -61,17 +64,25 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
         case Illustration(name, caption):
             shown = pictures[name]
             figure = figures.figure_of(shown, spelling.numbers.display)
+            if isinstance(shown, VectorPage):
+                # a page whose scales are true on paper: only what is empty is cut off
+                width, height = (float(inches) * INCH for inches in figure.get_size_inches())
+                title = shown.title if caption is None else caption
+                return drawn_to_scale(figure, spelling.text(title), width, height)
             return picture(figure, spelling.text(shown.title if caption is None else caption))
         case Check():
             return _check(block, spelling)
+        case Items(texts):
+            return blocks.Items(tuple(map(spelling.text, texts)))
         case _:
             assert_never(block)
 
 
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:
-    heads = tuple(map(spelling.head, table.columns))
-    cells = [_cells(column, table.rows, spelling) for column in table.columns]
-    numbers = tuple(isinstance(column.values, np.ndarray) for column in table.columns)
+    columns = [column for column in table.columns if not column.is_empty]
+    heads = tuple(map(spelling.head, columns))
+    cells = [_cells(column, table.rows, spelling) for column in columns]
+    numbers = tuple(column.is_numeric for column in columns)
     return blocks.Table(heads, tuple(zip(*cells, strict=True)), spelling.text(table.caption), numbers)
 
 
@@ -81,7 +92,9 @@ def _cells(column: Column, rows: Sequence[int] | None, spelling: DocumentSpellin
     if not isinstance(values, np.ndarray):
         return [spelling.text(values[row]) for row in (range(len(values)) if rows is None else rows)]
     least = ROUNDING * float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
-    return spelling.numbers.column(values if rows is None else values[list(rows)], column.unit, least)
+    return spelling.of_column(column).column(
+        values if rows is None else values[list(rows)], column.unit, least
+    )
 
 
 def _facts(facts: Sequence[Fact], caption: str, spelling: DocumentSpelling) -> blocks.Table:

@@ -6,7 +6,8 @@ import math
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.present.equations.typst import quoted, shown
-from centrode.render.document.numbers import Numbers, spelled_number, spelled_unit
+from centrode.render.document.formulas import in_si
+from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
 from centrode.render.spelling import Spelling
 from centrode.sheets.texts import Expression, Factor, Leaf, Name, Number, Symbol
 
@@ -39,12 +40,14 @@ class DocumentSpelling(Spelling):
         factor, unit = self.shown_unit(number)
         value = number.value * factor if factor != 1.0 else number.value
         text = self._digits(value, number.digits)
+        # a number that only the document gives its digits stands in titles, which keep it and its unit together
+        gap = " " if number.digits else NARROW
         if number.degrees_too and unit == "rad" and value:
-            return f"{text} rad ({self.numbers.plain(math.degrees(value))}°)"
+            return f"{text}{gap}rad ({self.numbers.plain(math.degrees(value))}°)"
         label = "" if number.unit_hidden else spelled_unit(unit)
         if label == "°":
             return f"{text}°"
-        return f"{text} {label}" if label else text
+        return f"{text}{gap}{label}" if label else text
 
     def _digits(self, value: float, digits: str) -> str:
         """A number in the format that its sentence wants, with no more digits than the document has."""
@@ -66,6 +69,14 @@ class DocumentSpelling(Spelling):
     def expression(self, expression: Expression) -> str:
         """Mathematics between dollar signs."""
         return f"${self.mathematics(expression)}$"
+
+    def unit(self, unit: str) -> str:
+        """A unit on its own, as books write it."""
+        return spelled_unit(unit)
+
+    def part(self, text: str) -> str:
+        """What belongs to the entry above it, behind a dash."""
+        return f"– {text}"
 
     def mathematics(self, leaf: Leaf) -> str:
         """Mathematics without the dollar signs, numbers with their units."""
@@ -93,7 +104,11 @@ class DocumentSpelling(Spelling):
     def head(self, column: Column) -> str:
         """Head of a column: what it holds, with the unit behind it."""
         name = self.text(column.head) or self.name(column.name)
-        return self.numbers.head(name, column.unit)
+        return self.of_column(column).head(name, column.unit)
+
+    def of_column(self, column: Column) -> Numbers:
+        """How the numbers of a column are spelled: in the units of the display, or in SI."""
+        return in_si(self.numbers) if column.unit_fixed else self.numbers
 
 
 def shortened(mantissa: str, digits: int) -> str:

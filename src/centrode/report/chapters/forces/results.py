@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from centrode.dynamics.balancing.balance import Balance, balance
 from centrode.dynamics.balancing.shaking_forces import shaking
 from centrode.dynamics.kinetostatics.reactions import reactions
+from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.reduction import reduce
-from centrode.dynamics.simulation.simulate import simulate
 from centrode.report.chapters.forces.places import instants
 from centrode.report.moments import moments_of
 
@@ -20,19 +20,11 @@ if TYPE_CHECKING:
 
 def has_forces(study: ReportStudy) -> bool:
     """Whether a linkage is reported on that has masses or loads."""
-    if study.is_cam:
-        return False
-    mechanism = study.mechanism
-    return bool(mechanism.loads) or any(link.mass or link.inertia for link in mechanism.links.values())
-
-
-def reduced(study: ReportStudy) -> xr.Dataset:
-    """Masses and loads reduced to the drives, over the motion."""
-    return study.once("reduced", lambda: reduce(study.mechanism))
+    return not study.is_cam and has_masses_or_loads(study.mechanism)
 
 
 def reduced_at_instants(study: ReportStudy) -> xr.Dataset:
-    """The same at the instants."""
+    """Masses and loads reduced to the drives, at the instants."""
     return study.once("reduced at instants", lambda: reduce(study.mechanism, at=instants(study)))
 
 
@@ -41,19 +33,9 @@ def motion_at_instants(study: ReportStudy) -> xr.Dataset:
     return moments_of(study)[0].data
 
 
-def reactions_of(study: ReportStudy) -> xr.Dataset:
-    """Forces in every joint over the motion; raises where they cannot be computed."""
-    return study.study.reactions or study.once("reactions", lambda: reactions(study.mechanism))
-
-
 def reactions_at_instants(study: ReportStudy) -> xr.Dataset:
     """Forces in every joint at the instants."""
     return study.once("reactions at instants", lambda: reactions(study.mechanism, at=instants(study)))
-
-
-def simulated(study: ReportStudy) -> xr.Dataset:
-    """The motion under loads and a drive, as `[simulation]` wants it."""
-    return study.once("simulation", lambda: simulate(study.mechanism))
 
 
 def shaken(study: ReportStudy) -> xr.Dataset:

@@ -8,7 +8,11 @@ import numpy as np
 import pytest
 
 import centrode as ct
-from centrode.study.forces.named_reactions import each_reaction
+from centrode.dynamics.bearings.reaction_series import reaction_series
+from centrode.dynamics.bearings.results import with_bearings
+from centrode.render.spelling import PlainSpelling
+from centrode.topics.presentation import sheet_of
+from centrode.views.reactions import loads_table
 from mechanisms import parts_of
 
 EPSILON = 2.0**-52
@@ -36,8 +40,8 @@ def test_extremes_lie_between_the_samples(name: str) -> None:
     loads = ct.bearing_loads(mechanism, ct.reactions(mechanism, 73))
     dense = ct.reactions(mechanism, 72 * 20 + 1)
     sizes = {
-        key: np.hypot(*values.T) if values.ndim == 2 else values
-        for key, _name, _unit, values in each_reaction(mechanism, dense)
+        one.key: np.hypot(*one.values.T) if one.values.ndim == 2 else one.values
+        for one in reaction_series(mechanism, dense)
     }
     assert set(sizes) == {one.key for one in loads}
     for one in loads:
@@ -54,7 +58,7 @@ def test_a_place_and_its_direction() -> None:
     engine = ct.example("single-cylinder-engine")
     for one in ct.bearing_loads(engine, ct.reactions(engine, 73)):
         there = ct.reactions(engine, at=[one.at_greatest])
-        values = {key: values[0] for key, _name, _unit, values in each_reaction(engine, there)}
+        values = {other.key: other.values[0] for other in reaction_series(engine, there)}
         # the same at another sample of another call: positions are rounded alike, forces by the condition number
         bound = 1e4 * EPSILON * max(abs(one.greatest), abs(one.least), 1e-300)
         value = values[one.key]
@@ -109,12 +113,18 @@ def test_closed_forms_of_a_turning_mass() -> None:
 
 def test_words_and_numbers() -> None:
     engine = ct.example("single-cylinder-engine")
-    loads = ct.bearing_loads(engine, ct.reactions(engine, 37))
-    header, rows = ct.bearing_load_rows(engine, loads)
-    assert header[:3] == ["reaction", "unit", "greatest"]
-    assert [row[0] for row in rows] == [one.name for one in loads]
-    assert rows[0][2:5] == ["9123.92", "0 deg", "180.00"] or rows[0][4] == "-180.00"
-    scalars = ct.bearing_load_scalars(engine, loads)
+    results = with_bearings(engine, ct.reactions(engine, 37))
+    loads, spelling = results.loads, PlainSpelling(engine.display)
+    assert loads is not None
+    columns = loads_table(engine, loads).columns
+    assert [spelling.text(column.head) for column in columns[:3]] == ["reaction", "unit", "greatest"]
+    assert spelling.text(columns[0].values[0]) == "O: frame on crank"
+    assert [len(column.values) for column in columns] == [len(loads)] * 9
+    first = [spelling.text(column.values[0]) for column in columns]
+    assert first[2:4] == ["9123.92", "0 deg"] and first[4] in ("180.00", "-180.00")
+    keys = ct.tables(results)["bearing-loads"].columns[0].values
+    assert [spelling.text(key) for key in keys] == [one.key for one in loads]
+    scalars = sheet_of(results).scalars
     assert scalars["greatest_joint_force_O/crank"].unit == "N"
     assert scalars["greatest_joint_force_O/crank_at"].unit == "rad"
     assert ct.study(engine, 37).scalars["mean_joint_force_B/rod"] == scalars["mean_joint_force_B/rod"]

@@ -1,4 +1,4 @@
-"""The worst of each reaction over a motion: extremes found between its samples, mean, and where and which way."""
+"""Loads of bearings over a motion: extremes of each reaction, found between its samples, means and directions."""
 
 from __future__ import annotations
 
@@ -9,16 +9,12 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from centrode.dynamics.bearings.reaction_series import ReactionKind, ReactionSeries, reaction_series
 from centrode.dynamics.kinetostatics.reactions import Speed
 from centrode.dynamics.kinetostatics.reactions import reactions as reactions_of
-from centrode.locale import _
 from centrode.model.mechanism import Mechanism
-from centrode.quantities import display_unit
-from centrode.sheets.sheet import Scalar
-from centrode.study.forces.named_reactions import each_reaction
 
 Array: TypeAlias = npt.NDArray[np.float64]
-Table: TypeAlias = tuple[list[str], list[list[str]]]
 PARTS = 12
 ROUNDS = 5
 """A stretch about an extreme is cut into so many parts, so often."""
@@ -26,8 +22,6 @@ BEND = 2.0
 """How many times its second difference an extreme between samples may be above its sample."""
 TOPS = 6
 """Most extremes of one curve that are looked at."""
-NOISE = 1e-12
-"""Values below this share of the greatest are zero."""
 
 
 @dataclass(frozen=True)
@@ -36,15 +30,17 @@ class BearingLoad:
 
     Attributes
     ----------
-    key, name, unit : variable and side, guide or drive; the same in words; N or N m
+    kind, names : what the reaction is, and which one of its kind
+    key, unit : variable and side, guide or drive; N or N m
     greatest, at_greatest : its greatest value, and the value of the drive there [rad or m], or the time [s]
     direction : direction of a planar force where it is greatest [rad], in the frame's axes; else None
     least, at_least : its least value, and where
     mean, rms : mean, and root of the mean square, over time
     """
 
+    kind: ReactionKind
+    names: tuple[str, ...]
     key: str
-    name: str
     unit: str
     greatest: float
     at_greatest: float
@@ -83,71 +79,39 @@ def bearing_loads(mechanism: Mechanism, reactions: xr.Dataset) -> tuple[BearingL
     extreme that no sample is near is missed. Means are by the trapezoid rule over time, of what is reached.
     """
     places, time = mechanism.motion_parameter.instants(reactions), reactions["time"].to_numpy()
-    curves = [one for one in each_reaction(mechanism, reactions) if np.isfinite(one[3]).any()]
+    curves = [one for one in reaction_series(mechanism, reactions) if np.isfinite(one.values).any()]
     tops = [
         top
         for k, curve in enumerate(curves)
         for sign in (1.0, -1.0)
-        for top in _tops(k, sign, places, curve[3])
+        for top in _tops(k, sign, places, curve.values)
     ]
-    keys = [curve[0] for curve in curves]
     for _round in range(ROUNDS if tops and len(places) > 1 else 0):
-        _narrow(mechanism, reactions, keys, tops)
-    found = []
-    for k, (key, name, unit, values) in enumerate(curves):
+        _narrow(mechanism, reactions, curves, tops)
+    loads = []
+    for k, curve in enumerate(curves):
         high, low = (
             _best([top for top in tops if (top.curve, top.sign) == (k, sign)]) for sign in (1.0, -1.0)
         )
-        planar = values.ndim == 2 and values.shape[1] == 2 and high.value > 0.0
+        planar = curve.values.ndim == 2 and curve.values.shape[1] == 2 and high.value > 0.0
         direction = float(np.arctan2(high.vector[1], high.vector[0])) if planar else None
-        mean, rms = mean_over_time(time, _size(values))
-        found.append(
-            BearingLoad(key, name, unit, high.value, high.place, direction, low.value, low.place, mean, rms)
+        mean, rms = mean_over_time(time, _size(curve.values))
+        loads.append(
+            BearingLoad(
+                curve.kind,
+                curve.names,
+                curve.key,
+                curve.unit,
+                high.value,
+                high.place,
+                direction,
+                low.value,
+                low.place,
+                mean,
+                rms,
+            )
         )
-    return tuple(found)
-
-
-def bearing_load_rows(mechanism: Mechanism, loads: tuple[BearingLoad, ...]) -> Table:
-    """Header and rows of the worst cases, as the units of the display have them."""
-    header = [
-        _("reaction"), _("unit"), _("greatest"), _("at"), _("direction, deg"), _("least"), _("at"), _("mean"), _("rms"),
-    ]  # fmt: skip
-    rows = []
-    for one in loads:
-        noise = NOISE * max(abs(one.greatest), abs(one.least))
-        direction = "" if one.direction is None else f"{round(float(np.degrees(one.direction)), 2) + 0.0:.2f}"
-        still = one.greatest - one.least <= noise
-        at_greatest, at_least = (
-            "" if still else _place(mechanism, at) for at in (one.at_greatest, one.at_least)
-        )
-        numbers = [
-            f"{0.0 if abs(x) <= noise else x:.6g}" for x in (one.greatest, one.least, one.mean, one.rms)
-        ]
-        rows.append(
-            [one.name, one.unit, numbers[0], at_greatest, direction, numbers[1], at_least, *numbers[2:]]
-        )
-    return header, rows
-
-
-def bearing_load_scalars(mechanism: Mechanism, loads: tuple[BearingLoad, ...]) -> dict[str, Scalar]:
-    """The same as numbers of a summary, in SI."""
-    unit = mechanism.motion_parameter.instant.unit
-    found: dict[str, Scalar] = {}
-    for one in loads:
-        found |= {
-            f"greatest_{one.key}": Scalar(one.greatest, one.unit),
-            f"greatest_{one.key}_at": Scalar(one.at_greatest, unit),
-            f"least_{one.key}": Scalar(one.least, one.unit),
-            f"mean_{one.key}": Scalar(one.mean, one.unit),
-        }
-    return found
-
-
-def _place(mechanism: Mechanism, at: float) -> str:
-    """The value of the drive at an extreme, or the time."""
-    display, unit = mechanism.display, mechanism.motion_parameter.instant.unit
-    factor, shown = display_unit(unit, str(display.length), str(display.angle))
-    return f"{factor * at:.6g} {shown}"
+    return tuple(loads)
 
 
 def _size(values: Array) -> Array:
@@ -180,16 +144,18 @@ def _tops(curve: int, sign: float, places: Array, values: Array) -> list[_Top]:
     ]
 
 
-def _narrow(mechanism: Mechanism, reactions: xr.Dataset, keys: list[str], tops: list[_Top]) -> None:
+def _narrow(
+    mechanism: Mechanism, reactions: xr.Dataset, curves: list[ReactionSeries], tops: list[_Top]
+) -> None:
     """Compute reactions between the ends of every stretch, and go on with the part about the best of them."""
     cuts = [np.linspace(top.low, top.high, PARTS + 1) for top in tops]
     asked, back = np.unique(np.concatenate(cuts), return_inverse=True)
     speed: Speed = "steady" if reactions.attrs.get("rate_from") == "steady" else "mean"
     rubs = any(str(name).startswith("friction_") for name in reactions)
     there = reactions_of(mechanism, at=asked, speed=speed, friction=rubs)
-    found = {key: values for key, _name, _unit, values in each_reaction(mechanism, there, reactions)}
+    values_of = {one.key: one.values for one in reaction_series(mechanism, there, reactions)}
     for top, cut, where in zip(tops, cuts, back.reshape(len(tops), -1), strict=True):
-        values = found[keys[top.curve]][where]
+        values = values_of[curves[top.curve].key][where]
         size = top.sign * _size(values)
         size = np.where(np.isfinite(size), size, -np.inf)
         k = int(np.argmax(size))

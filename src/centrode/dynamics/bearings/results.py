@@ -1,0 +1,117 @@
+"""Everything about the reactions of a mechanism: over a motion with loads and wear of its bearings, or at instants."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from centrode.dynamics.bearings.extremes import BearingLoad, bearing_loads
+from centrode.dynamics.bearings.wear import bearings, motion_beside
+from centrode.dynamics.kinetostatics.reactions import Speed, reactions
+from centrode.dynamics.reduction import reduce
+from centrode.errors import CentrodeError
+from centrode.kinematics.motion import motion
+from centrode.model.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class ReactionsAtInstants:
+    """What equations of equilibrium are written with at a few instants, all at the same samples.
+
+    Attributes
+    ----------
+    reactions, motion : of `reactions` and `motion`
+    reduced : of `reduce`, where one drive runs at constant speed; None without, and with friction by coefficients
+    """
+
+    reactions: xr.Dataset
+    motion: xr.Dataset
+    reduced: xr.Dataset | None
+
+
+@dataclass(frozen=True)
+class ReactionResults:
+    """Reactions of a mechanism and what follows from them.
+
+    Attributes
+    ----------
+    mechanism : with its masses and loads
+    reactions : of `reactions`, over a motion or at single places
+    at : the single places as they were named; empty for a motion
+    loads : extremes and means of each reaction over the motion; None at single places, and where left out
+    motion, bearings : of `motion` and `bearings` at the samples; None on the sphere, and without `loads`
+    instants : the same reactions at a few instants for equations; None without any
+    """
+
+    mechanism: Mechanism
+    reactions: xr.Dataset
+    at: tuple[float | str, ...] = ()
+    loads: tuple[BearingLoad, ...] | None = None
+    motion: xr.Dataset | None = None
+    bearings: xr.Dataset | None = None
+    instants: ReactionsAtInstants | None = None
+
+
+def reaction_results(
+    mechanism: Mechanism,
+    samples: int | None = None,
+    start: float | None = None,
+    stop: float | None = None,
+    at: Sequence[float | str] = (),
+    *,
+    steady: bool = False,
+    frictionless: bool = False,
+    complete: bool = True,
+    instants: npt.ArrayLike | None = None,
+) -> ReactionResults:
+    """Reactions over a motion with the loads and the wear of the bearings, or reactions at single places.
+
+    Parameters
+    ----------
+    samples, start, stop : as of `motion`
+    at : single places in place of the range, numbers in SI or texts with a unit ("120 deg")
+    steady : at the real speed of a machine in steady motion, not at its mean speed
+    frictionless : without friction by coefficients
+    complete : with loads and wear of the bearings, which take several times as long as the reactions
+    instants : further places [rad, m or s] for equations with numbers
+
+    Raises
+    ------
+    InputError, NotComputedYet
+        As `reactions`.
+    """
+    instant = mechanism.motion_parameter.instant
+    places = [instant.read(place, "at") for place in at] or None
+    speed: Speed = "steady" if steady else "mean"
+    found = reactions(mechanism, samples, start, stop, places, speed=speed, friction=not frictionless)
+    results = ReactionResults(mechanism, found, tuple(at))
+    if complete and not at:
+        results = with_bearings(mechanism, found)
+    return results if instants is None else with_instants(results, instants)
+
+
+def with_bearings(mechanism: Mechanism, found: xr.Dataset) -> ReactionResults:
+    """Reactions over a motion with the loads of the bearings, in the plane with their wear."""
+    loads = bearing_loads(mechanism, found)
+    if mechanism.space != "plane":
+        return ReactionResults(mechanism, found, loads=loads)
+    moving = motion_beside(mechanism, found)
+    worn = bearings(mechanism, found, moving)
+    return ReactionResults(mechanism, found, loads=loads, motion=moving, bearings=worn)
+
+
+def with_instants(results: ReactionResults, instants: npt.ArrayLike) -> ReactionResults:
+    """Results with the reactions at further instants [rad, m or s]; friction by coefficients counts there."""
+    mechanism, places = results.mechanism, np.asarray(instants, dtype=np.float64)
+    reduced = None
+    if mechanism.motion_parameter.is_uniform:
+        # friction by a coefficient has no reduction without the reactions
+        with suppress(CentrodeError):
+            reduced = reduce(mechanism, at=places)
+    there = ReactionsAtInstants(reactions(mechanism, at=places), motion(mechanism, at=places), reduced)
+    return replace(results, instants=there)
