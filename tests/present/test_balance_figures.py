@@ -15,7 +15,7 @@ def balance() -> ct.Balance:
 
 
 def test_what_is_drawn(balance: ct.Balance) -> None:
-    figures = ct.balance_figures(balance, ct.motion(balance.mechanism))
+    figures = ct.figures(balance)
     assert list(figures) == ["shaking-hodograph", "shaking-cycle", "shaking-harmonics", "counterweights"]
     curves = {line.get_label(): line for line in figures["shaking-hodograph"].axes[0].lines}
     for word, data in (
@@ -42,5 +42,5 @@ def test_a_balanced_mechanism_and_dark_ground(balance: ct.Balance) -> None:
     still = ct.balance(ct.balance(ct.example("in-line-four-bar")).balanced)
     assert still.counterweights == ()
     for found in (balance, still):
-        for figure in ct.balance_figures(found, ct.motion(found.mechanism, samples=9)).values():
+        for figure in ct.figures(found).values():
             ct.darkened(figure).draw_without_rendering()

@@ -50,7 +50,7 @@ def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
         mechanism = ct.example(name)
         for topic in TOPICS:
             if topic.concerns(mechanism):
-                yield f"{topic.name} of {name}", topic.view(topic.compute(mechanism, 9))
+                yield f"{topic.name} of {name}", topic.view(topic.compute(mechanism, samples=9))
 
 
 def test_no_sentence_holds_a_number_or_a_unit() -> None:

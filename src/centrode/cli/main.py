@@ -22,7 +22,6 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.angles import angles
 from centrode.cli.animate import animate
-from centrode.cli.balance import balance
 from centrode.cli.cam import cam
 from centrode.cli.centres import centres
 from centrode.cli.centrodes import centrodes
@@ -67,7 +66,6 @@ COMMANDS: tuple[click.Command, ...] = (
     limits,
     region,
     *(topic_command(topic) for topic in TOPICS if topic.has_command),
-    balance,
     cam,
     centres,
     centrodes,

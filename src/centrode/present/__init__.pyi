@@ -44,9 +44,6 @@ from .forces.reaction_figures import reaction_figures as reaction_figures
 from .forces.bearing_tables import write_bearing_loads_csv as write_bearing_loads_csv
 from .forces.bearing_figures import bearing_figures as bearing_figures
 from .forces.polygon_drawing import polygon_figures as polygon_figures
-from .forces.balance_tables import write_balance_csv as write_balance_csv
-from .forces.balance_tables import write_harmonics_csv as write_harmonics_csv
-from .forces.balance_figures import balance_figures as balance_figures
 
 # Cams
 from .cams.bodies import cam_body_figures as cam_body_figures

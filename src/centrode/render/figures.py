@@ -17,7 +17,9 @@ from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.dark import darkened
 from centrode.present.saving import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
+from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.plots import (
     Abscissa,
     Curve,
@@ -68,13 +70,19 @@ def write_pictures(
 
 
 def figure_of(picture: Picture, display: Display) -> Figure:
-    """A plot or a diagram as a figure, lengths and angles in the units of the display."""
+    """A picture of a sheet as a figure, lengths and angles in the units of the display."""
     with house_style():
         match picture:
             case Plot():
                 return _plot(picture, display)
             case Diagram():
                 return _diagram(picture, display)
+            case Hodograph():
+                return hodograph_figure(picture, display)
+            case BarChart():
+                return bar_figure(picture, display)
+            case LinkageWithDiscs():
+                return linkage_figure(picture, display)
             case _:
                 assert_never(picture)
 

@@ -21,6 +21,7 @@ from centrode.dynamics.balancing.moments import Disc, discs_for, with_discs
 from centrode.dynamics.balancing.shaking import ORDERS, About, place_of, shaking
 from centrode.dynamics.balancing.turning import Turning
 from centrode.errors import InputError
+from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
@@ -54,6 +55,8 @@ class Balance:
         Of the least greatest force: no counterweights on these links, with these radii, go below it.
     proved : bool
         Of least greatest effects: no counterweights on these links, with these radii, do better.
+    motion : Dataset
+        Of the mechanism over the range of its description; pictures show a sample of it.
     loop, shares
         Of a slider-crank or four-bar: its parts, and the masses replaced at its joints.
     """
@@ -73,6 +76,7 @@ class Balance:
     proved: bool
     loop: Loop | None
     shares: tuple[Share, ...]
+    motion: xr.Dataset
 
 
 def balance(
@@ -178,6 +182,7 @@ def balance(
         chosen.proved,
         loop,
         () if loop is None else shares_of(mechanism, turning.masses, loop),
+        motion(mechanism),
     )
 
 
