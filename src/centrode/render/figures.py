@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, assert_never
 
@@ -114,9 +114,8 @@ def _pen(curve: Curve) -> Pen:
     """Colours in turn, then the same colours dashed; what is approximate is dashed at once, black is a sum's alone."""
     if curve.role is CurveRole.SUM:
         return Pen(INK)
-    place, colours = curve.place, PALETTE
-    if curve.role is CurveRole.PART:
-        colours = COLOURED
+    place = curve.place
+    colours: Sequence[str] = COLOURED if curve.role is CurveRole.PART else PALETTE
     dashes = DASHES[1] if curve.approximate else DASHES[place // len(colours) % len(DASHES)]
     return Pen(colours[place % len(colours)], dashes)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import degrees, dist
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -226,29 +226,41 @@ def _greatest(data: xr.Dataset) -> Iterator[Fact]:
 # Effects, and the way by hand
 
 
+class _Effect(NamedTuple):
+    """What inertia does, before and after; `whole` is what it is small beside."""
+
+    text: Text
+    unit: str
+    before: float
+    after: float
+    whole: float
+
+    def shown(self, value: float) -> float:
+        """A value without what rounding has left of it."""
+        return 0.0 if value <= ROUNDING * self.whole else value
+
+    @property
+    def change(self) -> Text:
+        """By which share it has changed; nothing of nothing."""
+        before = self.shown(self.before)
+        return Number(self.shown(self.after) / before - 1.0, digits="+.1%") if before else NOTHING
+
+
 def _effects(balance: Balance) -> Table:
     """The greatest effects over the cycle and the first harmonics, before and after."""
-    rows = tuple(_rows(balance))
-    before, after = (
-        [0.0 if row[place] <= ROUNDING * row[4] else row[place] for row in rows] for place in (2, 3)
-    )
-    changes = tuple(
-        Number(new / old - 1.0, digits="+.1%") if old else NOTHING
-        for old, new in zip(before, after, strict=True)
-    )
+    rows = tuple(_effects_of(balance))
     return Table(
         (
-            Column("", tuple(row[0] for row in rows)),
-            Column("unit", tuple(Unit(row[1]) for row in rows), head=Sentence("unit")),
-            Column("before", tuple(map(Number, before)), head=Sentence("before")),
-            Column("after", tuple(map(Number, after)), head=Sentence("after")),
-            Column("change", changes, head=Sentence("change")),
+            Column("", tuple(row.text for row in rows)),
+            Column("unit", tuple(Unit(row.unit) for row in rows), head=Sentence("unit")),
+            Column("before", tuple(Number(row.shown(row.before)) for row in rows), head=Sentence("before")),
+            Column("after", tuple(Number(row.shown(row.after)) for row in rows), head=Sentence("after")),
+            Column("change", tuple(row.change for row in rows), head=Sentence("change")),
         )
     )
 
 
-def _rows(balance: Balance) -> Iterator[tuple[Text, str, float, float, float]]:
-    """What it is, its unit, its values before and after, and what it is small beside."""
+def _effects_of(balance: Balance) -> Iterator[_Effect]:
     both = (balance.before, balance.after)
     about = Place(tuple(balance.before.attrs["about"]), "m")
     for name, text in (
@@ -256,8 +268,8 @@ def _rows(balance: Balance) -> Iterator[tuple[Text, str, float, float, float]]:
         ("shaking_moment", Sentence("greatest shaking moment about {place}", place=about)),
         ("inertia_on_drive", GREATEST_ON_DRIVE),
     ):
-        before, after = (data.attrs[f"greatest_{name}"] for data in both)
-        yield text, str(balance.before[name].attrs["units"]), before, after, before
+        before, after = (float(data.attrs[f"greatest_{name}"]) for data in both)
+        yield _Effect(text, str(balance.before[name].attrs["units"]), before, after, before)
     for name in ("force_harmonic_greatest", "moment_harmonic_amplitude"):
         whole, unit = float(balance.before[name].max()), str(balance.before[name].attrs["units"])
         for order in ORDERS_SHOWN:
@@ -266,11 +278,11 @@ def _rows(balance: Balance) -> Iterator[tuple[Text, str, float, float, float]]:
             if name == "force_harmonic_greatest":
                 text = Sentence("shaking force, order {order}", order=number)
             before, after = (float(data[name].sel(order=order)) for data in both)
-            yield text, unit, before, after, whole
+            yield _Effect(text, unit, before, after, whole)
     before, after = (
         sum(link.mass or 0.0 for link in one.links.values()) for one in (balance.mechanism, balance.balanced)
     )
-    yield Sentence("mass of all links"), "kg", before, after, before
+    yield _Effect(Sentence("mass of all links"), "kg", before, after, before)
 
 
 def _steps(balance: Balance) -> Iterator[Text]:
@@ -478,7 +490,7 @@ def _harmonics(balance: Balance) -> BarChart:
 def _drawing(balance: Balance) -> LinkageWithDiscs:
     """The mechanism with its counterweights at one sample, and what they weigh."""
     discs = tuple(
-        CarriedDisc(one.link, one.base, tuple(one.place), one.disc, _weighs(one))
+        CarriedDisc(one.link, one.base, one.place, one.disc, _weighs(one))
         for one in balance.counterweights
         if one.mass > 0.0
     )
