@@ -119,12 +119,6 @@ from .dynamics.balancing.shaking_forces import shaking as shaking
 from .dynamics.balancing.balance import balance as balance
 from .dynamics.balancing.balance import Balance as Balance
 from .dynamics.balancing.counterweights import Counterweight as Counterweight
-from .study.forces.balancing import balance_rows as balance_rows
-from .study.forces.balancing import balance_effects as balance_effects
-from .study.forces.balancing import balance_steps as balance_steps
-from .present import balance_figures as balance_figures
-from .present import write_balance_csv as write_balance_csv
-from .present import write_harmonics_csv as write_harmonics_csv
 
 # Cams
 from .cams.cam import cam as cam

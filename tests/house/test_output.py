@@ -10,7 +10,7 @@ import pytest
 
 from centrode.cli.output import output_folder, write_file
 from centrode.errors import InputError
-from centrode.render.terminal import aligned
+from centrode.render.plain_table import aligned
 
 
 def test_table_aligns_columns() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.patches import Circle
@@ -15,7 +17,7 @@ def balance() -> ct.Balance:
 
 
 def test_what_is_drawn(balance: ct.Balance) -> None:
-    figures = ct.balance_figures(balance, ct.motion(balance.mechanism))
+    figures = ct.figures(balance)
     assert list(figures) == ["shaking-hodograph", "shaking-cycle", "shaking-harmonics", "counterweights"]
     curves = {line.get_label(): line for line in figures["shaking-hodograph"].axes[0].lines}
     for word, data in (
@@ -42,5 +44,17 @@ def test_a_balanced_mechanism_and_dark_ground(balance: ct.Balance) -> None:
     still = ct.balance(ct.balance(ct.example("in-line-four-bar")).balanced)
     assert still.counterweights == ()
     for found in (balance, still):
-        for figure in ct.balance_figures(found, ct.motion(found.mechanism, samples=9)).values():
+        for figure in ct.figures(found).values():
             ct.darkened(figure).draw_without_rendering()
+
+
+def test_fewer_orders_with_counterweights(balance: ct.Balance) -> None:
+    """A cycle that counterweights shorten has fewer orders: fields without a number are empty."""
+    fewer = replace(balance, after=balance.after.isel(order=slice(0, 5)))
+    columns = {column.name: column.values for column in ct.tables(fewer)["harmonics"].columns}
+    before, after = (
+        np.asarray(columns[f"{word}_force_harmonic_greatest"], dtype=float) for word in ("before", "after")
+    )
+    assert np.array_equal(before, balance.before.force_harmonic_greatest)
+    assert np.array_equal(after[:5], balance.after.force_harmonic_greatest[:5])
+    assert np.isnan(after[5:]).all() and len(after) == len(before)

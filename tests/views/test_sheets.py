@@ -22,7 +22,7 @@ from centrode.render.files import write_table
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.plots import Abscissa
 from centrode.sheets.sheet import Column, Sheet, Table
-from centrode.sheets.texts import Counted, Name, Number, Sentence, Title
+from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit
 from centrode.topics.registry import TOPICS
 
 SOURCE = Path(ct.__file__).parent
@@ -50,7 +50,7 @@ def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
         mechanism = ct.example(name)
         for topic in TOPICS:
             if topic.concerns(mechanism):
-                yield f"{topic.name} of {name}", topic.view(topic.compute(mechanism, 9))
+                yield f"{topic.name} of {name}", topic.view(topic.compute(mechanism, samples=9))
 
 
 def test_no_sentence_holds_a_number_or_a_unit() -> None:
@@ -117,6 +117,45 @@ def test_names_come_out_character_by_character(hostile: str, language: str, tmp_
             [hostile, ""],
         ]
     choose_language("en")
+
+
+@pytest.mark.parametrize("language", ["en", "ru", "uk"])
+def test_places_units_and_parts_are_spelled(language: str) -> None:
+    """A place has the unit of the display, a unit on its own stays SI, counts are written out."""
+    choose_language(language)
+    display = ct.example("crank-rocker").display.model_copy(update={"length": "mm"})
+    plain, document = PlainSpelling(display), DocumentSpelling(Numbers(display))
+    mark = "." if language == "en" else ","
+    place = Place((0.0125, -0.5), "m")
+    assert plain.text(place) == "(12.5, -500) mm"
+    assert document.text(place) == f"(12{mark}5; \u2212500) mm"
+    assert (plain.text(Unit("kg m^2")), document.text(Unit("kg m^2"))) == ("kg m^2", "kg·m²")
+    part = Part(Name("No 1.23456"))
+    assert (plain.text(part), document.text(part)) == ("  No 1.23456", "– No 1.23456")
+    many = Counted("{n} turn of the drive", "{n} turns of the drive", 1_234_567)
+    assert "1234567" in plain.text(many) and "1234567" in document.text(many)
+    choose_language("en")
+
+
+@pytest.mark.parametrize("hostile", ["2.50 kg", "$x_1$", "50 %"])
+def test_loads_of_any_name_are_named_by_it(hostile: str) -> None:
+    """A load's own name is shown as it is; one without has a word of the language before its link."""
+    mechanism = ct.Mechanism(
+        frame={"points": {"O": [0, 0]}},
+        links={"OA": {"length": 1, "mass": 2, "shape": "rod"}},
+        drives=[{"link": "OA", "speed": 1}],
+        loads=[{"kind": "torque", "link": "OA", "value": 3, "name": hostile}],
+        gravity=[0, -10],
+    )
+    results = ct.reduction_results(mechanism, 5)
+    assert f"  {hostile}  " in ct.summary(results) and "  weight OA  " in ct.summary(results)
+    legend = ct.figures(results)["reduced-moment"].axes[0].get_legend()
+    assert legend is not None
+    assert [text.get_text().replace(r"\$", "$") for text in legend.get_texts()] == [
+        hostile,
+        "weight OA",
+        "sum",
+    ]
 
 
 def test_every_entry_of_the_registry_is_there() -> None:

@@ -22,7 +22,6 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.angles import angles
 from centrode.cli.animate import animate
-from centrode.cli.balance import balance
 from centrode.cli.cam import cam
 from centrode.cli.centres import centres
 from centrode.cli.centrodes import centrodes
@@ -65,7 +64,6 @@ OWN: tuple[click.Command, ...] = (
     variants,
     limits,
     region,
-    balance,
     cam,
     centres,
     centrodes,

@@ -156,7 +156,7 @@ def _result(
     if topic.progress:
         text = _(topic.progress)
         options = options | {"progress": lambda share: progress.say(text, round(100 * share), 100)}
-    return topic.compute(mechanism, samples, **options)
+    return topic.compute(mechanism, samples=samples, **options)
 
 
 def write_sheet(

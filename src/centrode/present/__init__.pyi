@@ -39,9 +39,6 @@ from .equations.latex import equations_markdown as equations_markdown
 
 # Forces
 from .forces.polygon_drawing import polygon_figures as polygon_figures
-from .forces.balance_tables import write_balance_csv as write_balance_csv
-from .forces.balance_tables import write_harmonics_csv as write_harmonics_csv
-from .forces.balance_figures import balance_figures as balance_figures
 
 # Cams
 from .cams.bodies import cam_body_figures as cam_body_figures

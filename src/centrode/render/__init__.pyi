@@ -4,7 +4,7 @@ from .figures import figures_of as figures_of
 from .figures import write_pictures as write_pictures
 from .files import write_summary as write_summary
 from .files import write_tables as write_tables
-from .terminal import aligned as aligned
+from .plain_table import aligned as aligned
 from .terminal import fact_rows as fact_rows
 from .terminal import facts_text as facts_text
 from .terminal import sheet_text as sheet_text

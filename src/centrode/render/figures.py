@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, assert_never
 
@@ -17,9 +17,11 @@ from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.dark import darkened
 from centrode.present.saving import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
+from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.panel_grids import grid_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.vector_pages import vector_page
+from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.plots import (
     Abscissa,
     Curve,
@@ -72,7 +74,7 @@ def write_pictures(
 
 
 def figure_of(picture: Picture, display: Display) -> Figure:
-    """A plot or a diagram as a figure, lengths and angles in the units of the display."""
+    """A picture of a sheet as a figure, lengths and angles in the units of the display."""
     with house_style():
         match picture:
             case Plot():
@@ -83,6 +85,12 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return grid_figure(picture, display)
             case VectorPage():
                 return vector_page(picture)
+            case Hodograph():
+                return hodograph_figure(picture, display)
+            case BarChart():
+                return bar_figure(picture, display)
+            case LinkageWithDiscs():
+                return linkage_figure(picture, display)
             case _:
                 assert_never(picture)
 
@@ -117,7 +125,7 @@ def _pen(curve: Curve) -> Pen:
     if curve.role is CurveRole.SUM:
         return Pen(INK)
     place = curve.place
-    colours: tuple[str, ...] = COLOURED if curve.role is CurveRole.PART else PALETTE
+    colours: Sequence[str] = COLOURED if curve.role is CurveRole.PART else PALETTE
     dashes = DASHES[1] if curve.approximate else DASHES[place // len(colours) % len(DASHES)]
     return Pen(colours[place % len(colours)], dashes)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _, ngettext
@@ -18,6 +18,7 @@ from centrode.sheets.texts import (
     Name,
     Number,
     Part,
+    Place,
     Sentence,
     Symbol,
     Text,
@@ -65,6 +66,8 @@ class Spelling(ABC):
                 return self.expression(text)
             case Unit(unit):
                 return self.unit(unit)
+            case Place(coordinates, unit):
+                return self.place([Number(value, unit, unit_hidden=True) for value in coordinates], unit)
             case Part(part):
                 return self.part(self.text(part))
             case _:
@@ -101,6 +104,10 @@ class Spelling(ABC):
     @abstractmethod
     def unit(self, unit: str) -> str:
         """A unit on its own."""
+
+    @abstractmethod
+    def place(self, coordinates: Sequence[Number], unit: str) -> str:
+        """A place."""
 
     @abstractmethod
     def part(self, text: str) -> str:
@@ -140,6 +147,11 @@ class PlainSpelling(Spelling):
     def unit(self, unit: str) -> str:
         """A unit as tables head their columns: "kg m^2"."""
         return unit
+
+    def place(self, coordinates: Sequence[Number], unit: str) -> str:
+        """A place as "(1.25, 0) m"."""
+        shown = shown_as(unit, self.display)[1]
+        return f"({', '.join(map(self.number, coordinates))}) {typeset_unit(shown)}"
 
     def part(self, text: str) -> str:
         """What belongs to the entry above it, indented."""

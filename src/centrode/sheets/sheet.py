@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.plots import Diagram, PanelGrid, Plot, VectorPage
 from centrode.sheets.texts import NOTHING, Leaf, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
-Picture: TypeAlias = Plot | Diagram | PanelGrid | VectorPage
+Picture: TypeAlias = Plot | Diagram | PanelGrid | VectorPage | Hodograph | BarChart | LinkageWithDiscs
 
 
 @dataclass(frozen=True)

@@ -158,6 +158,14 @@ class Unit:
 
 
 @dataclass(frozen=True)
+class Place:
+    """Coordinates of a place, in `unit`."""
+
+    coordinates: tuple[float, ...]
+    unit: str
+
+
+@dataclass(frozen=True)
 class Part:
     """What belongs to the entry above it: indented on a terminal, behind a dash in a document."""
 
@@ -166,7 +174,9 @@ class Part:
 
 Leaf: TypeAlias = "str | Number | Factor | Name | Expression"
 """A piece of a formula; a string is notation without leaves of its own."""
-Text: TypeAlias = "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression | Unit | Part"
+Text: TypeAlias = (
+    "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression | Unit | Part | Place"
+)
 
 NOTHING = Joined(())
 """An empty text."""

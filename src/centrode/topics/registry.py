@@ -108,5 +108,69 @@ REACTIONS = Topic(
     may_be_incomplete=True,
 )
 
-TOPICS: tuple[Topic, ...] = (REDUCTION, FLYWHEEL, SIMULATION, REACTIONS)
+BALANCE = Topic(
+    name="balance",
+    help=mark("Find counterweights that balance a mechanism."),
+    compute=Lazily("centrode.dynamics.balancing.balance", "balance"),
+    result=Lazily("centrode.dynamics.balancing.balance", "Balance"),
+    view=Lazily("centrode.views.balance", "sheet"),
+    concerns=Lazily("centrode.dynamics.balancing.results", "may_shake"),
+    options=(
+        Written(
+            "on",
+            mark("LINK"),
+            mark('Link for a counterweight, or "LINK@POINT" with the point its radius is measured from.'),
+            several=True,
+        ),
+        Flag("full", mark("Make the shaking force zero (the rule).")),
+        Flag("least_maximum", mark("Make the greatest effects as small as they can be.")),
+        Written(
+            "fraction",
+            mark("F"),
+            mark('Slider-crank: balance what turns, and this much of what moves to and fro ("1/2").'),
+        ),
+        Flag("moment", mark("With --full: balance the shaking moment too, by discs.")),
+        Written(
+            "weights",
+            mark("F,M,T"),
+            mark("With --least-maximum: weights of force, moment and drive (1,0,0 if left out)."),
+        ),
+        Written(
+            "radius",
+            mark("[LINK=]LENGTH"),
+            mark('Distance of the counterweight from its point ("50 mm").'),
+            several=True,
+        ),
+        Written(
+            "most",
+            mark("[LINK=]MASS"),
+            mark('Greatest mass of a counterweight ("3 kg").'),
+            several=True,
+        ),
+        Written("thickness", mark("LENGTH"), mark("Counterweights are discs of this thickness.")),
+        Written("density", mark("DENSITY"), mark("Density of discs (steel if left out).")),
+        Written(
+            "about",
+            mark("PLACE"),
+            mark('What moments are taken about: a point of the frame, or "0.2,0.1" in metres.'),
+        ),
+        Flag("steady", mark("At the real speed of the machine, not at its mean speed.")),
+    ),
+    arguments=Lazily("centrode.cli.balance_options", "balance_arguments"),
+    dark=True,
+    after="simulate",
+)
+SHAKING = Topic(
+    name="shaking",
+    help="",
+    compute=Lazily("centrode.dynamics.balancing.results", "shaking_results"),
+    result=Lazily("centrode.dynamics.balancing.results", "ShakingResults"),
+    view=Lazily("centrode.views.balance", "shaking_sheet"),
+    concerns=Lazily("centrode.dynamics.balancing.results", "may_shake"),
+    chapters=(ChapterOfTopic("balance", mark("Shaking forces and balance"), after="force-polygons"),),
+    has_command=False,
+    has_instants=False,
+)
+
+TOPICS: tuple[Topic, ...] = (REDUCTION, FLYWHEEL, SIMULATION, REACTIONS, BALANCE, SHAKING)
 """Every topic."""

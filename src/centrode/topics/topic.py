@@ -119,7 +119,7 @@ class Topic:
     ----------
     name : of the command
     help : what the command does, marked for the catalogues
-    compute : (mechanism, samples, **options, instants=...) -> result
+    compute : (mechanism, samples=..., **options, instants=...) -> result
     result : class of what is computed
     view : result -> Sheet
     concerns : whether a mechanism has what the topic is about

@@ -40,6 +40,7 @@ from centrode.dynamics.balancing.shaking_forces import (
     shaking,
 )
 from centrode.errors import InputError
+from centrode.kinematics.motion import motion
 from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 
@@ -73,6 +74,8 @@ class Balance:
         Of the least greatest force: no counterweights on these links, with these radii, go below it.
     proved : bool
         Of least greatest effects: no counterweights on these links, with these radii, do better.
+    motion : Dataset
+        Of the mechanism over the range of its description; pictures show a sample of it.
     loop, shares
         Of a slider-crank or four-bar: its parts, and the masses replaced at its joints.
     """
@@ -92,6 +95,7 @@ class Balance:
     proved: bool
     loop: Loop | None
     shares: tuple[Share, ...]
+    motion: xr.Dataset
 
 
 def balance(
@@ -199,6 +203,7 @@ def balance(
         chosen.proved,
         loop,
         () if loop is None else shares_of(mechanism, turning.masses, loop),
+        motion(mechanism),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.present.equations.typst import quoted, shown
@@ -73,6 +74,11 @@ class DocumentSpelling(Spelling):
     def unit(self, unit: str) -> str:
         """A unit on its own, as books write it."""
         return spelled_unit(unit)
+
+    def place(self, coordinates: Sequence[Number], unit: str) -> str:
+        """A place, its coordinates apart by semicolons: a comma may be their decimal mark."""
+        label = self.numbers.shown(unit)[1]
+        return f"({'; '.join(map(self.number, coordinates))}) {label}"
 
     def part(self, text: str) -> str:
         """What belongs to the entry above it, behind a dash."""

@@ -30,7 +30,6 @@ from centrode.report.chapters.followers.sizing import base_radius_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.forces.polygons import polygons_chapter
-from centrode.report.chapters.forces.shaken import balance_chapter
 from centrode.report.chapters.linkages.centres import centres_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
@@ -91,7 +90,6 @@ OWN: Mapping[str, Kind] = {
     "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
-    "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
     "lift": Kind(mark("Motion of the follower"), lift_chapter),
     "laws": Kind(mark("Laws of motion for one rise"), laws_chapter),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),

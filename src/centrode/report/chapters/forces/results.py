@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from centrode.dynamics.balancing.balance import Balance, balance
-from centrode.dynamics.balancing.shaking_forces import shaking
 from centrode.dynamics.kinetostatics.reactions import reactions
 from centrode.dynamics.masses import has_masses_or_loads
 from centrode.dynamics.reduction import reduce
@@ -36,13 +34,3 @@ def motion_at_instants(study: ReportStudy) -> xr.Dataset:
 def reactions_at_instants(study: ReportStudy) -> xr.Dataset:
     """Forces in every joint at the instants."""
     return study.once("reactions at instants", lambda: reactions(study.mechanism, at=instants(study)))
-
-
-def shaken(study: ReportStudy) -> xr.Dataset:
-    """Shaking force and moment over the motion."""
-    return study.once("shaking", lambda: shaking(study.mechanism))
-
-
-def balanced(study: ReportStudy) -> Balance:
-    """Counterweights that make the shaking force zero."""
-    return study.once("balance", lambda: balance(study.mechanism))

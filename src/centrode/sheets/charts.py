@@ -1,0 +1,139 @@
+"""Charts of other kinds: hodographs of vectors, bars by order, and a linkage with discs on its links."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from centrode.sheets.plots import AxisLabel
+from centrode.sheets.texts import Sentence, Text, Title
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.model.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class HodographCurve:
+    """The ends of a vector.
+
+    Attributes
+    ----------
+    name : in the legend
+    ends : (sample, 2), evenly spaced, in the unit of the hodograph's labels
+    place : gives it its colour
+    approximate : dashed, as what another curve is compared with
+    """
+
+    name: Text
+    ends: Array
+    place: int
+    approximate: bool = False
+
+
+@dataclass(frozen=True)
+class Hodograph:
+    """Ends of vectors from one origin, to one scale, with a dot every tenth of their way and a great one at its start.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    x, y : labels of the components
+    curves : in the order of the legend
+    """
+
+    title: Sentence
+    mechanism: Title
+    x: AxisLabel
+    y: AxisLabel
+    curves: tuple[HodographCurve, ...]
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Bars of one kind.
+
+    Attributes
+    ----------
+    name : in the legend
+    positions, heights : (n) in the units of their labels; kinds may have different positions
+    place, approximate : as of curves
+    """
+
+    name: Text
+    positions: Array
+    heights: Array
+    place: int
+    approximate: bool = False
+
+
+@dataclass(frozen=True)
+class BarPanel:
+    """Bars of one quantity, those of each kind side by side."""
+
+    label: AxisLabel
+    bars: tuple[Bars, ...]
+
+
+@dataclass(frozen=True)
+class BarChart:
+    """Panels of bars below each other.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    across : what the positions are
+    panels : over the same positions
+    """
+
+    title: Sentence
+    mechanism: Title
+    across: Text
+    panels: tuple[BarPanel, ...]
+
+
+@dataclass(frozen=True)
+class CarriedDisc:
+    """A disc on a link.
+
+    Attributes
+    ----------
+    link : the link
+    base : point of the link from which its arm goes
+    place : of its centre in the axes of the link [m]
+    radius : [m]; a sign is drawn where it is None
+    name : in the legend
+    """
+
+    link: str
+    base: str
+    place: tuple[float, float]
+    radius: float | None
+    name: Text
+
+
+@dataclass(frozen=True)
+class LinkageWithDiscs:
+    """A linkage in its conventional signs at one sample of its motion, with discs on its links.
+
+    Attributes
+    ----------
+    title, mechanism : what it shows, and of which mechanism
+    description : kinds of its links, joints and drives
+    motion : coordinates over all samples, which the window holds
+    sample : which of them is drawn
+    discs : in the order of the legend
+    """
+
+    title: Sentence
+    mechanism: Title
+    description: Mechanism
+    motion: xarray.Dataset
+    sample: int
+    discs: tuple[CarriedDisc, ...]
