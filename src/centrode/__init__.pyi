@@ -55,13 +55,12 @@ from .analysis.graphic.checking import GraphicCheck as GraphicCheck
 from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
+from .analysis.transmission import transmission_results as transmission_results
 from .study.graphic import graphic_rows as graphic_rows
 from .study.graphic import graphic_about as graphic_about
 from .study.graphic import graphic_steps as graphic_steps
 from .study.graphic import graphic_csv as graphic_csv
 from .study.positions import plan_rows as plan_rows
-from .study.transmission import transmission_rows as transmission_rows
-from .study.transmission import transmission_csv as transmission_csv
 from .study.running import study as study
 from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
@@ -295,7 +294,6 @@ from .present import integration_figures as integration_figures
 from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures
 from .present import plan_figure as plan_figure
-from .present import transmission_figure as transmission_figure
 from .present import save_figures as save_figures
 
 # Reports

@@ -10,6 +10,7 @@ between the normal of one and the other (PRP, RPP). Friction is left out.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -84,6 +85,25 @@ def transmission_angles(
     }
     coords = {"group": list(found), **{name: data[name] for name in ("time", "drive_value")}}
     return xr.Dataset(variables, coords, attrs={"title": mechanism.title})
+
+
+@dataclass(frozen=True)
+class TransmissionResults:
+    """Transmission and pressure angles of a mechanism.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    angles : the dataset of `transmission_angles`
+    """
+
+    mechanism: Mechanism
+    angles: xr.Dataset
+
+
+def transmission_results(mechanism: Mechanism, samples: int | None = None) -> TransmissionResults:
+    """Transmission and pressure angles over the motion, with the mechanism; arguments and failures of `transmission_angles`."""
+    return TransmissionResults(mechanism, transmission_angles(mechanism, samples))
 
 
 def _angle(data: xr.Dataset, numbers: Dimensions, group: Group) -> Array | None:

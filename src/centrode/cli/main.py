@@ -20,7 +20,6 @@ import click
 
 import centrode as ct
 from centrode.cli import output
-from centrode.cli.angles import angles
 from centrode.cli.animate import animate
 from centrode.cli.balance import balance
 from centrode.cli.cam import cam
@@ -53,8 +52,9 @@ from centrode.errors import CentrodeError
 from centrode.files.inputs import guarded
 from centrode.locale import _, choose_language_of_process, mark
 from centrode.topics.registry import TOPICS
+from centrode.topics.topic import placed
 
-COMMANDS: tuple[click.Command, ...] = (
+OWN: tuple[click.Command, ...] = (
     run,
     report,
     animate,
@@ -69,7 +69,6 @@ COMMANDS: tuple[click.Command, ...] = (
     variants,
     limits,
     region,
-    *map(topic_command, TOPICS),
     simulate,
     balance,
     cam,
@@ -77,14 +76,19 @@ COMMANDS: tuple[click.Command, ...] = (
     centrodes,
     diagrams,
     plan,
-    angles,
     sweep,
     draw,
     export,
     examples,
     schema,
 )
-"""In the order that `centrode --help` lists them."""
+COMMANDS: tuple[click.Command, ...] = tuple(
+    placed(
+        {str(command.name): command for command in OWN},
+        ((topic.name, topic.after, topic_command(topic)) for topic in TOPICS),
+    ).values()
+)
+"""Those of the topics among the others, in the order that `centrode --help` lists them."""
 
 FAULT, INTERRUPTED, READER_GONE = 70, 130, 141
 

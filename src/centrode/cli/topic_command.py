@@ -1,8 +1,8 @@
-"""Commands of the topics of the registry: print the facts of a sheet, write its tables, figures and numbers."""
+"""Commands of the topics of the registry: print what a sheet says, write its tables, figures and numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -12,16 +12,25 @@ import centrode as ct
 from centrode import render
 from centrode.cli import output
 from centrode.cli.about import about
-from centrode.cli.arguments import mechanism_argument, no_figures_option, samples_option
+from centrode.cli.arguments import (
+    dark_option,
+    mechanism_argument,
+    no_figures_option,
+    results_option,
+    samples_option,
+)
 from centrode.cli.expected import announce_size
+from centrode.cli.pairs import pairs, ranges
 from centrode.cli.progress import Progress
-from centrode.cli.tables import asked_spelling, tables_options
-from centrode.locale import _, mark
+from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
+from centrode.errors import InputError, MotionError
+from centrode.locale import _, mark, speaking
+from centrode.topics.topic import Choice, OptionKind
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Display, Mechanism
     from centrode.sheets.sheet import Sheet
-    from centrode.topics.topic import Topic
+    from centrode.topics.topic import Option, Topic
 
 OUT_OPTION = click.option(
     "--out",
@@ -29,59 +38,168 @@ OUT_OPTION = click.option(
     metavar=mark("DIR"),
     help=mark("Also write tables, pictures and numbers into this folder."),
 )
+FILE_OPTION = click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("FILE"),
+    help=mark("Also write FILE.json or FILE.csv, by the ending of its name."),
+)
+FORCE_OPTION = click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
+TYPES: Mapping[OptionKind, Mapping[str, Any]] = {
+    OptionKind.FLAG: {"is_flag": True},
+    OptionKind.WORD: {},
+    OptionKind.WORDS: {"multiple": True},
+    OptionKind.COUNT: {"type": int},
+    OptionKind.NUMBER: {"type": float},
+    OptionKind.PAIRS: {"multiple": True},
+    OptionKind.RANGES: {"multiple": True},
+}
 
 
 def topic_command(topic: Topic) -> click.Command:
     """The command of a topic: `centrode TOPIC MECHANISM [options] [--out DIR]`."""
 
-    @mechanism_argument
-    @OUT_OPTION
-    @samples_option
-    @no_figures_option
-    @tables_options
-    def command(
-        mechanism: str, out: Path | None, samples: int | None, no_figures: bool, **options: Any
-    ) -> None:
+    def command(mechanism: str, out: Path | None, **given: Any) -> None:
         description = ct.load(mechanism)
-        announce_size(description, samples)
-        names: list[str] = []
-        if out is None:
-            with about(mechanism):
-                sheet = _sheet(topic, description, samples, options)
+        options = _options(topic, given)
+        if topic.samples:
+            announce_size(description, given["samples"])
+            options["samples"] = given["samples"]
+        if topic.files:
+            sheet, written = _beside_file(topic, mechanism, description, options, out, given["force"])
         else:
-            with about(mechanism), output.output_folder(out) as draft, Progress() as progress:
-                progress.say(_("solving"))
-                sheet = _sheet(topic, description, samples, options)
-                write_sheet(sheet, draft, description.display, progress, figures=not no_figures)
-                render.write_summary(sheet.scalars, draft / "summary.json")
-                names = output.finished(draft)
+            folder = output.folder_of(out, mechanism, topic.folder) if topic.folder else out
+            sheet, written = _beside_folder(topic, mechanism, description, options, folder, given)
         click.echo(_(description.title) or mechanism)
         click.echo()
-        click.echo(render.facts_text(sheet.facts, description.display))
-        if out is not None:
-            click.echo("\n" + output.files_in(out, names))
+        click.echo(render.sheet_text(sheet, description.display))
+        if written:
+            click.echo("\n" + written)
+        if sheet.failure is not None:
+            raise MotionError(
+                mechanism,
+                render.plain_text(sheet.failure.what, description.display),
+                render.plain_text(sheet.failure.repair, description.display),
+            )
 
-    made = click.command(topic.name, help=topic.help)(command)
-    choices: list[click.Parameter] = [
-        click.Option(
-            [f"--{choice.name}"], type=click.Choice(choice.words), default=choice.words[0], help=choice.help
+    return click.command(topic.name, help=topic.help)(_with_parameters(topic, command))
+
+
+def _with_parameters(topic: Topic, command: Callable[..., None]) -> Callable[..., None]:
+    """A command with its argument and its options, in the order of `--help`."""
+    decorators = [mechanism_argument, *map(_option, topic.options)]
+    if topic.files:
+        decorators += [FILE_OPTION, *([tables_options] if "csv" in topic.files else []), FORCE_OPTION]
+    else:
+        decorators.append(results_option if topic.folder else OUT_OPTION)
+        decorators += [samples_option] if topic.samples else []
+        decorators += [no_figures_option] if topic.pictures else []
+        decorators += [dark_option] if topic.dark else []
+        decorators.append(tables_options)
+    for decorator in reversed(decorators):
+        command = decorator(command)
+    return command
+
+
+def _option(option: Choice | Option) -> Callable[..., Any]:
+    """What gives a command an option."""
+    if isinstance(option, Choice):
+        return click.option(
+            f"--{option.name}", type=click.Choice(option.words), default=option.words[0], help=option.help
         )
-        for choice in topic.options
-    ]
-    made.params[1:1] = choices
-    return made
+    return click.option(f"--{option.name}", metavar=option.value, help=option.help, **TYPES[option.kind])
 
 
-def _sheet(topic: Topic, mechanism: Mechanism, samples: int | None, options: Mapping[str, Any]) -> Sheet:
+def _options(topic: Topic, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters of the computation; those that the user left out are left to it."""
+    options: dict[str, Any] = {}
+    for option in topic.options:
+        value = given[option.name.replace("-", "_")]
+        if isinstance(option, Choice):
+            options[option.name] = value
+        elif value not in (None, (), False):
+            read = {OptionKind.PAIRS: pairs, OptionKind.RANGES: ranges}.get(option.kind)
+            parameter = option.parameter or option.name.replace("-", "_")
+            options[parameter] = value if read is None else read(value, f"--{option.name}")
+    return options
+
+
+def _beside_folder(
+    topic: Topic,
+    name: str,
+    description: Mechanism,
+    options: Mapping[str, Any],
+    folder: Path | None,
+    given: Mapping[str, Any],
+) -> tuple[Sheet, str]:
+    """The sheet of a topic, written into a folder where one is named; and what was written."""
+    if folder is None:
+        with about(name):
+            return _sheet(topic, description, options), ""
+    with output.output_folder(folder) as draft, Progress() as progress:
+        progress.say(_("solving"))
+        with about(name):
+            sheet = _sheet(topic, description, options)
+        figures = topic.pictures and not given["no_figures"]
+        dark = bool(given.get("dark"))
+        write_sheet(sheet, draft, description.display, progress, figures=figures, dark=dark)
+        if sheet.scalars:
+            render.write_summary(sheet.scalars, draft / "summary.json")
+        names = output.finished(draft)
+    return sheet, output.files_in(folder, names)
+
+
+def _beside_file(
+    topic: Topic,
+    name: str,
+    description: Mechanism,
+    options: Mapping[str, Any],
+    out: Path | None,
+    force: bool,
+) -> tuple[Sheet, str]:
+    """The sheet of a topic, written as one file where one is named; and what was written."""
+    need_table(out)
+    if out is None:
+        with about(name):
+            return _sheet(topic, description, options), ""
+    kind = _kind(out, topic.files)
+    with about(name):
+        sheet = _sheet(topic, description, options)
+        with speaking("en"):  # what files hold is English
+            english = _sheet(topic, description, options)
+    with output.output_table(out, force=force) as draft:
+        if kind == "json" and english.record is not None:
+            render.write_record(english.record, draft)
+        else:
+            (table,) = english.tables.values()
+            render.write_table(table, draft, description.display)
+    return sheet, output.wrote(table_files(out))
+
+
+def _kind(out: Path, known: Sequence[str]) -> str:
+    """Kind of a file by the end of its name; InputError for one that the topic does not write."""
+    kind = out.suffix[1:].lower()
+    if kind not in known:
+        raise InputError(
+            "--out",
+            _("{kind} is not a kind of file for this").format(kind=f'"{out.suffix}"'),
+            _("use one of {known}").format(known=", ".join(f".{one}" for one in known)),
+        )
+    return kind
+
+
+def _sheet(topic: Topic, mechanism: Mechanism, options: Mapping[str, Any]) -> Sheet:
     if topic.needs is not None:
         topic.needs(mechanism)
-    return cast("Sheet", topic.view(topic.compute(mechanism, samples, **options)))
+    return cast("Sheet", topic.view(topic.compute(mechanism, **options)))
 
 
-def write_sheet(sheet: Sheet, folder: Path, display: Display, progress: Progress, *, figures: bool) -> None:
+def write_sheet(
+    sheet: Sheet, folder: Path, display: Display, progress: Progress, *, figures: bool, dark: bool = False
+) -> None:
     """Write a sheet into a folder: tables and datasets, and its pictures where wanted."""
     progress.say(_("writing tables"))
     render.write_tables(sheet, folder, display, asked_spelling())
     if figures and sheet.pictures:
         progress.say(_("drawing"))
-        render.write_pictures(sheet.pictures, folder, display, progress.say)
+        render.write_pictures(sheet.pictures, folder, display, progress.say, dark=dark)

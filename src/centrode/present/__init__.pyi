@@ -22,7 +22,6 @@ from .dark import darkened as darkened
 from .figures import motion_figures as motion_figures
 from .reading import scene_of as scene_of
 from .drawing import draw_mechanism as draw_mechanism
-from .transmission_curves import transmission_figure as transmission_figure
 from .regions import region_figure as region_figure
 from .centres import centres_figure as centres_figure
 from .centrodes import centrodes_figure as centrodes_figure

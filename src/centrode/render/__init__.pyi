@@ -2,7 +2,11 @@
 from .figures import figure_of as figure_of
 from .figures import figures_of as figures_of
 from .figures import write_pictures as write_pictures
+from .files import write_record as write_record
 from .files import write_summary as write_summary
+from .files import write_table as write_table
 from .files import write_tables as write_tables
 from .terminal import aligned as aligned
 from .terminal import facts_text as facts_text
+from .terminal import sheet_text as sheet_text
+from .terminal import plain_text as plain_text

@@ -7,16 +7,43 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from centrode.render.spelling import PlainSpelling
+from centrode.sheets.texts import Number
 
 if TYPE_CHECKING:
     from centrode.model.asked import Display
-    from centrode.sheets.sheet import Fact
+    from centrode.sheets.sheet import Column, Fact, Sheet, Table
+    from centrode.sheets.texts import Text
+
+
+def sheet_text(sheet: Sheet, display: Display) -> str:
+    """The facts of a sheet, and below them the tables that it prints, a blank line between them."""
+    facts = [facts_text(sheet.facts, display)] if sheet.facts else []
+    return "\n\n".join([*facts, *(table_text(table, display) for table in sheet.printed)])
 
 
 def facts_text(facts: Iterable[Fact], display: Display) -> str:
     """Facts below each other, their values aligned."""
     spelling = PlainSpelling(display)
     return aligned([(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts])
+
+
+def plain_text(text: Text, display: Display) -> str:
+    """A text as a terminal prints it."""
+    return PlainSpelling(display).text(text)
+
+
+def table_text(table: Table, display: Display) -> str:
+    """A table of texts under its heads; columns of numbers align right."""
+    spelling = PlainSpelling(display)
+    heads = [_head(column, spelling) for column in table.columns]
+    cells = [[spelling.text(text) for text in column.values] for column in table.columns]
+    numbers = [k for k, column in enumerate(table.columns) if isinstance(column.values[0], Number)]
+    return aligned(list(zip(*cells, strict=True)), heads, numbers)
+
+
+def _head(column: Column, spelling: PlainSpelling) -> str:
+    name = spelling.text(column.head) or column.name
+    return f"{name}, {column.unit}" if column.unit not in ("", "1") else name
 
 
 def aligned(rows: Sequence[Sequence[str]], header: Sequence[str] = (), right: Sequence[int] = ()) -> str:

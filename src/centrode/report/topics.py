@@ -21,12 +21,15 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
     """
-    if study.is_cam or not topic.concerns(study.mechanism):
+    if study.is_cam or (topic.concerns is not None and not topic.concerns(study.mechanism)):
         return None
     try:
-        return document_chapter(chapter.name, _sheet(topic, study), study.numbers)
+        sheet = _sheet(topic, study)
+        return (
+            document_chapter(chapter.name, sheet, study.numbers) if chapter.name in sheet.chapters else None
+        )
     except (MotionError, NotComputedYet) as reason:
-        if study.wishes.chapters is not None:
+        if study.wishes.chapters is not None or not topic.missing_says:
             raise
         return left_out(chapter.name, _(chapter.title), reason)
 
@@ -35,8 +38,10 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
     """The sheet of a topic at the instants of the report, computed once."""
 
     def compute() -> Sheet:
-        instants = tuple(moment.at for moment in moments_of(study))
-        return cast("Sheet", topic.view(topic.compute(study.mechanism, instants=instants)))
+        options = dict(topic.in_documents)
+        if topic.instants:
+            options["instants"] = tuple(moment.at for moment in moments_of(study))
+        return cast("Sheet", topic.view(topic.compute(study.mechanism, **options)))
 
     return study.once(("sheet", topic.name), compute)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,13 +39,16 @@ class Column:
     unit : str
         SI unit; the renderer converts lengths and angles to the units of the display.
     head : text
-        In documents; the name of the column if left out.
+        In documents and on terminals; the name of the column if left out.
+    unit_fixed : bool
+        The unit stays whatever the display says: tables that are in SI for every reader.
     """
 
     name: str
     values: NDArray[np.float64] | tuple[Text, ...]
     unit: str = "1"
     head: Text = NOTHING
+    unit_fixed: bool = False
 
 
 @dataclass(frozen=True)
@@ -148,6 +151,14 @@ class Scalar:
 
 
 @dataclass(frozen=True)
+class Failure:
+    """Why a result falls short of what a command computes, although there is something to show; and what helps."""
+
+    what: Text
+    repair: Text = NOTHING
+
+
+@dataclass(frozen=True)
 class Sheet:
     """Everything there is to say about a result; numbers are in SI.
 
@@ -159,6 +170,9 @@ class Sheet:
     datasets : name of a file without its ending -> dataset, as netCDF
     pictures : name -> plot, diagram or scene
     chapters : name -> chapter of a document
+    printed : tables that a terminal prints below the facts
+    record : the result as JSON holds it, in SI and in English; None where a result has no such form
+    failure : what ends a command after everything is shown and written; None if nothing does
     """
 
     facts: tuple[Fact, ...] = ()
@@ -167,6 +181,9 @@ class Sheet:
     datasets: Mapping[str, xarray.Dataset] = field(default_factory=dict)
     pictures: Mapping[str, Picture] = field(default_factory=dict)
     chapters: Mapping[str, Chapter] = field(default_factory=dict)
+    printed: tuple[Table, ...] = ()
+    record: Mapping[str, Any] | None = None
+    failure: Failure | None = None
 
 
 def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:

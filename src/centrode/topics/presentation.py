@@ -33,8 +33,8 @@ def sheet_of(result: Any) -> Sheet:
 
 
 def summary(result: Any) -> str:
-    """The facts of a result as lines of text, in the language that is spoken and the units of its description."""
-    return render.facts_text(sheet_of(result).facts, result.mechanism.display)
+    """What a command prints of a result, in the language that is spoken and the units of its description."""
+    return render.sheet_text(sheet_of(result), result.mechanism.display)
 
 
 def tables(result: Any) -> Mapping[str, Table]:
@@ -56,4 +56,5 @@ def write(result: Any, folder: str | Path) -> None:
     with draft_folder(Path(folder)) as draft:
         render.write_tables(sheet, draft, display)
         render.write_pictures(sheet.pictures, draft, display)
-        render.write_summary(sheet.scalars, draft / "summary.json")
+        if sheet.scalars:
+            render.write_summary(sheet.scalars, draft / "summary.json")

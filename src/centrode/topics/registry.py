@@ -26,10 +26,23 @@ FLYWHEEL = Topic(
         ),
     ),
     chapters=(
-        ChapterOfTopic("flywheel", mark("Flywheel")),
+        ChapterOfTopic("flywheel", mark("Flywheel"), after="reduction"),
         ChapterOfTopic("real-motion", mark("Real motion")),
     ),
+    after="region",
 )
 
-TOPICS: tuple[Topic, ...] = (FLYWHEEL,)
+ANGLES = Topic(
+    name="angles",
+    help=mark("Compute transmission and pressure angles over the motion."),
+    compute=Lazily("centrode.analysis.transmission", "transmission_results"),
+    result=Lazily("centrode.analysis.transmission", "TransmissionResults"),
+    view=Lazily("centrode.views.transmission", "sheet"),
+    concerns=None,
+    after="plan",
+    folder="angles",
+    dark=True,
+)
+
+TOPICS: tuple[Topic, ...] = (FLYWHEEL, ANGLES)
 """Every topic."""

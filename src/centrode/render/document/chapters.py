@@ -27,6 +27,7 @@ from centrode.sheets.sheet import (
     Sheet,
     Table,
 )
+from centrode.sheets.texts import Number
 
 Pictures: TypeAlias = Mapping[str, Picture]
 
@@ -36,6 +37,11 @@ def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.Chapte
     chapter, spelling = sheet.chapters[name], DocumentSpelling(numbers)
     sections = tuple(_section(section, sheet.pictures, spelling) for section in chapter.sections)
     return blocks.Chapter(name, spelling.text(chapter.title), sections)
+
+
+def document_section(section: Section, pictures: Pictures, numbers: Numbers) -> blocks.Section:
+    """A section of a sheet with the pictures of that sheet, for a chapter that has others beside it."""
+    return _section(section, pictures, DocumentSpelling(numbers))
 
 
 def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.Section:
@@ -71,8 +77,13 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:
     heads = tuple(map(spelling.head, table.columns))
     cells = [_cells(column, table.rows, spelling) for column in table.columns]
-    numbers = tuple(isinstance(column.values, np.ndarray) for column in table.columns)
+    numbers = tuple(map(_is_numeric, table.columns))
     return blocks.Table(heads, tuple(zip(*cells, strict=True)), spelling.text(table.caption), numbers)
+
+
+def _is_numeric(column: Column) -> bool:
+    """Whether a column holds numbers, in an array or each with digits of its own."""
+    return isinstance(column.values, np.ndarray) or isinstance(next(iter(column.values), None), Number)
 
 
 def _cells(column: Column, rows: Sequence[int] | None, spelling: DocumentSpelling) -> Sequence[str]:

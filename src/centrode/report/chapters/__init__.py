@@ -54,6 +54,7 @@ from centrode.report.chapters.sphere.tables import sphere_tables_chapter
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
 from centrode.topics.registry import TOPICS
+from centrode.topics.topic import placed
 
 Make: TypeAlias = Callable[[ReportStudy], Chapter | None]
 
@@ -74,16 +75,7 @@ def either(*makers: Make) -> Make:
     return make
 
 
-def topic_chapters() -> dict[str, Kind]:
-    """The chapters of every topic of the registry."""
-    return {
-        chapter.name: Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
-        for topic in TOPICS
-        for chapter in topic.chapters
-    }
-
-
-CHAPTERS: Mapping[str, Kind] = {
+OWN: Mapping[str, Kind] = {
     "data": Kind(
         mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
     ),
@@ -102,7 +94,6 @@ CHAPTERS: Mapping[str, Kind] = {
     "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "reduction": Kind(mark("Reduction to the drive"), reduction_chapter),
-    **topic_chapters(),
     "simulation": Kind(mark("Motion under loads"), simulation_chapter),
     "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
@@ -118,3 +109,13 @@ CHAPTERS: Mapping[str, Kind] = {
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
+
+CHAPTERS: Mapping[str, Kind] = placed(
+    OWN,
+    (
+        (chapter.name, chapter.after, Kind(chapter.title, functools.partial(topic_chapter, topic, chapter)))
+        for topic in TOPICS
+        for chapter in topic.chapters
+    ),
+)
+"""Those of the topics among the others."""
