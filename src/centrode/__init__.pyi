@@ -43,6 +43,7 @@ from .kinematics.several_drives.coefficients import kinematic_coefficients as ki
 from .kinematics.several_drives.reach import limits as limits
 from .kinematics.several_drives.reach import Limits as Limits
 from .kinematics.several_drives.region import reachable_region as reachable_region
+from .kinematics.several_drives.region import region_results as region_results
 from .analysis.rotatability import rotatability as rotatability
 from .analysis.rotatability import Rotatability as Rotatability
 from .analysis.repair import repair as repair
@@ -66,9 +67,6 @@ from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
 from .study.running import repair_of_range as repair_of_range
 from .study.running import with_range as with_range
-from .study.limiting import limits_rows as limits_rows
-from .study.limiting import limits_text as limits_text
-from .study.regions import region_rows as region_rows
 from .study.turning import rotatability_rows as rotatability_rows
 from .study.turning import rotatability_text as rotatability_text
 from .study.repairing import repair_rows as repair_rows
@@ -276,7 +274,6 @@ from .present import write_coefficients_csv as write_coefficients_csv
 from .present import write_reduction_csv as write_reduction_csv
 from .present import write_reactions_csv as write_reactions_csv
 from .present import write_joint_table_csv as write_joint_table_csv
-from .present import write_region_csv as write_region_csv
 from .present import write_centres_csv as write_centres_csv
 from .present import write_centrodes_csv as write_centrodes_csv
 from .present import centres_figure as centres_figure
@@ -291,7 +288,6 @@ from .present import reaction_figures as reaction_figures
 from .present import bearing_figures as bearing_figures
 from .present import write_bearing_loads_csv as write_bearing_loads_csv
 from .present import integration_figures as integration_figures
-from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures
 from .present import plan_figure as plan_figure
 from .present import save_figures as save_figures

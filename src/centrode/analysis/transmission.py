@@ -102,7 +102,7 @@ class TransmissionResults:
 
 
 def transmission_results(mechanism: Mechanism, samples: int | None = None) -> TransmissionResults:
-    """Transmission and pressure angles over the motion, with the mechanism; arguments and failures of `transmission_angles`."""
+    """Transmission and pressure angles over the motion, with the mechanism; raises as `transmission_angles` does."""
     return TransmissionResults(mechanism, transmission_angles(mechanism, samples))
 
 

@@ -33,12 +33,10 @@ from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
 from centrode.cli.integrate import integrate
-from centrode.cli.limits import limits
 from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
 from centrode.cli.reactions import reactions
 from centrode.cli.reduce import reduce
-from centrode.cli.region import region
 from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
@@ -67,8 +65,6 @@ OWN: tuple[click.Command, ...] = (
     reactions,
     polygons,
     variants,
-    limits,
-    region,
     simulate,
     balance,
     cam,

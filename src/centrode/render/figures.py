@@ -17,8 +17,18 @@ from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.dark import darkened
 from centrode.present.saving import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
+from centrode.render.areas import area_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
-from centrode.sheets.plots import Abscissa, CurvePanel, Diagram, EventKind, Plot, Trace, TraceKind
+from centrode.sheets.plots import (
+    Abscissa,
+    AreaDiagram,
+    CurvePanel,
+    Diagram,
+    EventKind,
+    Plot,
+    Trace,
+    TraceKind,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,6 +76,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return _plot(picture, display)
             case Diagram():
                 return _diagram(picture, display)
+            case AreaDiagram():
+                return area_figure(picture, display)
             case _:
                 assert_never(picture)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from math import degrees
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.locale import _, ngettext
@@ -101,7 +102,8 @@ class PlainSpelling(Spelling):
         """A number with its unit behind a blank."""
         factor, unit = self.shown_unit(number)
         digits = format(number.value * factor if factor != 1.0 else number.value, number.digits or ".6g")
-        return digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
+        text = digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
+        return f"{text} ({degrees(number.value):.6g} deg)" if number.degrees_too and unit == "rad" else text
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""

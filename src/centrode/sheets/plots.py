@@ -160,4 +160,69 @@ class Diagram:
     across: tuple[float, float]
 
 
-Figures = Mapping[str, "Plot | Diagram"]
+class AreaKind(Enum):
+    """What an area of a diagram stands for."""
+
+    MAIN = "main"
+    BESIDE = "beside"
+
+
+@dataclass(frozen=True)
+class Area:
+    """A part of a grid, with its border.
+
+    Attributes
+    ----------
+    name : in the legend
+    levels : (n, m) positive at the nodes inside; the border is where it passes through zero
+    kind : what the reader looks for, or what there is beside it
+    """
+
+    name: Text
+    levels: Array
+    kind: AreaKind = AreaKind.MAIN
+
+
+@dataclass(frozen=True)
+class Path:
+    """A curve through the areas of a diagram.
+
+    Attributes
+    ----------
+    name : in the legend
+    x, y : (k), in the units of the diagram's labels; NaN is a gap
+    kind : as of an area
+    """
+
+    name: Text
+    x: Array
+    y: Array
+    kind: AreaKind = AreaKind.MAIN
+
+
+@dataclass(frozen=True)
+class AreaDiagram:
+    """Areas of the plane of two quantities, paths through them and places in them.
+
+    Attributes
+    ----------
+    title, mechanism : as of a plot
+    x, y : labels of the axes
+    across, up : (n) and (m) values at the lines of the grid, in the units of the labels
+    areas : in the order of the legend; the first lies over the others
+    paths : in the order of the legend
+    places : name in the legend, x and y
+    """
+
+    title: Sentence
+    mechanism: Title
+    x: AxisLabel
+    y: AxisLabel
+    across: Array
+    up: Array
+    areas: tuple[Area, ...]
+    paths: tuple[Path, ...]
+    places: tuple[tuple[Text, float, float], ...]
+
+
+Figures = Mapping[str, "Plot | Diagram | AreaDiagram"]

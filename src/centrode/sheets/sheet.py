@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.sheets.plots import Diagram, Plot
+from centrode.sheets.plots import AreaDiagram, Diagram, Plot
 from centrode.sheets.texts import NOTHING, Leaf, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
-Picture: TypeAlias = Plot | Diagram
+Picture: TypeAlias = Plot | Diagram | AreaDiagram
 
 
 @dataclass(frozen=True)

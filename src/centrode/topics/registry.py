@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from centrode.locale import mark
-from centrode.topics.topic import ChapterOfTopic, Choice, Lazily, Topic
+from centrode.topics.topic import ChapterOfTopic, Choice, Lazily, Option, OptionKind, Topic
 
 FLYWHEEL = Topic(
     name="flywheel",
@@ -29,7 +29,74 @@ FLYWHEEL = Topic(
         ChapterOfTopic("flywheel", mark("Flywheel"), after="reduction"),
         ChapterOfTopic("real-motion", mark("Real motion")),
     ),
-    after="region",
+)
+
+LIMITS = Topic(
+    name="limits",
+    help=mark("Find the limits of one drive while the others are held."),
+    compute=Lazily("centrode.kinematics.several_drives.reach", "limits"),
+    result=Lazily("centrode.kinematics.several_drives.reach", "Limits"),
+    view=Lazily("centrode.views.limits", "sheet"),
+    concerns=Lazily("centrode.kinematics.several_drives.reach", "has_one_drive"),
+    options=(
+        Option(
+            "drive",
+            OptionKind.WORD,
+            mark("The drive that moves; needed where there are several."),
+            mark("NAME"),
+        ),
+        Option(
+            "hold",
+            OptionKind.PAIRS,
+            mark('Value of another drive ("EC=30 deg"); its initial one if left out.'),
+            mark("NAME=VALUE"),
+            "held",
+        ),
+        Option(
+            "about",
+            OptionKind.WORD,
+            mark("Value from which it moves; its initial one if left out."),
+            mark("VALUE"),
+        ),
+    ),
+    after="variants",
+    files=("json", "csv"),
+    samples=False,
+)
+
+REGION = Topic(
+    name="region",
+    help=mark("Compute the reachable region of two drives and draw it."),
+    compute=Lazily("centrode.kinematics.several_drives.region", "region_results"),
+    result=Lazily("centrode.kinematics.several_drives.region", "RegionResults"),
+    view=Lazily("centrode.views.regions", "sheet"),
+    concerns=Lazily("centrode.kinematics.several_drives.region", "has_two_drives"),
+    options=(
+        Option(
+            "drive",
+            OptionKind.WORDS,
+            mark("One of the two drives; say it twice where there are more than two."),
+            mark("NAME"),
+            "drives",
+        ),
+        Option(
+            "range",
+            OptionKind.RANGES,
+            mark('Range of a drive ("EC=0 deg:90 deg"); one turn, or between its limits, if left out.'),
+            mark("NAME=FIRST:LAST"),
+            "ranges",
+        ),
+        Option(
+            "hold",
+            OptionKind.PAIRS,
+            mark("Value of a further drive; its initial one if left out."),
+            mark("NAME=VALUE"),
+            "held",
+        ),
+        Option("samples", OptionKind.COUNT, mark("Grid lines of each drive."), mark("N")),
+    ),
+    folder="region",
+    samples=False,
 )
 
 ANGLES = Topic(
@@ -44,5 +111,5 @@ ANGLES = Topic(
     dark=True,
 )
 
-TOPICS: tuple[Topic, ...] = (FLYWHEEL, ANGLES)
+TOPICS: tuple[Topic, ...] = (LIMITS, REGION, FLYWHEEL, ANGLES)
 """Every topic."""
