@@ -232,9 +232,8 @@ from .study.centres import curvature_rows as curvature_rows
 
 # Integration, variants, words
 from .equations.integrated import integrate as integrate
-from .study.integrating import closed_motion as closed_motion
-from .study.integrating import integration_rows as integration_rows
-from .study.integrating import integration_failure as integration_failure
+from .equations.integrated import integration_results as integration_results
+from .equations.integrated import closed_motion as closed_motion
 from .study.variants.computing import variants as variants
 from .study.variants.computing import variant_rows as variant_rows
 from .study.variants.computing import variants_summary as variants_summary
@@ -280,14 +279,12 @@ from .present import centres_figure as centres_figure
 from .present import centrodes_figure as centrodes_figure
 from .present import curvature_figure as curvature_figure
 from .present import darkened as darkened
-from .present import write_integration_csv as write_integration_csv
-from .present import write_variants as write_variants
+from .report.variants.folders import write_variants as write_variants
 from .present import motion_figures as motion_figures
 from .present import reduction_figures as reduction_figures
 from .present import reaction_figures as reaction_figures
 from .present import bearing_figures as bearing_figures
 from .present import write_bearing_loads_csv as write_bearing_loads_csv
-from .present import integration_figures as integration_figures
 from .present import diagram_figures as diagram_figures
 from .present import plan_figure as plan_figure
 from .present import save_figures as save_figures

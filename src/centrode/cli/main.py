@@ -32,7 +32,6 @@ from centrode.cli.draw import draw
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
-from centrode.cli.integrate import integrate
 from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
 from centrode.cli.reactions import reactions
@@ -59,7 +58,6 @@ OWN: tuple[click.Command, ...] = (
     check,
     describe,
     equations,
-    integrate,
     rotatability,
     reduce,
     reactions,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -53,6 +54,7 @@ TYPES: Mapping[OptionKind, Mapping[str, Any]] = {
     OptionKind.NUMBER: {"type": float},
     OptionKind.PAIRS: {"multiple": True},
     OptionKind.RANGES: {"multiple": True},
+    OptionKind.INSTANT: {},
 }
 
 
@@ -61,7 +63,7 @@ def topic_command(topic: Topic) -> click.Command:
 
     def command(mechanism: str, out: Path | None, **given: Any) -> None:
         description = ct.load(mechanism)
-        options = _options(topic, given)
+        options = _options(topic, description, given)
         if topic.samples:
             announce_size(description, given["samples"])
             options["samples"] = given["samples"]
@@ -110,15 +112,20 @@ def _option(option: Choice | Option) -> Callable[..., Any]:
     return click.option(f"--{option.name}", metavar=option.value, help=option.help, **TYPES[option.kind])
 
 
-def _options(topic: Topic, given: Mapping[str, Any]) -> dict[str, Any]:
+def _options(topic: Topic, description: Mechanism, given: Mapping[str, Any]) -> dict[str, Any]:
     """Parameters of the computation; those that the user left out are left to it."""
+    readers: Mapping[OptionKind, Callable[[Any, str], Any]] = {
+        OptionKind.PAIRS: pairs,
+        OptionKind.RANGES: ranges,
+        OptionKind.INSTANT: functools.partial(ct.range_value, description),
+    }
     options: dict[str, Any] = {}
     for option in topic.options:
         value = given[option.name.replace("-", "_")]
         if isinstance(option, Choice):
             options[option.name] = value
-        elif value not in (None, (), False):
-            read = {OptionKind.PAIRS: pairs, OptionKind.RANGES: ranges}.get(option.kind)
+        elif value is not None and value is not False and value != ():
+            read = readers.get(option.kind)
             parameter = option.parameter or option.name.replace("-", "_")
             options[parameter] = value if read is None else read(value, f"--{option.name}")
     return options

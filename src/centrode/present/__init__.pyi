@@ -11,9 +11,7 @@ from .spelled_tables import TableSpelling as TableSpelling
 from .coefficient_tables import write_coefficients_csv as write_coefficients_csv
 from .centres_tables import write_centres_csv as write_centres_csv
 from .centres_tables import write_centrodes_csv as write_centrodes_csv
-from .integration_tables import write_integration_csv as write_integration_csv
 from .sweep_tables import sweep_csv as sweep_csv
-from .variant_folders import write_variants as write_variants
 
 # Figures of motions, centres and plans
 from .saving import save_figures as save_figures
@@ -26,7 +24,6 @@ from .centrodes import centrodes_figure as centrodes_figure
 from .curvature import curvature_figure as curvature_figure
 from .instant_drawing import diagram_figures as diagram_figures
 from .plan_drawing import plan_figure as plan_figure
-from .integrations import integration_figures as integration_figures
 
 # Equations
 from .equations.text import equations_rows as equations_rows

@@ -98,6 +98,22 @@ class CurvePanel:
 
 
 @dataclass(frozen=True)
+class Overlay:
+    """Curves of a second route, dashed over those of a plot.
+
+    Attributes
+    ----------
+    name : of all of them, in the legend
+    abscissa : of their own samples
+    rows : panels with the same curves as those of the plot
+    """
+
+    name: Text
+    abscissa: Abscissa
+    rows: tuple[tuple[CurvePanel, ...], ...]
+
+
+@dataclass(frozen=True)
 class Plot:
     """Panels in rows and columns over one abscissa.
 
@@ -105,12 +121,16 @@ class Plot:
     ----------
     title : what it shows
     mechanism : of which mechanism
+    overlay : what the curves are compared with
+    sizes_above : of each curve its size where that is greater, on logarithmic scales; plain scales if None
     """
 
     title: Sentence
     mechanism: Title
     abscissa: Abscissa
     rows: tuple[tuple[CurvePanel, ...], ...]
+    overlay: Overlay | None = None
+    sizes_above: float | None = None
 
 
 class TraceKind(Enum):

@@ -31,6 +31,33 @@ FLYWHEEL = Topic(
     ),
 )
 
+INTEGRATE = Topic(
+    name="integrate",
+    help=mark("Integrate the differential equations of a mechanism."),
+    compute=Lazily("centrode.equations.integrated", "integration_results"),
+    result=Lazily("centrode.equations.integrated", "IntegrationResults"),
+    view=Lazily("centrode.views.integrations", "sheet"),
+    concerns=Lazily("centrode.equations.integrated", "is_integrated"),
+    options=(
+        Option(
+            "method",
+            OptionKind.WORD,
+            mark("Fixed steps of Runge-Kutta's method of fourth order, or adaptive ones of eighth order."),
+            "rk4|adaptive",
+        ),
+        Option("steps", OptionKind.COUNT, mark("Number of steps, and of rows less one."), mark("N")),
+        Option("tolerance", OptionKind.NUMBER, mark("Tolerance of each adaptive step."), mark("X")),
+        Option("to", OptionKind.INSTANT, mark("Last value of the drive, or last time."), mark("B"), "stop"),
+    ),
+    chapters=(ChapterOfTopic("integration", mark("Integration of the equations"), after="centres"),),
+    after="equations",
+    folder="integration",
+    samples=False,
+    instants=False,
+    in_documents={"method": "adaptive"},
+    missing_says=False,
+)
+
 LIMITS = Topic(
     name="limits",
     help=mark("Find the limits of one drive while the others are held."),
@@ -111,5 +138,5 @@ ANGLES = Topic(
     dark=True,
 )
 
-TOPICS: tuple[Topic, ...] = (LIMITS, REGION, FLYWHEEL, ANGLES)
+TOPICS: tuple[Topic, ...] = (INTEGRATE, LIMITS, REGION, FLYWHEEL, ANGLES)
 """Every topic."""

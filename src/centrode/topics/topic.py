@@ -54,6 +54,7 @@ class OptionKind(Enum):
     NUMBER = "a number"
     PAIRS = "NAME=VALUE, the option once for each"
     RANGES = "NAME=FIRST:LAST, the option once for each"
+    INSTANT = "a value of the drive, or a time"
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.errors import Status
-from centrode.quantities import STATUS_WORDS
 from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AxisLabel, Path
 from centrode.sheets.sheet import Column, Fact, Sheet, Table
-from centrode.sheets.texts import Joined, Name, Number, Sentence, Text, Title
+from centrode.sheets.texts import Joined, Name, Number, Sentence, Title
 from centrode.views.abscissas import drive_label
+from centrode.views.columns import counted_statuses
 from centrode.views.instants import place_number
 
 if TYPE_CHECKING:
@@ -35,17 +35,6 @@ def sheet(results: RegionResults) -> Sheet:
         tables={"region": _nodes(region), "border": _border(region)},
         datasets={"region": region},
         pictures={"region": _diagram(results)},
-    )
-
-
-def counted_statuses(status: NDArray[np.int8]) -> Text:
-    """How many there are of each status: "ok 12, open 3"."""
-    codes, counts = np.unique(status, return_counts=True)
-    return Joined(
-        [
-            Joined((Sentence(STATUS_WORDS[Status(code)]), Number(count, digits="d")), " ")
-            for code, count in zip(codes.tolist(), counts.tolist(), strict=True)
-        ]
     )
 
 

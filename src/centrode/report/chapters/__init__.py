@@ -39,7 +39,6 @@ from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
 from centrode.report.chapters.linkages.graphic import graphic_chapter
-from centrode.report.chapters.linkages.integration import integration_chapter
 from centrode.report.chapters.linkages.moving import motion_chapter
 from centrode.report.chapters.linkages.plots import plots_chapter
 from centrode.report.chapters.linkages.positions import positions_chapter
@@ -89,7 +88,6 @@ OWN: Mapping[str, Kind] = {
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
     "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
-    "integration": Kind(mark("Integration of the equations"), integration_chapter),
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
     "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
