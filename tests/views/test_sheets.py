@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import csv
 import dataclasses
+import math
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -15,15 +16,18 @@ import pytest
 
 import centrode as ct
 from centrode.locale import _, choose_language
+from centrode.model.asked import Display
 from centrode.present.spelled_tables import TableSpelling
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.files import write_table
 from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.terminal import table_text
 from centrode.sheets.plots import Abscissa
 from centrode.sheets.sheet import Column, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Sentence, Title
 from centrode.topics.registry import TOPICS
+from centrode.topics.topic import placed
 
 SOURCE = Path(ct.__file__).parent
 HOSTILE = ("No 1.23456", "run 30 deg", "2.50 kg", "$x_1$", "<b>", "#a")
@@ -61,7 +65,7 @@ def test_no_sentence_holds_a_number_or_a_unit() -> None:
     seen = 0
     for language in ("en", "ru", "uk"):
         choose_language(language)
-        for where, sheet in sheets(("six-bar-press", "six-bar-press-printed")):
+        for where, sheet in sheets(("six-bar-press", "six-bar-press-printed", "five-bar-two-drives")):
             for leaf in leaves(dataclasses.replace(sheet, datasets={})):
                 messages = [leaf.message] if isinstance(leaf, Sentence) else []
                 if isinstance(leaf, Counted):
@@ -151,3 +155,35 @@ def test_an_abscissa_without_gaps() -> None:
         if isinstance(leaf, Abscissa)
     ]
     assert plots and all(len(one.values) == len(one.order) for one in plots)
+
+
+def test_entries_of_topics_stand_where_they_say() -> None:
+    """Behind the one they name, else behind the one that was added last, the first behind all."""
+    own = {"a": 1, "b": 2, "c": 3}
+    added = [("d", "", 4), ("e", "a", 5), ("f", "", 6)]
+    assert list(placed(own, added).items()) == [("a", 1), ("e", 5), ("f", 6), ("b", 2), ("c", 3), ("d", 4)]
+
+
+def test_a_table_of_a_terminal_aligns_its_numbers() -> None:
+    names = Column("name", (Name("AB"), Name("long one")), head=Sentence("group"))
+    values = Column("angle", (Number(9.5, digits=".1f"), Number(10.25, digits=".1f")), "deg")
+    assert table_text(Table((names, values)), ct.example("crank-rocker").display).splitlines() == [
+        "group     angle, deg",
+        "AB               9.5",
+        "long one        10.2",
+    ]
+
+
+def test_radians_have_degrees_behind_them() -> None:
+    """A place on a path can be asked for again by either."""
+    radians, degrees = Display(), Display(angle="deg")
+    number = Number(math.pi / 6, "rad", ".9g", degrees_too=True)
+    assert PlainSpelling(radians).text(number) == "0.523598776 rad (30 deg)"
+    assert PlainSpelling(degrees).text(number) == "30 deg"
+    assert PlainSpelling(radians).text(Number(0.25, "m", ".9g", degrees_too=True)) == "0.25 m"
+
+
+def test_fixed_columns_stay_in_si(tmp_path: Path) -> None:
+    columns = (Column("a", np.array([1.0]), "rad", unit_fixed=True), Column("b", np.array([math.pi]), "rad"))
+    write_table(Table(columns), tmp_path / "t.csv", Display(angle="deg"))
+    assert (tmp_path / "t.csv").read_text(encoding="utf-8") == "a [rad],b [deg]\n1.0,180.0\n"

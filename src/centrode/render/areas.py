@@ -32,7 +32,8 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
     spelling, words = FigureSpelling(display), PlainSpelling(display)
     (x_factor, x_label, x_unit), (y_factor, y_label, y_unit) = map(spelling.label, (diagram.x, diagram.y))
     x, y = x_factor * diagram.across, y_factor * diagram.up
-    names = [one.name for one in (*diagram.areas, *diagram.paths)] + [name for name, *_at in diagram.places]
+    names = [area.name for area in diagram.areas] + [path.name for path in diagram.paths]
+    names += [name for name, _x, _y in diagram.places]
     wide, high = _inches(diagram)
     room = legend_width([words.text(name) for name in names], high)
     figure = Figure(figsize=(wide + 0.9 + room, high + 1.3), layout="constrained")

@@ -144,8 +144,8 @@ def placed(entries: Mapping[str, Entry], added: Iterable[tuple[str, str, Entry]]
 
     One that names none before it stands behind the one that was added last, the first behind all.
     """
-    order, last = list(entries), next(reversed(entries), "")
-    both = dict(entries)
+    both, order = dict(entries), list(entries)
+    last = order[-1]
     for name, after, entry in added:
         order.insert(order.index(after or last) + 1, name)
         both[name], last = entry, name

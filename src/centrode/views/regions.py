@@ -90,16 +90,18 @@ def _diagram(results: RegionResults) -> AreaDiagram:
     """What is reached and what is cut off, the path that the drives take in time, and the initial position."""
     region, mechanism = results.region, results.mechanism
     x, y = (_label(results, number) for number in range(len(DIMENSIONS)))
+    across, up = (region[dimension].to_numpy() for dimension in DIMENSIONS)
     start = region["initial_value"].to_numpy()
     return AreaDiagram(
         Sentence("Reachable region of two drives"),
         Title(mechanism.title),
         x,
         y,
-        *(region[dimension].to_numpy() for dimension in DIMENSIONS),
-        areas=tuple(_areas(region)),
-        paths=tuple(_paths(results)),
-        places=((Sentence("initial position"), float(start[0]), float(start[1])),),
+        across,
+        up,
+        tuple(_areas(region)),
+        tuple(_paths(results)),
+        ((Sentence("initial position"), float(start[0]), float(start[1])),),
     )
 
 
