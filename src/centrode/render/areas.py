@@ -32,16 +32,18 @@ def area_figure(diagram: AreaDiagram, display: Display) -> Figure:
     spelling, words = FigureSpelling(display), PlainSpelling(display)
     (x_factor, x_label, x_unit), (y_factor, y_label, y_unit) = map(spelling.label, (diagram.x, diagram.y))
     x, y = x_factor * diagram.across, y_factor * diagram.up
+    # room for what other regions of the same kind show, so that pictures have one size
     names = [area.name for area in diagram.areas] + [path.name for path in diagram.paths]
     names += [name for name, _x, _y in diagram.places]
     wide, high = _inches(diagram)
     room = legend_width([words.text(name) for name in names], high)
     figure = Figure(figsize=(wide + 0.9 + room, high + 1.3), layout="constrained")
     axes = figure.subplots()
-    for area in reversed(diagram.areas):
+    shown = [area for area in diagram.areas if (area.levels > 0.0).any()]
+    for area in reversed(shown):
         _draw_area(axes, area, (x, y))
     key: list[tuple[Artist, str]] = [
-        (Patch(facecolor=COLOURS[area.kind], edgecolor=INK), words.text(area.name)) for area in diagram.areas
+        (Patch(facecolor=COLOURS[area.kind], edgecolor=INK), words.text(area.name)) for area in shown
     ]
     for path in diagram.paths:
         line = _draw_path(axes, path, (x_factor, y_factor))

@@ -194,7 +194,8 @@ class Area:
     Attributes
     ----------
     name : in the legend
-    levels : (n, m) positive at the nodes inside; the border is where it passes through zero
+    levels : (n, m) positive at the nodes inside; the border is where it passes through zero. Without a node inside the
+        area is not there
     kind : what the reader looks for, or what there is beside it
     """
 

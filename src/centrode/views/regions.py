@@ -116,8 +116,7 @@ def _areas(region: xarray.Dataset) -> Iterator[Area]:
         (Status.OK, Sentence("reached"), AreaKind.MAIN),
         (Status.CUT_OFF, Sentence("closes, but cut off"), AreaKind.BESIDE),
     ):
-        if (status == kind).any():
-            yield Area(name, _levels(status, margin, kind), drawn)
+        yield Area(name, _levels(status, margin, kind), drawn)
 
 
 def _levels(status: NDArray[np.int8], margin: Array, kind: Status) -> Array:
