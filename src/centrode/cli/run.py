@@ -28,7 +28,6 @@ from centrode.cli.tables import tables_options
 from centrode.cli.topic_command import write_sheet
 from centrode.errors import MotionError
 from centrode.locale import _, mark
-from centrode.views.flywheel import sheet as machine_sheet
 
 if TYPE_CHECKING:
     from centrode.study.running import StudyResults
@@ -92,7 +91,7 @@ def write(study: StudyResults, folder: Path, progress: Progress, *, figures: boo
         )
         ct.write_motion_netcdf(study.coefficients, folder / "coefficients.nc")
     if study.machine is not None:
-        write_sheet(machine_sheet(study.machine), folder, mechanism.display, progress, figures=figures)
+        write_sheet(ct.sheet_of(study.machine), folder, mechanism.display, progress, figures=figures)
     if study.reactions is not None:
         loads = study.bearing_loads
         write_reactions(mechanism, study.reactions, folder, progress, figures=figures, loads=loads)
@@ -123,7 +122,7 @@ def summary_text(study: StudyResults, name: str) -> str:
         rows += ct.greatest_reaction(study.mechanism, study.reactions)
     lines = [_(study.mechanism.title) or name, "", output.table(rows)]
     if study.machine is not None:
-        facts = machine_sheet(study.machine).facts
+        facts = ct.sheet_of(study.machine).facts
         lines += ["", render.facts_text(facts, study.mechanism.display)]
     lines += [_("note: {note}").format(note=note) for note in study.notes]
     return "\n".join(lines)
