@@ -43,6 +43,7 @@ from .kinematics.several_inputs.coefficients import kinematic_coefficients as ki
 from .kinematics.several_inputs.limits import limits as limits
 from .kinematics.several_inputs.limits import Limits as Limits
 from .kinematics.several_inputs.region import reachable_region as reachable_region
+from .kinematics.several_inputs.region import region_results as region_results
 from .analysis.rotatability.rotatability import rotatability as rotatability
 from .analysis.rotatability.rotatability import Rotatability as Rotatability
 from .analysis.redesign.repair import repair as repair
@@ -55,21 +56,17 @@ from .analysis.graphic.checks import GraphicCheck as GraphicCheck
 from .analysis.position_plan import plan_of_positions as plan_of_positions
 from .analysis.position_plan import PositionPlan as PositionPlan
 from .analysis.transmission import transmission_angles as transmission_angles
+from .analysis.transmission import transmission_results as transmission_results
 from .study.graphic import graphic_rows as graphic_rows
 from .study.graphic import graphic_about as graphic_about
 from .study.graphic import graphic_steps as graphic_steps
 from .study.graphic import graphic_csv as graphic_csv
 from .study.positions import plan_rows as plan_rows
-from .study.transmission import transmission_rows as transmission_rows
-from .study.transmission import transmission_csv as transmission_csv
 from .study.running import study as study
 from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
 from .study.limiting import repair_of_range as repair_of_range
 from .study.running import with_range as with_range
-from .study.limiting import limits_rows as limits_rows
-from .study.limiting import limits_text as limits_text
-from .study.regions import region_rows as region_rows
 from .study.turning import rotatability_rows as rotatability_rows
 from .study.turning import rotatability_text as rotatability_text
 from .study.repairing import repair_rows as repair_rows
@@ -222,9 +219,8 @@ from .study.centres import curvature_rows as curvature_rows
 
 # Integration, variants, words
 from .equations.integration import integrate as integrate
-from .study.integrating import closed_motion as closed_motion
-from .study.integrating import integration_rows as integration_rows
-from .study.integrating import integration_failure as integration_failure
+from .equations.integration import integration_results as integration_results
+from .equations.integration import closed_motion as closed_motion
 from .study.variants.computing import variants as variants
 from .study.variants.computing import variant_rows as variant_rows
 from .study.variants.computing import variants_summary as variants_summary
@@ -261,21 +257,16 @@ from .present import workbook_of_csv as workbook_of_csv
 from .present import spell_with_comma as spell_with_comma
 from .present import TableSpelling as TableSpelling
 from .present import write_coefficients_csv as write_coefficients_csv
-from .present import write_region_csv as write_region_csv
 from .present import write_centres_csv as write_centres_csv
 from .present import write_centrodes_csv as write_centrodes_csv
 from .present import centres_figure as centres_figure
 from .present import centrodes_figure as centrodes_figure
 from .present import curvature_figure as curvature_figure
 from .present import darkened as darkened
-from .present import write_integration_csv as write_integration_csv
-from .present import write_variants as write_variants
+from .report.variants.folders import write_variants as write_variants
 from .present import motion_figures as motion_figures
-from .present import integration_figures as integration_figures
-from .present import region_figure as region_figure
 from .present import diagram_figures as diagram_figures
 from .present import plan_figure as plan_figure
-from .present import transmission_figure as transmission_figure
 from .present import save_figures as save_figures
 
 # Reports

@@ -278,7 +278,7 @@ def test_only_masses_or_only_loads(centrode: Centrode, folder: Path) -> None:
             ("--samples", "0", "--out", "f"),
             "compressor.toml, samples: 0 samples were asked for; ask for 1 to 1000000",
         ),
-        (("--out", "compressor.toml"), "compressor.toml: compressor.toml is not a folder"),
+        (("--out", "compressor.toml"), "Error: compressor.toml is not a folder"),
     ],
 )
 def test_wrong_questions(

@@ -112,7 +112,7 @@ REFUSED = {
     ("limits", "arm.toml", "--drive", "OA", "--hold", "EC=1", "--hold", "EC=2"): "EC is given twice",
     ("limits", "arm.toml", "--drive", "OA", "--hold", "EC=1 m"): "hold EC: expected an angle",
     ("limits", "arm.toml", "--drive", "OA", "--hold", "EC=0", "--about", "180 deg"): "does not close there",
-    ("limits", "arm.toml", "--drive", "OA", "--out", "limits.pdf"): '"pdf" is not a kind of file',
+    ("limits", "arm.toml", "--drive", "OA", "--out", "limits.pdf"): '".pdf" is not a kind of file',
     ("region", "arm.toml", "--range", "OA=1"): "expected NAME=FIRST:LAST",
     ("region", "arm.toml", "--range", "XY=0:1"): "XY is not one of the two drives",
     ("region", "arm.toml", "--drive", "OA"): "a region needs two different drives; 1 are given",

@@ -13,8 +13,7 @@ import centrode as ct
 
 def drawn(name: str, steps: int = 40) -> tuple[ct.Mechanism, dict[str, Figure]]:
     mechanism = ct.example(name)
-    integration = ct.integrate(mechanism, steps=steps)
-    return mechanism, ct.integration_figures(mechanism, integration, ct.closed_motion(mechanism, integration))
+    return mechanism, ct.figures(ct.integration_results(mechanism, steps=steps))
 
 
 def texts(figure: Figure, number: int = 0) -> list[str]:

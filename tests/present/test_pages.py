@@ -150,8 +150,9 @@ def test_symbols_are_typeset() -> None:
 
 def test_transmission_angles_are_drawn_in_degrees() -> None:
     mechanism = ct.four_bar(crank=1, coupler=3.5, rocker=3, ground=4)
-    angles = ct.transmission_angles(mechanism, samples=37)
-    upper, lower = ct.transmission_figure(mechanism, angles).axes
+    results = ct.transmission_results(mechanism, samples=37)
+    angles = results.angles
+    upper, lower = ct.figures(results)["transmission"].axes
     (curve,) = [line for line in upper.lines if line.get_label() == "coupler-rocker"]
     assert np.allclose(curve.get_ydata(), np.degrees(angles.transmission_angle.values[:, 0]))
     assert "°" in lower.get_ylabel()

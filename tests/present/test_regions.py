@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,9 @@ DEGREES = {"display": {"angle": "deg", "length": "mm"}}
 
 
 def drawn(mechanism: ct.Mechanism, samples: int = 61, **more: Any) -> tuple[Any, Figure]:
-    region = ct.reachable_region(mechanism, samples=samples, **more)
-    return region, ct.region_figure(mechanism, region, ct.motion(mechanism, 2000, stop=6.0))
+    results = ct.region_results(mechanism, samples=samples, **more)
+    shown = replace(results, motion=ct.motion(mechanism, 2000, stop=6.0))
+    return results.region, ct.figures(shown)["region"]
 
 
 def border_of(figure: Figure) -> Any:
@@ -79,6 +81,5 @@ def test_what_is_cut_off_is_told_from_what_is_reached() -> None:
 
 def test_nothing_locks() -> None:
     arm = ct.example("two-link-arm")
-    region = ct.reachable_region(arm, samples=5)
-    figure = ct.region_figure(arm, region)
+    figure = ct.figures(replace(ct.region_results(arm, samples=5), motion=None))["region"]
     assert texts(figure) == ["reached", "initial position"]

@@ -37,8 +37,7 @@ def reduction(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
 
 
 def integration(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    found = ct.integrate(mechanism, steps=40)
-    return ct.integration_figures(mechanism, found, ct.closed_motion(mechanism, found))
+    return ct.figures(ct.integration_results(mechanism, steps=40))
 
 
 def centres(mechanism: ct.Mechanism) -> Mapping[str, Figure]:

@@ -236,6 +236,25 @@ def transmission_angles(
     return xr.Dataset(variables, coords, attrs={"title": mechanism.title})
 
 
+@dataclass(frozen=True)
+class TransmissionResults:
+    """Transmission and pressure angles of a mechanism.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    angles : the dataset of `transmission_angles`
+    """
+
+    mechanism: Mechanism
+    angles: xr.Dataset
+
+
+def transmission_results(mechanism: Mechanism, samples: int | None = None) -> TransmissionResults:
+    """Transmission and pressure angles over the motion, with the mechanism; raises as `transmission_angles` does."""
+    return TransmissionResults(mechanism, transmission_angles(mechanism, samples))
+
+
 def _angle(data: xr.Dataset, numbers: Dimensions, group: Group) -> Array | None:
     """Transmission angle of a group at every sample; None where it has none."""
     if isinstance(group, Aim) and group.contact is None:

@@ -20,7 +20,6 @@ import click
 
 import centrode as ct
 from centrode.cli import output
-from centrode.cli.angles import angles
 from centrode.cli.animate import animate
 from centrode.cli.cam import cam
 from centrode.cli.centres import centres
@@ -32,11 +31,8 @@ from centrode.cli.draw import draw
 from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
-from centrode.cli.integrate import integrate
-from centrode.cli.limits import limits
 from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
-from centrode.cli.region import region
 from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
@@ -48,8 +44,9 @@ from centrode.cli.variants import variants
 from centrode.errors import CentrodeError
 from centrode.files.inputs import guarded
 from centrode.locale import _, choose_language_of_process, mark
+from centrode.topics import order
+from centrode.topics.order import in_order
 from centrode.topics.registry import TOPICS
-from centrode.topics.topic import placed
 
 OWN: tuple[click.Command, ...] = (
     run,
@@ -58,18 +55,14 @@ OWN: tuple[click.Command, ...] = (
     check,
     describe,
     equations,
-    integrate,
     rotatability,
     polygons,
     variants,
-    limits,
-    region,
     cam,
     centres,
     centrodes,
     diagrams,
     plan,
-    angles,
     sweep,
     draw,
     export,
@@ -77,9 +70,16 @@ OWN: tuple[click.Command, ...] = (
     schema,
 )
 COMMANDS: tuple[click.Command, ...] = tuple(
-    placed(
-        {str(command.name): command for command in OWN},
-        ((topic.name, topic.after, topic_command(topic)) for topic in TOPICS if topic.has_command),
+    in_order(
+        {
+            **{str(command.name): command for command in OWN},
+            **{
+                topic.name: topic_command(topic, topic.command)
+                for topic in TOPICS
+                if topic.command is not None
+            },
+        },
+        order.COMMANDS,
     ).values()
 )
 """Those of the topics among the others, in the order that `centrode --help` lists them."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any, assert_never, cast
 
 import click
 
@@ -17,6 +17,7 @@ from centrode.cli.arguments import (
     mechanism_argument,
     no_figures_option,
     range_option,
+    results_option,
     samples_option,
     start_option,
     stop_option,
@@ -24,139 +25,247 @@ from centrode.cli.arguments import (
 )
 from centrode.cli.expected import announce_size, announce_turns
 from centrode.cli.progress import Progress
-from centrode.cli.tables import asked_spelling, tables_options
-from centrode.errors import InputError
-from centrode.locale import _, mark
-from centrode.topics.topic import Choice, Flag, InstantsOption, MotionRange, Option, Topic, Written
+from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
+from centrode.errors import InputError, MotionError
+from centrode.locale import _, mark, speaking
+from centrode.topics.topic import Choice, Command, Flag, Given, InstantsOption, MotionRange, Option
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Display, Mechanism
     from centrode.sheets.sheet import Sheet
+    from centrode.topics.topic import Topic
+
+file_option = click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    metavar=mark("FILE"),
+    help=mark("Also write FILE.json or FILE.csv, by the ending of its name."),
+)
+force_option = click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
 
 
-def topic_command(topic: Topic) -> click.Command:
+def topic_command(topic: Topic, command: Command) -> click.Command:
     """The command of a topic: `centrode TOPIC MECHANISM [options] [--out DIR]`."""
 
-    @mechanism_argument
-    @written_option
-    @samples_option
-    @no_figures_option
-    @tables_options
-    def command(
-        mechanism: str,
-        out: Path | None,
-        samples: int | None,
-        no_figures: bool,
-        dark: bool = False,
-        **options: Any,
-    ) -> None:
+    def run(mechanism: str, out: Path | None, samples: int | None = None, **given: Any) -> None:
         description = ct.load(mechanism)
-        if topic.extent is None:
+        if command.samples and command.extent is None:
             announce_size(description, samples)
-        description = _in_range(description, options)
-        _check_instants(topic, description, samples, options)
-        if topic.arguments is not None:
-            options = topic.arguments(options)
-        names: list[str] = []
-        if out is None:
-            with about(mechanism), Progress() as progress:
-                options |= {topic.complete: False} if topic.complete else {}
-                result = _result(topic, description, samples, options, progress)
-                sheet = topic.view(result)
+        description = _in_range(description, given)
+        _check_instants(command, description, samples, given)
+        written = {name: given.pop(name, False) for name in ("force", "no_figures", "dark", "animate")}
+        arguments = _arguments(command, description, given)
+        if command.samples:
+            arguments["samples"] = samples
+        if command.kinds:
+            result, sheet, files = _beside_file(
+                topic, mechanism, description, arguments, out, written["force"]
+            )
         else:
-            with about(mechanism), output.output_folder(out) as draft, Progress() as progress:
-                progress.say(_("solving"))
-                result = _result(topic, description, samples, options, progress)
-                sheet = topic.view(result)
-                write_sheet(sheet, draft, description.display, progress, figures=not no_figures, dark=dark)
-                if topic.summary:
-                    render.write_summary(sheet.scalars, draft / "summary.json")
-                names = output.finished(draft)
+            folder = output.folder_of(out, mechanism, command.folder) if command.folder else out
+            result, sheet, files = _beside_folder(topic, mechanism, description, arguments, folder, written)
         click.echo(_(description.title) or mechanism)
         click.echo()
         click.echo(render.sheet_text(sheet, description.display))
-        if out is not None:
-            click.echo("\n" + output.files_in(out, names))
-        if topic.ending is not None:
-            with about(mechanism):
-                topic.ending(result)
+        if files:
+            click.echo("\n" + files)
+        with about(mechanism):
+            _end(command, result, sheet, description.display)
 
-    made = click.command(topic.name, help=topic.help)(dark_option(command) if topic.dark else command)
-    made.params[1:1] = [parameter for option in topic.options for parameter in _parameters(option)]
+    made = click.command(topic.name, help=command.help)(run)
+    made.params = list(_parameters(command))
     return made
 
 
-def _parameters(option: Option) -> Iterator[click.Parameter]:
+def _parameters(command: Command) -> Iterator[click.Parameter]:
+    """The argument and the options of a command, in the order of `--help`."""
+    yield from _made_by([mechanism_argument])
+    for option in command.options:
+        yield from _of_option(option)
+    if command.kinds:
+        yield from _made_by(
+            [file_option, *([tables_options] if "csv" in command.kinds else []), force_option]
+        )
+        return
+    decorators = [results_option if command.folder else written_option]
+    decorators += [samples_option] if command.samples else []
+    if command.animation is not None:
+        decorators.append(click.option("--animate", is_flag=True, help=command.animation_help))
+    decorators += [no_figures_option] if command.pictures else []
+    decorators += [dark_option] if command.dark else []
+    yield from _made_by([*decorators, tables_options])
+
+
+def _of_option(option: Option) -> Iterator[click.Parameter]:
     """An option of a topic as options of its command."""
     match option:
-        case Choice(name, words, text, has_rule):
-            default = words[0] if has_rule else None
-            yield click.Option([_option(name)], type=click.Choice(words), default=default, help=text)
-        case Written(name, metavar, text, kind, several):
-            yield click.Option([_option(name), name], type=kind, metavar=metavar, help=text, multiple=several)
+        case Choice(name, words, text, has_default):
+            default = words[0] if has_default else None
+            yield click.Option([_spelled(name)], type=click.Choice(words), default=default, help=text)
+        case Given(name, metavar, text, kind, several, required):
+            yield click.Option(
+                [_spelled(name), name],
+                type=kind,
+                metavar=metavar,
+                help=text,
+                multiple=several,
+                required=required,
+            )
         case Flag(name, text):
-            yield click.Option([_option(name)], is_flag=True, help=text)
+            yield click.Option([_spelled(name)], is_flag=True, help=text)
         case InstantsOption(text):
             yield click.Option(["--at"], multiple=True, metavar=mark("VALUE"), help=text)
         case MotionRange():
-            yield from _range_options.params
+            yield from _made_by([start_option, stop_option, range_option])
         case _:
             assert_never(option)
 
 
-@click.command()
-@start_option
-@stop_option
-@range_option
-def _range_options(**_options: str) -> None:
-    """Holds the options of a range."""
+def _made_by(decorators: list[Any]) -> list[click.Parameter]:
+    """The parameters that decorators of click give a command."""
+
+    def nothing() -> None:
+        """Carries the parameters."""
+
+    for decorate in reversed(decorators):
+        decorate(nothing)
+    return list(reversed(cast("Any", nothing).__click_params__))
 
 
-def _option(name: str) -> str:
+def _spelled(name: str) -> str:
     return "--" + name.replace("_", "-")
 
 
-def _in_range(mechanism: Mechanism, options: dict[str, Any]) -> Mechanism:
+def _in_range(mechanism: Mechanism, given: dict[str, Any]) -> Mechanism:
     """The mechanism in the range of `--range`; `--from` and `--to` are read into SI."""
-    mechanism = ct.with_range(mechanism, options.pop("ranged", None))
+    mechanism = ct.with_range(mechanism, given.pop("ranged", None))
     for name, where in (("start", "--from"), ("stop", "--to")):
-        if options.get(name) is not None:
-            options[name] = ct.range_value(mechanism, options[name], where)
+        if isinstance(given.get(name), str):
+            given[name] = ct.range_value(mechanism, given[name], where)
     return mechanism
 
 
-def _check_instants(topic: Topic, mechanism: Mechanism, samples: int | None, options: dict[str, Any]) -> None:
+def _check_instants(
+    command: Command, mechanism: Mechanism, samples: int | None, given: dict[str, Any]
+) -> None:
     """Refuse instants that cannot be read, too many of them to print, and instants beside a range."""
-    places = options.get("at") or ()
-    most = next((option.most for option in topic.options if isinstance(option, InstantsOption)), 0)
-    if len(places) > most:
+    option = next((option for option in command.options if isinstance(option, InstantsOption)), None)
+    if option is None:
+        return
+    places = given["at"]
+    if len(places) > option.most:
         raise InputError(
             "--at",
             _("{count} instants were asked for").format(count=len(places)),
-            _("ask for at most {most}").format(most=most),
+            _("ask for at most {most}").format(most=option.most),
         )
-    given = {"--samples": samples, "--from": options.get("start"), "--to": options.get("stop")}
-    beside = next((name for name, value in given.items() if places and value is not None), None)
-    if beside is not None:
-        raise InputError(beside, _("instants are asked for with --at"), _("take one of the two out"))
+    beside = {"--samples": samples, "--from": given.get("start"), "--to": given.get("stop")}
+    other = next((name for name, value in beside.items() if places and value is not None), None)
+    if other is not None:
+        raise InputError(other, _("instants are asked for with --at"), _("take one of the two out"))
     for text in places:
         ct.range_value(mechanism, text, "--at")
 
 
-def _result(
-    topic: Topic, mechanism: Mechanism, samples: int | None, options: dict[str, Any], progress: Progress
-) -> Any:
+def _arguments(command: Command, mechanism: Mechanism, given: dict[str, Any]) -> dict[str, Any]:
+    """Arguments of the computation; those that the user left out are left to it."""
+    if command.arguments is not None:
+        return dict(command.arguments(given))
+    arguments = {name: value for name, value in given.items() if value is not None and value != ()}
+    for option in command.options:
+        if isinstance(option, Given) and option.name in arguments:
+            value = arguments.pop(option.name)
+            if option.read is not None:
+                value = option.read(mechanism, value, _spelled(option.name))
+            arguments[option.parameter or option.name] = value
+    return arguments
+
+
+def _result(topic: Topic, mechanism: Mechanism, arguments: dict[str, Any], progress: Progress) -> Any:
     """What a topic computes; long work is announced before."""
-    if topic.needs is not None:
-        topic.needs(mechanism)
-    if topic.extent is not None:
-        count, turns = topic.extent(mechanism, samples, **options)
+    command = cast("Command", topic.command)
+    if command.needs is not None:
+        command.needs(mechanism, **{name: arguments[name] for name in arguments if name != "samples"})
+    if command.extent is not None:
+        count, turns = command.extent(mechanism, **arguments)
         announce_size(mechanism, count)
         announce_turns(turns)
-    if topic.progress:
-        text = _(topic.progress)
-        options = options | {"progress": lambda share: progress.say(text, round(100 * share), 100)}
-    return topic.compute(mechanism, samples=samples, **options)
+    if command.progress:
+        text = _(command.progress)
+        arguments = arguments | {"progress": lambda share: progress.say(text, round(100 * share), 100)}
+    return topic.compute(mechanism, **arguments)
+
+
+def _beside_folder(
+    topic: Topic,
+    name: str,
+    mechanism: Mechanism,
+    arguments: dict[str, Any],
+    folder: Path | None,
+    written: dict[str, bool],
+) -> tuple[Any, Sheet, str]:
+    """Result and sheet of a topic, written into a folder where one is named; and what was written."""
+    command = cast("Command", topic.command)
+    if folder is None:
+        with about(name), Progress() as progress:
+            if command.complete:
+                arguments = arguments | {command.complete: False}
+            result = _result(topic, mechanism, arguments, progress)
+            return result, topic.view(result), ""
+    # a folder that cannot be written is refused before anything is computed
+    with about(name), output.output_folder(folder) as draft, Progress() as progress:
+        progress.say(_("solving"))
+        result = _result(topic, mechanism, arguments, progress)
+        sheet = topic.view(result)
+        figures = command.pictures and not written["no_figures"]
+        write_sheet(sheet, draft, mechanism.display, progress, figures=figures, dark=written["dark"])
+        if command.summary and sheet.scalars:
+            render.write_summary(sheet.scalars, draft / "summary.json")
+        if command.animation is not None and written["animate"]:
+            animation = f"{topic.name}.gif"
+            progress.say(_("drawing {name}").format(name=animation))
+            command.animation(result, draft / animation, written["dark"])
+        names = output.finished(draft)
+    return result, sheet, output.files_in(folder, names)
+
+
+def _beside_file(
+    topic: Topic,
+    name: str,
+    mechanism: Mechanism,
+    arguments: dict[str, Any],
+    out: Path | None,
+    force: bool,
+) -> tuple[Any, Sheet, str]:
+    """Result and sheet of a topic, written as one file where one is named; and what was written."""
+    need_table(out)
+    with about(name), Progress() as progress:
+        kind = None if out is None else _kind(out, cast("Command", topic.command).kinds)
+        result = _result(topic, mechanism, arguments, progress)
+        sheet = topic.view(result)
+        if out is None:
+            return result, sheet, ""
+        with speaking("en"):  # what files hold is English
+            english = topic.view(_result(topic, mechanism, arguments, progress))
+    with output.output_table(out, force=force) as draft:
+        if kind == "json":
+            render.write_record(english.record, draft)
+        else:
+            (table,) = english.tables.values()
+            render.write_table(table, draft, mechanism.display)
+    return result, sheet, output.wrote(table_files(out))
+
+
+def _kind(out: Path, known: tuple[str, ...]) -> str:
+    """Kind of a file by the end of its name; InputError for one that the topic does not write."""
+    kind = out.suffix[1:].lower()
+    if kind not in known:
+        raise InputError(
+            "--out",
+            _("{kind} is not a kind of file for this").format(kind=f'"{out.suffix}"'),
+            _("use one of {known}").format(known=", ".join(f".{one}" for one in known)),
+        )
+    return kind
 
 
 def write_sheet(
@@ -168,3 +277,14 @@ def write_sheet(
     if figures and sheet.pictures:
         progress.say(_("drawing"))
         render.write_pictures(sheet.pictures, folder, display, progress.say, dark=dark)
+
+
+def _end(command: Command, result: Any, sheet: Sheet, display: Display) -> None:
+    """Raise MotionError where the result falls short of what the command computes: it has been shown before."""
+    if sheet.failure is not None:
+        what, repair = (
+            render.plain_text(text, display) for text in (sheet.failure.what, sheet.failure.repair)
+        )
+        raise MotionError("", what, repair)
+    if command.ending is not None:
+        command.ending(result)

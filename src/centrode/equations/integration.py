@@ -14,6 +14,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from centrode.equations.chain_assembly import assemble_chains
+from centrode.equations.derivation import equations
 from centrode.equations.linear import LinearSystem, Place, Unknown, system_of
 from centrode.equations.symbols import Letter, Sum
 from centrode.errors import InputError, Status
@@ -23,6 +24,7 @@ from centrode.kinematics.motion import (
     dataset_of,
     judgements_of,
     labels_of,
+    motion,
     vocabulary_variable,
 )
 from centrode.kinematics.path import DrivenBy
@@ -617,6 +619,52 @@ def integrate(
     if method == "adaptive":
         told["tolerance"] = tolerance
     return _dataset(prepared, solved, form, scaled, found, told)
+
+
+@dataclass(frozen=True)
+class IntegrationResults:
+    """An integrated motion beside the one in closed form.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    integration : the dataset of `integrate`
+    closed : the motion in closed form over the same range, whose curves stand under the integrated ones
+    """
+
+    mechanism: Mechanism
+    integration: xr.Dataset
+    closed: xr.Dataset
+
+
+def integration_results(
+    mechanism: Mechanism,
+    method: str = "rk4",
+    steps: int = 100,
+    tolerance: float | None = None,
+    stop: float | None = None,
+) -> IntegrationResults:
+    """The motion by integration, with the mechanism and the motion in closed form.
+
+    Arguments and failures are those of `integrate`; InputError also for a tolerance of fixed steps.
+    """
+    if tolerance is not None and method == "rk4":
+        what = _("fixed steps have no tolerance")
+        raise InputError("--tolerance", what, _("add --method adaptive, or ask for more --steps"))
+    integration = integrate(mechanism, method, steps, FINE if tolerance is None else tolerance, stop)
+    return IntegrationResults(mechanism, integration, closed_motion(mechanism, integration))
+
+
+def closed_motion(mechanism: Mechanism, integration: xr.Dataset, samples: int = 361) -> xr.Dataset:
+    """The motion in closed form over the range of an integrated one, for curves to be compared with."""
+    instants = mechanism.motion_parameter.instants(integration)
+    first, last = (float(instants[end]) for end in (0, -1))
+    return motion(mechanism, samples, start=first, stop=last)
+
+
+def is_integrated(mechanism: Mechanism) -> bool:
+    """Whether a mechanism moves in the plane and has unknowns that its equations give."""
+    return mechanism.space == "plane" and bool(equations(mechanism).unknowns)
 
 
 def _check(method: object, steps: object, tolerance: object) -> None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from centrode.locale import _
 from centrode.present.abscissa import CHANGE_POINT, LIMIT
@@ -17,6 +18,7 @@ from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.dark import darkened
 from centrode.present.saving import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
+from centrode.render.areas import area_figure
 from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.panel_grids import grid_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
@@ -24,11 +26,13 @@ from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.plots import (
     Abscissa,
+    AreaDiagram,
     Curve,
     CurvePanel,
     CurveRole,
     Diagram,
     EventKind,
+    Overlay,
     PanelGrid,
     Plot,
     Trace,
@@ -66,7 +70,10 @@ def write_pictures(
     *,
     dark: bool = False,
 ) -> None:
-    """Write the pictures of a sheet as PNG and SVG; `say` hears which is drawn, its number and how many there are."""
+    """Write the pictures of a sheet as PNG and SVG, `dark` with light lines on a dark ground.
+
+    `say` hears which is drawn, its number and how many there are.
+    """
     drawn = figures_of(pictures, display)
     for number, (name, figure) in enumerate(drawn.items(), start=1):
         say(_("drawing {name}").format(name=name), number, len(drawn))
@@ -91,6 +98,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return bar_figure(picture, display)
             case LinkageWithDiscs():
                 return linkage_figure(picture, display)
+            case AreaDiagram():
+                return area_figure(picture, display)
             case _:
                 assert_never(picture)
 
@@ -99,7 +108,60 @@ def _plot(plot: Plot, display: Display) -> Figure:
     spelling = FigureSpelling(display)
     rows = [[_panel(panel, spelling) for panel in row] for row in plot.rows]
     title, mechanism = spelling.text(plot.title), PlainSpelling(display).text(plot.mechanism)
-    return sheet(title, mechanism, rows, _abscissa(plot.abscissa, spelling))
+    abscissa = _abscissa(plot.abscissa, spelling)
+    if plot.sizes_above is not None:
+        figure = _sizes([panel for row in rows for panel in row], abscissa, plot.sizes_above)
+        write_title(figure, title, mechanism)
+        return figure
+    figure = sheet(title, mechanism, rows, abscissa)
+    if plot.overlay is not None:
+        _lay_over(figure, plot.overlay, spelling)
+    return figure
+
+
+def _lay_over(figure: Figure, overlay: Overlay, spelling: FigureSpelling) -> None:
+    """Draw the curves of a second route over those of a figure, with one entry in its legends."""
+    abscissa = _abscissa(overlay.abscissa, spelling)
+    look: dict[str, Any] = {"color": INK, "linestyle": (0, (2.5, 2.5)), "linewidth": 0.9}
+    panels = [_panel(panel, spelling) for row in overlay.rows for panel in row]
+    for axes, panel in zip(figure.axes, panels, strict=True):
+        for curve in panel.curves.values():
+            axes.plot(abscissa.values, curve[abscissa.order], zorder=3, **look)
+        legend = axes.get_legend()
+        if legend is not None:
+            entries: list[tuple[Artist, str]] = [
+                (handle, text.get_text())
+                for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True)
+                if handle is not None
+            ]
+            name = PlainSpelling(spelling.display).text(overlay.name)
+            write_legend(axes, [*entries, (Line2D([], [], **look), name)])
+
+
+def _sizes(panels: Sequence[Panel], abscissa: DrawnAbscissa, least: float) -> Figure:
+    """Panels below each other with the sizes of their curves on logarithmic scales."""
+    figure = Figure(figsize=(8.2, 3.0 * len(panels)), layout="constrained")
+    grid = figure.subplots(len(panels), 1, sharex=True, squeeze=False)
+    for axes, panel in zip(grid.ravel(), panels, strict=True):
+        handles: list[tuple[Artist, str]] = []
+        for name, curve in panel.curves.items():
+            size = np.abs(curve[abscissa.order])
+            pen = panel.pens[name]
+            (line,) = axes.plot(
+                abscissa.values,
+                np.where(size > least, size, np.nan),  # the scale would show nothing but rounding
+                color=pen.colour,
+                linestyle=pen.dashes,
+                label=name,
+            )
+            handles.append((line, name))
+        axes.set_yscale("log")
+        if abscissa.values[0] < abscissa.values[-1]:
+            axes.set_xlim(float(abscissa.values[0]), float(abscissa.values[-1]))
+        axes.set_ylabel(panel.label)
+        write_legend(axes, handles)
+    grid[-1, 0].set_xlabel(abscissa.label)
+    return figure
 
 
 def _abscissa(abscissa: Abscissa, spelling: FigureSpelling) -> DrawnAbscissa:

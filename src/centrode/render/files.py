@@ -6,7 +6,7 @@ import csv
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -44,6 +44,12 @@ def write_summary(scalars: Mapping[str, Scalar], path: Path) -> None:
     path.write_text(text + "\n", encoding="utf-8")
 
 
+def write_record(record: Mapping[str, Any], path: Path) -> None:
+    """Write a result as JSON, names in their own letters."""
+    text = json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8", newline="\n")
+
+
 def write_table(table: Table, path: Path, display: Display, spelling: TableSpelling = PLAIN) -> None:
     """Write a table as CSV in UTF-8, one line end everywhere; numbers read back bit for bit, one that is NaN is empty.
 
@@ -66,8 +72,13 @@ def write_table(table: Table, path: Path, display: Display, spelling: TableSpell
 
 def header(column: Column, display: Display) -> str:
     """Name of a column with the unit it is shown in: "velocity_B_x [mm/s]"."""
-    unit = shown_as(column.unit, None if column.unit_fixed else display)[1]
+    unit = _shown(column, display)[1]
     return f"{column.name} [{unit}]" if unit not in ("", "1") else column.name
+
+
+def _shown(column: Column, display: Display | None) -> tuple[float, str]:
+    """Factor and unit in which a column appears."""
+    return shown_as(column.unit, None if column.unit_fixed else display)
 
 
 def _cells(column: Column, words: PlainSpelling, rows: slice = slice(None)) -> list[float] | list[str]:
@@ -75,7 +86,7 @@ def _cells(column: Column, words: PlainSpelling, rows: slice = slice(None)) -> l
     values = column.values[rows]
     if not isinstance(values, np.ndarray):
         return [words.text(text) for text in values]
-    factor = shown_as(column.unit, None if column.unit_fixed else words.display)[0]
+    factor = _shown(column, words.display)[0]
     numbers: list[float] = (values if factor == 1.0 else values * factor).tolist()
     return numbers
 

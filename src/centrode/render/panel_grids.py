@@ -15,7 +15,7 @@ from centrode.present.curves import say_nothing_known, write_title
 from centrode.present.labels import label_places
 from centrode.present.style import INK, MUTED, PALETTE, Decimals
 from centrode.render.spelling import DrawingSpelling, FigureSpelling, PlainSpelling
-from centrode.sheets.plots import Hodograph, PanelGrid, SectorRings
+from centrode.sheets.plots import HodographPanel, PanelGrid, SectorRings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,7 +46,7 @@ def grid_figure(grid: PanelGrid, display: Display) -> Figure:
     places = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, panel in zip(places, grid.panels, strict=False):
         match panel:
-            case Hodograph():
+            case HodographPanel():
                 _hodograph(axes, panel, display)
             case SectorRings():
                 _rings(axes, panel, display)
@@ -59,7 +59,7 @@ def grid_figure(grid: PanelGrid, display: Display) -> Figure:
     return figure
 
 
-def _hodograph(axes: Axes, hodograph: Hodograph, display: Display) -> None:
+def _hodograph(axes: Axes, hodograph: HodographPanel, display: Display) -> None:
     """The curve with its origin and the values along it."""
     spelling, ends = FigureSpelling(display), hodograph.ends
     across, x_label, _unit = spelling.label(hodograph.x)

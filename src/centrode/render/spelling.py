@@ -187,4 +187,6 @@ class FigureSpelling(PlainSpelling):
         factor, unit = self.shown_unit(Number(0.0, label.unit, unit_fixed=label.unit_fixed))
         symbol = self.symbol(label.symbol) if label.symbol is not None else ""
         text = " ".join(filter(None, (self.text(label.text), symbol)))
-        return factor, f"{text}, {typeset_unit(unit)}" if unit not in ("", "1") else text, unit
+        # what is in degrees for every reader has their sign, as drawings have it
+        shown = "°" if label.unit == "deg" else typeset_unit(unit)
+        return factor, f"{text}, {shown}" if unit not in ("", "1") else text, unit

@@ -15,6 +15,7 @@ from centrode.sheets.texts import Number
 if TYPE_CHECKING:
     from centrode.model.settings import Display
     from centrode.sheets.sheet import Column, Fact, Sheet
+    from centrode.sheets.texts import Text
 
 
 def facts_text(facts: Iterable[Fact], display: Display) -> str:
@@ -28,15 +29,21 @@ def fact_rows(facts: Iterable[Fact], display: Display) -> list[tuple[str, str]]:
     return [(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts]
 
 
+def plain_text(text: Text, display: Display) -> str:
+    """A text as a terminal prints it."""
+    return PlainSpelling(display).text(text)
+
+
 def sheet_text(sheet: Sheet, display: Display) -> str:
     """What a terminal prints of a sheet: its facts, and tables, paragraphs and items below them."""
     spelling, text = PlainSpelling(display), facts_text(sheet.facts, display)
     for block in sheet.printed:
+        apart = "\n\n" if text else ""
         match block:
             case Table():
-                text += "\n\n" + table_text(block, spelling)
+                text += apart + table_text(block, spelling)
             case Paragraph(sentences):
-                text += "\n\n" + spelling.text(sentences)
+                text += apart + spelling.text(sentences)
             case Items(texts):
                 text += "".join(f"\n  {spelling.text(item)}" for item in texts)
             case _:

@@ -21,12 +21,13 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
     """
-    if study.is_cam or not topic.concerns(study.mechanism):
+    if study.is_cam or (topic.concerns is not None and not topic.concerns(study.mechanism)):
         return None
     try:
         sheet = _sheet(topic, study)
     except (InputError, MotionError, NotComputedYet) as reason:
-        may_be = topic.may_be_incomplete if isinstance(reason, InputError) else topic.may_be_left_out
+        document = topic.document
+        may_be = document.may_be_incomplete if isinstance(reason, InputError) else document.may_be_left_out
         if study.wishes.chapters is not None or not may_be:
             raise
         return left_out(chapter.name, _(chapter.title), reason)
@@ -39,13 +40,14 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
     """The sheet of a topic at the instants of the report, computed once."""
 
     def compute() -> Sheet:
-        if not topic.has_instants:
-            return cast("Sheet", topic.view(topic.compute(study.mechanism)))
-        instants = tuple(moment.at for moment in moments_of(study))
-        done = None if topic.add_instants is None else study.study.results.get(topic.name)
-        if topic.add_instants is None or done is None:
-            return cast("Sheet", topic.view(topic.compute(study.mechanism, instants=instants)))
-        return cast("Sheet", topic.view(topic.add_instants(done, instants)))
+        document = topic.document
+        arguments = dict(document.arguments)
+        if document.instants:
+            arguments["instants"] = tuple(moment.at for moment in moments_of(study))
+        done = None if document.add_instants is None else study.study.results.get(topic.name)
+        if document.add_instants is not None and done is not None:
+            return cast("Sheet", topic.view(document.add_instants(done, **arguments)))
+        return cast("Sheet", topic.view(topic.compute(study.mechanism, **arguments)))
 
     return study.once(("sheet", topic.name), compute)
 

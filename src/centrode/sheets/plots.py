@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -118,6 +117,22 @@ class CurvePanel:
 
 
 @dataclass(frozen=True)
+class Overlay:
+    """Curves of a second route, dashed over those of a plot.
+
+    Attributes
+    ----------
+    name : of all of them, in the legend
+    abscissa : of their own samples
+    rows : panels with the same curves as those of the plot
+    """
+
+    name: Text
+    abscissa: Abscissa
+    rows: tuple[tuple[CurvePanel, ...], ...]
+
+
+@dataclass(frozen=True)
 class Plot:
     """Panels in rows and columns over one abscissa.
 
@@ -125,12 +140,16 @@ class Plot:
     ----------
     title : what it shows
     mechanism : of which mechanism
+    overlay : what the curves are compared with
+    sizes_above : of each curve its size where that is greater, on logarithmic scales; plain scales if None
     """
 
     title: Sentence
     mechanism: Title
     abscissa: Abscissa
     rows: tuple[tuple[CurvePanel, ...], ...]
+    overlay: Overlay | None = None
+    sizes_above: float | None = None
 
 
 class TraceKind(Enum):
@@ -181,7 +200,7 @@ class Diagram:
 
 
 @dataclass(frozen=True)
-class Hodograph:
+class HodographPanel:
     """The curve that the end of a vector describes, from an origin that is marked.
 
     Attributes
@@ -227,7 +246,7 @@ class PanelGrid:
 
     title: Sentence
     mechanism: Title
-    panels: tuple[Hodograph | SectorRings, ...]
+    panels: tuple[HodographPanel | SectorRings, ...]
 
 
 @dataclass(frozen=True)
@@ -279,4 +298,67 @@ class VectorPage:
     lines: tuple[Text, ...]
 
 
-Figures = Mapping[str, "Plot | Diagram | PanelGrid | VectorPage"]
+class AreaKind(Enum):
+    """What an area of a diagram stands for."""
+
+    MAIN = "main"
+    BESIDE = "beside"
+
+
+@dataclass(frozen=True)
+class Area:
+    """A part of a grid, with its border.
+
+    Attributes
+    ----------
+    name : in the legend
+    levels : (n, m) positive at the nodes inside; the border is where it passes through zero. Without a node inside the
+        area is not there
+    kind : what the reader looks for, or what there is beside it
+    """
+
+    name: Text
+    levels: Array
+    kind: AreaKind = AreaKind.MAIN
+
+
+@dataclass(frozen=True)
+class Path:
+    """A curve through the areas of a diagram.
+
+    Attributes
+    ----------
+    name : in the legend
+    x, y : (k), in the units of the diagram's labels; NaN is a gap
+    kind : as of an area
+    """
+
+    name: Text
+    x: Array
+    y: Array
+    kind: AreaKind = AreaKind.MAIN
+
+
+@dataclass(frozen=True)
+class AreaDiagram:
+    """Areas of the plane of two quantities, paths through them and places in them.
+
+    Attributes
+    ----------
+    title, mechanism : as of a plot
+    x, y : labels of the axes
+    across, up : (n) and (m) values at the lines of the grid, in the units of the labels
+    areas : in the order of the legend; the first lies over the others
+    paths : in the order of the legend
+    places : name in the legend, x and y
+    """
+
+    title: Sentence
+    mechanism: Title
+    x: AxisLabel
+    y: AxisLabel
+    across: Array
+    up: Array
+    areas: tuple[Area, ...]
+    paths: tuple[Path, ...]
+    places: tuple[tuple[Text, float, float], ...]

@@ -5,19 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
-from centrode.sheets.plots import Diagram, PanelGrid, Plot, VectorPage
+from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, VectorPage
 from centrode.sheets.texts import NOTHING, Leaf, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
-Picture: TypeAlias = Plot | Diagram | PanelGrid | VectorPage | Hodograph | BarChart | LinkageWithDiscs
+Picture: TypeAlias = (
+    Plot | Diagram | PanelGrid | VectorPage | Hodograph | BarChart | LinkageWithDiscs | AreaDiagram
+)
 
 
 @dataclass(frozen=True)
@@ -40,9 +42,9 @@ class Column:
     unit : str
         SI unit; the renderer converts lengths and angles to the units of the display.
     head : text
-        In documents; the name of the column if left out.
+        In documents and on terminals; the name of the column if left out.
     unit_fixed : bool
-        The unit stays whatever the display says: terms of a sum in SI.
+        The unit stays whatever the display says: tables that are in SI for every reader.
     """
 
     name: str
@@ -174,6 +176,14 @@ class Scalar:
 
 
 @dataclass(frozen=True)
+class Failure:
+    """Why a result falls short of what a command computes, although there is something to show; and what helps."""
+
+    what: Text
+    repair: Text = NOTHING
+
+
+@dataclass(frozen=True)
 class Sheet:
     """Everything there is to say about a result; numbers are in SI.
 
@@ -187,6 +197,8 @@ class Sheet:
     chapters : name -> chapter of a document
     printed : tables, paragraphs and items that a terminal prints below the facts
     files : name of a further file -> its text
+    record : the result as JSON holds it, in SI and in English; None where a result has no such form
+    failure : what ends a command after everything is shown and written; None if nothing does
     """
 
     facts: tuple[Fact, ...] = ()
@@ -197,6 +209,8 @@ class Sheet:
     chapters: Mapping[str, Chapter] = field(default_factory=dict)
     printed: tuple[Table | Paragraph | Items, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict)
+    record: Mapping[str, Any] | None = None
+    failure: Failure | None = None
 
 
 def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:

@@ -43,7 +43,7 @@ class Number:
     unit_hidden : bool
         Without the unit, which stands elsewhere in the sentence.
     degrees_too : bool
-        Where angles appear in radians a document adds degrees in brackets, as people think of positions.
+        Angles that appear in radians have degrees behind them in brackets, as people think of positions.
     """
 
     value: float

@@ -56,4 +56,5 @@ def write(result: Any, folder: str | Path) -> None:
     with draft_folder(Path(folder)) as draft:
         render.write_tables(sheet, draft, display)
         render.write_pictures(sheet.pictures, draft, display)
-        render.write_summary(sheet.scalars, draft / "summary.json")
+        if sheet.scalars:
+            render.write_summary(sheet.scalars, draft / "summary.json")

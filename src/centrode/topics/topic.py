@@ -1,13 +1,11 @@
-"""A topic: what computes it, what there is to say about its result, and how a command takes its options."""
+"""A topic: what computes it, what there is to say about its result, its command and its chapters."""
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any, TypeAlias, TypeVar
-
-Entry = TypeVar("Entry")
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
 
 
 @dataclass(frozen=True)
@@ -27,47 +25,56 @@ class Lazily:
         return function
 
 
+# Options of commands. One that is left out leaves the parameter to the computation.
+
+
 @dataclass(frozen=True)
 class Choice:
-    """An option of a computation that takes one of a few words.
+    """An option that takes one of a few words.
 
     Attributes
     ----------
     name : of the option and of the parameter of the computation
-    words : what it may be, the rule first
+    words : what it may be, the default first
     help : sentence, marked for the catalogues
-    has_rule : without the option the first word is meant; otherwise nothing, and the computation knows what to do
+    has_default : without the option the first word is meant; otherwise the computation decides
     """
 
     name: str
     words: tuple[str, ...]
     help: str
-    has_rule: bool = True
+    has_default: bool = True
 
 
 @dataclass(frozen=True)
-class Written:
-    """An option of a computation that takes a text or a number; nothing where it is left out.
+class Given:
+    """An option that takes a text or a number.
 
     Attributes
     ----------
-    name : of the option and of the parameter of the computation
+    name : of the option
     metavar : what is written behind it, marked for the catalogues
     help : sentence, marked for the catalogues
     kind : str, int or float
-    several : it may be given more than once, and is a tuple
+    several : may be given more than once; the value is a tuple
+    required : the command does not begin without it
+    parameter : of the computation; the name of the option if empty
+    read : (mechanism, value, "--name") -> argument of the computation, raises InputError; the value itself if None
     """
 
     name: str
-    metavar: str
+    metavar: str | None
     help: str
     kind: type[str] | type[int] | type[float] = str
     several: bool = False
+    required: bool = False
+    parameter: str = ""
+    read: Lazily | None = None
 
 
 @dataclass(frozen=True)
 class Flag:
-    """An option of a computation that is given or not."""
+    """An option that is given or not."""
 
     name: str
     help: str
@@ -92,7 +99,48 @@ class InstantsOption:
     most: int = 100
 
 
-Option: TypeAlias = Choice | Written | Flag | MotionRange | InstantsOption
+Option: TypeAlias = Choice | Given | Flag | MotionRange | InstantsOption
+
+
+@dataclass(frozen=True)
+class Command:
+    """How the command of a topic takes its options, and what it writes.
+
+    Attributes
+    ----------
+    help : what the command does, marked for the catalogues
+    options : in the order of `--help`
+    needs : (mechanism, **arguments) raises InputError where the command needs more, although a document does without
+    arguments : options as they are written -> arguments of the computation; the same if None
+    samples : whether the computation takes a number of samples
+    extent : (mechanism, samples, **arguments) -> samples, and turns of the drive, that the command announces
+    progress : sentence that is shown while the computation calls its `progress` with the share that is done
+    complete : parameter of the computation that is False where nothing is written: then only what is printed is needed
+    ending : result -> raises where it is not whole, once it has been shown
+    folder : what ends the name of the folder that is always written; if empty `--out` names a folder where it is given
+    kinds : of the one file that `--out` names in place of a folder ("json", "csv"); none where it names a folder
+    summary : whether the scalars of the sheet are written as `summary.json`
+    pictures, dark : whether it draws, and on a dark ground as well
+    animation : (result, file, dark) writes an animation, with `--animate`
+    animation_help : what the animation shows, marked for the catalogues
+    """
+
+    help: str
+    options: tuple[Option, ...] = ()
+    needs: Lazily | None = None
+    arguments: Lazily | None = None
+    samples: bool = True
+    extent: Lazily | None = None
+    progress: str = ""
+    complete: str = ""
+    ending: Lazily | None = None
+    folder: str = ""
+    kinds: tuple[str, ...] = ()
+    summary: bool = True
+    pictures: bool = True
+    dark: bool = False
+    animation: Lazily | None = None
+    animation_help: str = ""
 
 
 @dataclass(frozen=True)
@@ -103,12 +151,34 @@ class ChapterOfTopic:
     ----------
     name : of the chapter
     title : marked for the catalogues
-    after : name of the chapter that it follows; that of the topics before it if empty
+    concerns : whether a mechanism has what the chapter is about; as of the topic if None
     """
 
     name: str
     title: str
-    after: str = ""
+    concerns: Lazily | None = None
+
+
+@dataclass(frozen=True)
+class InDocuments:
+    """How a document computes a topic.
+
+    Attributes
+    ----------
+    chapters : in the order of the document
+    arguments : of the computation
+    instants : whether the computation takes the instants of the document
+    add_instants : (result of a run, instants) -> result: a document goes on with what a run has computed
+    may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
+    may_be_incomplete : so is one whose description lacks what the computation needs
+    """
+
+    chapters: tuple[ChapterOfTopic, ...] = ()
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    instants: bool = True
+    add_instants: Lazily | None = None
+    may_be_left_out: bool = False
+    may_be_incomplete: bool = False
 
 
 @dataclass(frozen=True)
@@ -118,61 +188,18 @@ class Topic:
     Attributes
     ----------
     name : of the command
-    help : what the command does, marked for the catalogues
-    compute : (mechanism, samples=..., **options, instants=...) -> result
+    compute : (mechanism, samples=..., instants=..., **arguments) -> result
     result : class of what is computed
     view : result -> Sheet
-    concerns : whether a mechanism has what the topic is about
-    needs : raises InputError where a mechanism lacks what the command needs, although a document does without
-    options : of the computation and the command
-    chapters : of documents, in the order of the document
-    arguments : options as they are written -> arguments of the computation; the same if None
-    extent : (mechanism, samples, **arguments) -> samples, and turns of the drive, that a command announces
-    progress : sentence that a command shows while the computation calls its `progress` with the share that is done
-    ending : result -> raises where it is not whole, once it has been shown
-    dark : pictures may be dark
-    has_command : whether it is a command; otherwise only documents and Python have it
-    after : name of the command that its own follows in the list of commands; that of the topic before it if empty
-    summary : whether the command writes the scalars of the sheet as `summary.json`
-    complete : parameter of the computation that is False where nothing is written: then only what is printed is needed
-    add_instants : (result of a run, instants) -> result: a document goes on with what a run has computed
-    may_be_incomplete : it may be left out as well where the description lacks what the computation needs
-    has_instants : the computation takes the instants of a document
-    may_be_left_out : a chapter that nobody has chosen and that cannot be computed is left out, with the reason
+    concerns : whether a mechanism has what the topic is about; every one has if None
+    command : None where only documents and Python have the topic
+    document : its chapters
     """
 
     name: str
-    help: str
     compute: Lazily
     result: Lazily
     view: Lazily
-    concerns: Lazily
-    needs: Lazily | None = None
-    options: tuple[Option, ...] = ()
-    chapters: tuple[ChapterOfTopic, ...] = ()
-    arguments: Lazily | None = None
-    extent: Lazily | None = None
-    progress: str = ""
-    ending: Lazily | None = None
-    dark: bool = False
-    has_command: bool = True
-    has_instants: bool = True
-    may_be_left_out: bool = False
-    after: str = ""
-    summary: bool = True
-    complete: str = ""
-    add_instants: Lazily | None = None
-    may_be_incomplete: bool = False
-
-
-def placed(entries: Mapping[str, Entry], added: Iterable[tuple[str, str, Entry]]) -> dict[str, Entry]:
-    """Entries in their order, further ones (name, name of the one before it, entry) among them.
-
-    One that names none before it stands behind the one that was added last, the first behind all.
-    """
-    order, both = list(entries), dict(entries)
-    last = order[-1] if order else ""
-    for name, after, entry in added:
-        order.insert(order.index(after or last) + 1, name)
-        both[name], last = entry, name
-    return {name: both[name] for name in order}
+    concerns: Lazily | None = None
+    command: Command | None = None
+    document: InDocuments = InDocuments()

@@ -7,10 +7,12 @@ from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from centrode.errors import Status
+from centrode.quantities import STATUS_WORDS
 from centrode.sheets.sheet import Column, Table
-from centrode.sheets.texts import Name
+from centrode.sheets.texts import Joined, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
@@ -144,3 +146,14 @@ def rows_shown(count: int, most: int = SHOWN_ROWS) -> tuple[int, ...]:
     if step is not None:
         return tuple(range(0, count, step))
     return tuple(round(float(k)) for k in np.linspace(0, count - 1, most))
+
+
+def counted_statuses(status: NDArray[np.int8]) -> Text:
+    """How many there are of each status: "ok 12, open 3"."""
+    codes, counts = np.unique(status, return_counts=True)
+    return Joined(
+        [
+            Joined((Sentence(STATUS_WORDS[Status(code)]), Number(count, digits="d")), " ")
+            for code, count in zip(codes.tolist(), counts.tolist(), strict=True)
+        ]
+    )

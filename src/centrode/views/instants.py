@@ -1,4 +1,4 @@
-"""Instants of a motion as texts: "OA = 90°", "t = 2 s, OA = 90°"."""
+"""Places and instants of a motion as texts: "OA = 90°", "t = 2 s, OA = 90°"."""
 
 from __future__ import annotations
 
@@ -24,6 +24,11 @@ def instant_title(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> Text
             0, _equal(parameter.instant.symbol, Number(float(motion["time"][sample]), "s", digits=""))
         )
     return Joined(parts)
+
+
+def place_number(value: float, unit: str) -> Number:
+    """A place on a path [SI]: with the digits to ask for it again, and degrees beside radians."""
+    return Number(value, unit, ".9g", degrees_too=True)
 
 
 def _equal(name: str, number: Number) -> Text:

@@ -43,7 +43,11 @@ class PlottedMotion:
     @functools.cached_property
     def places(self) -> Mapping[str, Mapping[str, int]]:
         """Places of links, points and guides among their kind."""
-        kinds = {"link": self.mechanism.link_names, "point": self.mechanism.moving_points}
+        kinds = {
+            "link": self.mechanism.link_names,
+            "point": self.mechanism.moving_points,
+            "guide": [guide.id for guide in self.mechanism.guides],
+        }
         return {kind: {name: place for place, name in enumerate(names)} for kind, names in kinds.items()}
 
     @property
@@ -65,6 +69,15 @@ def panels_of_points(motion: PlottedMotion, variable: str) -> Rows:
     return tuple(
         tuple(_panel(motion, variable, "point", names, part, legend=part == "x") for names in groups)
         for part in (*motion.components, MAGNITUDE)
+    )
+
+
+def panels_of_guides(motion: PlottedMotion, variables: Sequence[str]) -> Rows:
+    """One variable along the guides below another, names beside the first; further guides in further columns."""
+    groups = deal_to_panels(motion.places["guide"])
+    return tuple(
+        tuple(_panel(motion, name, "guide", names, legend=name == variables[0]) for names in groups)
+        for name in variables
     )
 
 

@@ -15,7 +15,7 @@ from centrode.sheets.plots import (
     Curve,
     CurvePanel,
     CurveRole,
-    Hodograph,
+    HodographPanel,
     MomentOnBody,
     PanelGrid,
     Plot,
@@ -250,7 +250,7 @@ def _bearing_name(bearing: xarray.Dataset) -> Sentence:
     )
 
 
-def _hodographs(mechanism: Mechanism, bearings: xarray.Dataset, variable: str) -> Iterator[Hodograph]:
+def _hodographs(mechanism: Mechanism, bearings: xarray.Dataset, variable: str) -> Iterator[HodographPanel]:
     """The load of each bearing, with round values of the drive, or of time, along it."""
     marks = list(_marks(mechanism, bearings))
     abscissa, symbol = motion_abscissa(mechanism, bearings), QUANTITIES[variable].symbol
@@ -259,7 +259,7 @@ def _hodographs(mechanism: Mechanism, bearings: xarray.Dataset, variable: str) -
         force = bearing[variable].transpose("sample", "axis").to_numpy()
         places = ((value, _between(force, *at)) for value, at in marks)
         known = tuple((value, (float(at[0]), float(at[1]))) for value, at in places if np.isfinite(at).all())
-        yield Hodograph(_bearing_name(bearing), x, y, force, abscissa.order, abscissa.breaks, known)
+        yield HodographPanel(_bearing_name(bearing), x, y, force, abscissa.order, abscissa.breaks, known)
 
 
 def _between(force: Array, first: int, share: float) -> Array:

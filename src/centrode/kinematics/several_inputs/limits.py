@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf, isfinite, pi, tau
 from typing import Any, TypeAlias
 
@@ -188,6 +188,7 @@ class Limits:
 
     Attributes
     ----------
+    mechanism : Mechanism
     drive : its name
     unit : "rad" or "m"
     about : the value from which it moves
@@ -196,6 +197,7 @@ class Limits:
     change_points : those between the limits
     """
 
+    mechanism: Mechanism = field(compare=False, repr=False)
     drive: str
     unit: str
     about: float
@@ -276,6 +278,11 @@ def chosen_drive(mechanism: Mechanism, drive: str | None) -> str:
     )
 
 
+def has_one_drive(mechanism: Mechanism) -> bool:
+    """Whether limits need no choice of the drive."""
+    return len(mechanism.drives) == 1
+
+
 def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: float) -> Limits:
     """The same for a mechanism made ready before."""
     path = held_path(prepared, drive, about, held)
@@ -301,7 +308,7 @@ def limits_about(prepared: Ready, drive: str, held: Mapping[str, float], about: 
     ]
     unit = path.parameter.variable.unit
     found = tuple(sorted(inside, key=lambda one: one.value))
-    return Limits(drive, unit, about, dict(held), end(low), end(high), found)
+    return Limits(prepared.mechanism, drive, unit, about, dict(held), end(low), end(high), found)
 
 
 def _groups(prepared: Ready, events: list[Event], value: float) -> str:

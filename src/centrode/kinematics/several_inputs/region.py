@@ -16,7 +16,7 @@ from centrode.errors import STATUSES_OF_MOTION, InputError, NotComputedYet, Stat
 from centrode.kinematics.change_points import BranchedPlan
 from centrode.kinematics.events import EventScan
 from centrode.kinematics.mesh import mesh_of
-from centrode.kinematics.motion import labels_of
+from centrode.kinematics.motion import labels_of, motion
 from centrode.kinematics.path import JETS, unit_of
 from centrode.kinematics.plan_evaluation import Event, PlanLayout, branches_at_start, layout_of
 from centrode.kinematics.preparation import Ready, ready
@@ -356,6 +356,42 @@ def reachable_region(
     variables["status"][2]["flag_values"] = np.array([s.value for s in STATUSES_OF_MOTION], dtype=np.int8)
     variables["status"][2]["flag_meanings"] = " ".join(s.name.lower() for s in STATUSES_OF_MOTION)
     return _dataset(prepared, variables, (first, second), nodes, others)
+
+
+@dataclass(frozen=True)
+class RegionResults:
+    """The reachable region of two drives.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    region : the dataset of `reachable_region`
+    motion : the motion whose path leads through the region; None where nothing says how long it lasts
+    """
+
+    mechanism: Mechanism
+    region: xr.Dataset
+    motion: xr.Dataset | None
+
+
+def region_results(
+    mechanism: Mechanism,
+    drives: Sequence[str] | None = None,
+    ranges: Ranges | None = None,
+    samples: int = DEFAULT_NODES,
+    held: Mapping[str, Value] | None = None,
+) -> RegionResults:
+    """The reachable region with the mechanism and its motion; raises as `reachable_region` does."""
+    region = reachable_region(mechanism, drives, ranges, samples, held)
+    try:
+        return RegionResults(mechanism, region, motion(mechanism))
+    except InputError:  # laws of several drives may not say how long the motion lasts
+        return RegionResults(mechanism, region, None)
+
+
+def has_two_drives(mechanism: Mechanism) -> bool:
+    """Whether a region needs no choice of drives."""
+    return len(mechanism.drives) == 2
 
 
 def _refuse_what_is_not_computed(prepared: Ready) -> None:

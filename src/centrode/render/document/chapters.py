@@ -41,6 +41,11 @@ def document_chapter(name: str, sheet: Sheet, numbers: Numbers) -> blocks.Chapte
     return blocks.Chapter(name, spelling.text(chapter.title), sections)
 
 
+def document_section(section: Section, pictures: Pictures, numbers: Numbers) -> blocks.Section:
+    """A section of a sheet with the pictures of that sheet, for a chapter that has others beside it."""
+    return _section(section, pictures, DocumentSpelling(numbers))
+
+
 def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -> blocks.Section:
     made = [_block(block, pictures, spelling) for block in section.blocks if _is_there(block, pictures)]
     return blocks.Section(spelling.text(section.title), tuple(made))

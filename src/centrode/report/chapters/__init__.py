@@ -35,7 +35,6 @@ from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
 from centrode.report.chapters.linkages.graphic import graphic_chapter
-from centrode.report.chapters.linkages.integration import integration_chapter
 from centrode.report.chapters.linkages.moving import motion_chapter
 from centrode.report.chapters.linkages.plots import plots_chapter
 from centrode.report.chapters.linkages.positions import positions_chapter
@@ -49,8 +48,9 @@ from centrode.report.chapters.sphere.relations import sphere_equations_chapter
 from centrode.report.chapters.sphere.tables import sphere_tables_chapter
 from centrode.report.study import ReportStudy
 from centrode.report.topics import topic_chapter
+from centrode.topics import order
+from centrode.topics.order import in_order
 from centrode.topics.registry import TOPICS
-from centrode.topics.topic import placed
 
 Make: TypeAlias = Callable[[ReportStudy], Chapter | None]
 
@@ -85,7 +85,6 @@ OWN: Mapping[str, Kind] = {
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
     "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
-    "integration": Kind(mark("Integration of the equations"), integration_chapter),
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
     "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
@@ -102,12 +101,15 @@ OWN: Mapping[str, Kind] = {
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
 
-CHAPTERS: Mapping[str, Kind] = placed(
-    OWN,
-    (
-        (chapter.name, chapter.after, Kind(chapter.title, functools.partial(topic_chapter, topic, chapter)))
-        for topic in TOPICS
-        for chapter in topic.chapters
-    ),
+CHAPTERS: Mapping[str, Kind] = in_order(
+    {
+        **OWN,
+        **{
+            chapter.name: Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
+            for topic in TOPICS
+            for chapter in topic.document.chapters
+        },
+    },
+    order.CHAPTERS,
 )
 """Those of the topics among the others."""

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from centrode.locale import _, chosen_language, speaking
 from centrode.model.mechanism import Mechanism
 from centrode.model.settings import DIGITS
-from centrode.present.variant_folders import Progress, write_variants
 from centrode.render.document.blocks import Report
 from centrode.report.chapters import CHAPTERS
 from centrode.report.making import report
 from centrode.report.options import ReportOptions, settled
 from centrode.report.study import ReportStudy
 from centrode.report.variants.answers import Answers, answers_of
+from centrode.report.variants.folders import Progress, write_variants
 from centrode.report.variants.sheet import answer_sheet
 from centrode.report.writing import FORMATS, check_formats, document, write_report
 from centrode.study.variants.tables import Table, read_variants

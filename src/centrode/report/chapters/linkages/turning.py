@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import xarray as xr
-
 from centrode.analysis.redesign.repair import Repair, repair
-from centrode.analysis.transmission import transmission_angles
+from centrode.analysis.transmission import TransmissionResults, transmission_results
 from centrode.errors import CentrodeError
 from centrode.locale import _
-from centrode.present.transmission_curves import transmission_figure
-from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section, Table
-from centrode.render.document.figures import picture
+from centrode.render.document.blocks import Block, Chapter, Check, Paragraph, Section
+from centrode.render.document.chapters import document_section
 from centrode.render.document.rows import rows_table, told
 from centrode.report.study import ReportStudy
 from centrode.study.repairing import repair_rows
-from centrode.study.transmission import transmission_rows
 from centrode.study.turning import rotatability_rows
+from centrode.views import transmission
 
 
 def turning_chapter(study: ReportStudy) -> Chapter | None:
@@ -28,30 +25,20 @@ def turning_chapter(study: ReportStudy) -> Chapter | None:
     rows = rows_table(rotatability_rows(study.mechanism, found), study.numbers)
     sections = [Section("", (rows,))]
     angles = _angles(study)
-    if angles is not None and angles.sizes["group"]:
-        sections.append(Section(_("Transmission angles"), tuple(_transmission(study, angles))))
+    if angles is not None:
+        pictures = transmission.sheet(angles).pictures
+        sections.append(document_section(transmission.section(angles), pictures, study.numbers))
     if found.turns_fully is False and len(study.mechanism.drives) == 1:
         sections.append(Section(_("Repair"), tuple(_repair(study))))
     return Chapter("rotatability", _("Rotatability"), tuple(sections))
 
 
-def _angles(study: ReportStudy) -> xr.Dataset | None:
+def _angles(study: ReportStudy) -> TransmissionResults | None:
     """Transmission angles over the motion; None where no group has one."""
     try:
-        return transmission_angles(study.mechanism)
+        return transmission_results(study.mechanism)
     except CentrodeError:
         return None
-
-
-def _transmission(study: ReportStudy, angles: xr.Dataset) -> Iterator[Block]:
-    """Extremes over the motion, and the curves."""
-    head, *rows = transmission_rows(angles)
-    cells = tuple(tuple(told(cell, study.numbers) for cell in row) for row in rows)
-    caption = _("Transmission and pressure angles of the groups")
-    yield Table(
-        tuple(told(text, study.numbers) for text in head), cells, caption, (False, *(True,) * (len(head) - 1))
-    )
-    yield picture(transmission_figure(study.mechanism, angles), caption)
 
 
 def _repair(study: ReportStudy) -> Iterator[Block]:

@@ -16,20 +16,22 @@ from typing import Any, Protocol
 
 import lazy_loader
 
+from centrode import render
+from centrode.equations.integration import IntegrationResults
 from centrode.files.drafts import clear_folder, remove_file, replace_file, write_whole
 from centrode.files.inputs import keep_inputs
 from centrode.model.files import mechanism_text, parse_mechanism
-from centrode.present.integration_tables import write_integration_csv
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.present.tables import write_motion_csv
 from centrode.study.variants.computing import FAULT, STEPS, VariantResults, VariantRow, computed
 from centrode.study.variants.tables import Variant
 from centrode.version import __version__
+from centrode.views import integrations
 
 # Matplotlib is an extra, and slow to import: only where figures are asked for.
-_figures, _integrations, _saving = (
+_figures, _saving = (
     functools.partial(lazy_loader.load, f"centrode.present.{name}", suppress_warning=True)
-    for name in ("figures", "integrations", "saving")
+    for name in ("figures", "saving")
 )
 
 MARKER = "variant.json"
@@ -137,10 +139,12 @@ def _write(results: VariantResults, folder: Path, *, figures: bool) -> None:
     scalars = {name: scalar.as_dict() for name, scalar in study.scalars.items()}
     text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
     (folder / "summary.json").write_text(text, encoding="utf-8", newline="\n")
-    if integration is not None:
-        write_integration_csv(integration, folder / "integration.csv", mechanism.display, points)
     if figures:
         drawn = _figures().motion_figures(mechanism, study.motion, mechanism.study.instants, study.instants)
-        if integration is not None:
-            drawn |= _integrations().integration_figures(mechanism, integration, study.motion)
         _saving().save_figures(drawn, folder)
+    if integration is not None:
+        sheet = integrations.sheet(IntegrationResults(mechanism, integration, study.motion))
+        for name, table in sheet.tables.items():
+            render.write_table(table, folder / f"{name}.csv", mechanism.display)
+        if figures:
+            render.write_pictures(sheet.pictures, folder, mechanism.display)

@@ -20,7 +20,7 @@ from centrode.locale import _
 from centrode.model.files import mechanism_text
 from centrode.model.mechanism import Mechanism
 from centrode.present.spelled_tables import PLAIN, TableSpelling
-from centrode.present.variant_tasks import Task, WritesMore, finished, run
+from centrode.report.variants.tasks import Task, WritesMore, finished, run
 from centrode.study.variants.computing import VariantRow
 from centrode.study.variants.tables import Table, read_variants
 

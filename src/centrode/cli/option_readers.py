@@ -1,0 +1,32 @@
+"""What the texts of options mean as arguments of computations: (mechanism, text or texts, "--name") -> value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import centrode as ct
+from centrode.cli.pairs import pairs, ranges
+
+if TYPE_CHECKING:
+    from centrode.model.mechanism import Mechanism
+
+
+def read_pairs(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, str]:
+    """Name -> value of texts NAME=VALUE."""
+    return pairs(texts, where)
+
+
+def read_ranges(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, tuple[str, str]]:
+    """Name -> first and last value of texts NAME=FIRST:LAST."""
+    return ranges(texts, where)
+
+
+def read_instant(mechanism: Mechanism, text: str, where: str) -> float:
+    """A value of the drive [rad or m], or a time [s] where the drive is a law."""
+    return ct.range_value(mechanism, text, where)
+
+
+def read_instants(mechanism: Mechanism, texts: Iterable[str], where: str) -> list[float]:
+    """Values of the drive [rad or m], or times [s] where the drive is a law."""
+    return [ct.range_value(mechanism, text, where) for text in texts]

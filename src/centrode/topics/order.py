@@ -1,0 +1,82 @@
+"""The order of commands and of chapters: those of topics of the registry among the others, new ones behind all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
+
+Entry = TypeVar("Entry")
+
+COMMANDS = (
+    "run",
+    "report",
+    "animate",
+    "check",
+    "describe",
+    "equations",
+    "integrate",
+    "rotatability",
+    "reduce",
+    "reactions",
+    "polygons",
+    "variants",
+    "limits",
+    "region",
+    "flywheel",
+    "simulate",
+    "balance",
+    "cam",
+    "centres",
+    "centrodes",
+    "diagrams",
+    "plan",
+    "angles",
+    "sweep",
+    "draw",
+    "export",
+    "examples",
+    "schema",
+)
+"""As `centrode --help` lists them."""
+
+CHAPTERS = (
+    "data",
+    "motion",
+    "words",
+    "structure",
+    "equations",
+    "derivation",
+    "tables",
+    "plots",
+    "positions",
+    "graphic",
+    "centres",
+    "integration",
+    "rotatability",
+    "axes",
+    "masses-and-loads",
+    "reduction",
+    "flywheel",
+    "real-motion",
+    "simulation",
+    "reactions",
+    "force-polygons",
+    "balance",
+    "lift",
+    "laws",
+    "base-radius",
+    "path",
+    "routes",
+    "profile",
+    "cam-forces",
+    "walking",
+    "contact",
+    "choice",
+)
+"""As a document has them."""
+
+
+def in_order(entries: Mapping[str, Entry], order: Sequence[str]) -> dict[str, Entry]:
+    """Entries by name, in an order; those that it does not name stay behind all."""
+    known = {name: entries[name] for name in order if name in entries}
+    return known | dict(entries)

@@ -1,0 +1,56 @@
+"""Limits of one drive, the others held: what the terminal and the files show."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from centrode.sheets.sheet import Column, Fact, Sheet, Table
+from centrode.sheets.texts import Joined, Name, Sentence, Text
+from centrode.views.instants import place_number
+
+if TYPE_CHECKING:
+    from centrode.kinematics.several_inputs.limits import End, Limits
+
+
+def sheet(limits: Limits) -> Sheet:
+    """Both ends with the groups that lock there, and the change points between them."""
+    return Sheet(facts=_facts(limits), tables={"limits": _table(limits)}, record=limits.as_dict())
+
+
+def _facts(limits: Limits) -> tuple[Fact, ...]:
+    parameter, unit = limits.mechanism.motion_parameter, limits.unit
+    held = [
+        Joined((Name(name), place_number(value, parameter.drive(name).unit)), " = ")
+        for name, value in limits.held.items()
+    ]
+    changes = [Joined((place_number(end.value, unit), Name(end.group)), ", ") for end in limits.change_points]
+    return (
+        Fact(Sentence("drive"), Name(limits.drive)),
+        Fact(Sentence("held"), Joined(held) if held else Sentence("none")),
+        Fact(Sentence("about"), place_number(limits.about, unit)),
+        Fact(Sentence("from"), _end(limits.low, unit)),
+        Fact(Sentence("to"), _end(limits.high, unit)),
+        Fact(Sentence("change points"), Joined(changes, "; ") if changes else Sentence("none")),
+    )
+
+
+def _end(end: End | None, unit: str) -> Text:
+    if end is None:
+        return Sentence("unlimited")
+    return Sentence("{value}, limit of {group}", value=place_number(end.value, unit), group=Name(end.group))
+
+
+def _table(limits: Limits) -> Table:
+    """Both ends and the change points between them in SI; an end that does not exist is empty."""
+    ends = [("low", limits.low), *(("change point", end) for end in limits.change_points)]
+    ends.append(("high", limits.high))
+    values = np.array([np.nan if end is None else end.value for _event, end in ends])
+    return Table(
+        (
+            Column("event", tuple(Name(event) for event, _end in ends)),
+            Column(f"drive_{limits.drive}", values, limits.unit, unit_fixed=True),
+            Column("group", tuple(Name("" if end is None else end.group) for _event, end in ends)),
+        )
+    )

@@ -1,0 +1,153 @@
+"""The reachable region of two drives: what the terminal, the files and the picture show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from centrode.errors import Status
+from centrode.sheets.plots import Area, AreaDiagram, AreaKind, AxisLabel, Path
+from centrode.sheets.sheet import Column, Fact, Sheet, Table
+from centrode.sheets.texts import Joined, Name, Number, Sentence, Title
+from centrode.views.abscissas import drive_label
+from centrode.views.columns import counted_statuses
+from centrode.views.instants import place_number
+
+if TYPE_CHECKING:
+    import xarray
+
+    from centrode.kinematics.several_inputs.region import RegionResults
+
+Array: TypeAlias = NDArray[np.float64]
+
+DIMENSIONS = ("first", "second")
+TURN = 2.0 * np.pi
+
+
+def sheet(results: RegionResults) -> Sheet:
+    """Ranges and statuses of the grid, its nodes and the limits on its lines, and the picture of the region."""
+    region = results.region
+    return Sheet(
+        facts=tuple(_facts(region)),
+        tables={"region": _nodes(region), "border": _border(region)},
+        datasets={"region": region},
+        pictures={"region": _diagram(results)},
+    )
+
+
+def _facts(region: xarray.Dataset) -> Iterator[Fact]:
+    """Ranges of both drives, how much of the grid is reached, and how many limits bound it."""
+    for number, dimension in enumerate(DIMENSIONS):
+        values, unit = region[dimension].to_numpy(), _unit(region, dimension)
+        ends = Sentence(
+            "{first} to {last}",
+            first=place_number(float(values[0]), unit),
+            last=place_number(float(values[-1]), unit),
+        )
+        yield Fact(Sentence("drive {name}", name=Name(str(region["drive"].to_numpy()[number]))), ends)
+    status = region["status"].to_numpy()
+    yield Fact(
+        Sentence("grid nodes"), Joined((Number(status.size, digits="d"), counted_statuses(status)), ": ")
+    )
+    around = Sentence(
+        "{n}, {bounds} of them around the region",
+        n=Number(region.sizes["border"], digits="d"),
+        bounds=Number(int(region["border_reached"].to_numpy().sum()), digits="d"),
+    )
+    yield Fact(Sentence("limits on grid lines"), around)
+
+
+def _unit(region: xarray.Dataset, dimension: str) -> str:
+    return str(region[dimension].attrs["units"])
+
+
+def _nodes(region: xarray.Dataset) -> Table:
+    """One row a grid node."""
+    grid = np.meshgrid(*(region[dimension].to_numpy() for dimension in DIMENSIONS), indexing="ij")
+    words = tuple(Name(Status(code).word) for code in region["status"].to_numpy().ravel().tolist())
+    margin = Column("margin", region["margin"].to_numpy().ravel())
+    return Table((*_drives(region, [values.ravel() for values in grid]), Column("status", words), margin))
+
+
+def _border(region: xarray.Dataset) -> Table:
+    """One row a limit on a grid line."""
+    groups = tuple(map(Name, map(str, region["border_group"].to_numpy())))
+    bounds = tuple(Name("yes" if one else "no") for one in region["border_reached"].to_numpy())
+    values = region["border_value"].to_numpy()
+    drives = _drives(region, [values[:, number] for number in range(len(DIMENSIONS))])
+    return Table((*drives, Column("group", groups), Column("bounds the region", bounds)))
+
+
+def _drives(region: xarray.Dataset, values: list[Array]) -> Iterator[Column]:
+    for name, dimension, column in zip(region["drive"].to_numpy(), DIMENSIONS, values, strict=True):
+        yield Column(f"drive_{name}", column, _unit(region, dimension))
+
+
+def _diagram(results: RegionResults) -> AreaDiagram:
+    """What is reached and what is cut off, the path that the drives take in time, and the initial position."""
+    region, mechanism = results.region, results.mechanism
+    x, y = (_label(results, number) for number in range(len(DIMENSIONS)))
+    across, up = (region[dimension].to_numpy() for dimension in DIMENSIONS)
+    start = region["initial_value"].to_numpy()
+    return AreaDiagram(
+        Sentence("Reachable region of two drives"),
+        Title(mechanism.title),
+        x,
+        y,
+        across,
+        up,
+        tuple(_areas(region)),
+        tuple(_paths(results)),
+        ((Sentence("initial position"), float(start[0]), float(start[1])),),
+    )
+
+
+def _label(results: RegionResults, number: int) -> AxisLabel:
+    name = str(results.region["drive"].to_numpy()[number])
+    return drive_label(results.mechanism.motion_parameter.drive(name))
+
+
+def _areas(region: xarray.Dataset) -> Iterator[Area]:
+    status, margin = region["status"].to_numpy(), region["margin"].to_numpy()
+    for kind, name, drawn in (
+        (Status.OK, Sentence("reached"), AreaKind.MAIN),
+        (Status.CUT_OFF, Sentence("closes, but cut off"), AreaKind.BESIDE),
+    ):
+        yield Area(name, _levels(status, margin, kind), drawn)
+
+
+def _levels(status: NDArray[np.int8], margin: Array, kind: Status) -> Array:
+    """A number that is positive where a status is and passes through zero at the limits around it."""
+    size = np.nan_to_num(np.abs(margin), nan=1.0)
+    # between two parts of different status, both closed, the border lies half way
+    return np.where(status == kind, np.maximum(size, 1e-12), -size - 1e-300)
+
+
+def _paths(results: RegionResults) -> Iterator[Path]:
+    """The path of the drives in time, and its part where the mechanism does not get."""
+    motion = results.motion
+    if motion is None:
+        return
+    values = [_wrapped(results, number, motion) for number in range(len(DIMENSIONS))]
+    ok = motion["status"].to_numpy() == Status.OK
+    jumps = np.flatnonzero(np.any([np.abs(np.diff(one)) > 0.5 * TURN for one in values], axis=0))
+    for regular, name, drawn in (
+        (ok, Sentence("path of the drives in time"), AreaKind.MAIN),
+        (~ok, Sentence("path that is not reached"), AreaKind.BESIDE),
+    ):
+        if regular.any():
+            x, y = (np.insert(np.where(regular, one, np.nan), jumps + 1, np.nan) for one in values)
+            yield Path(name, x, y, drawn)
+
+
+def _wrapped(results: RegionResults, number: int, motion: xarray.Dataset) -> Array:
+    """Values of a drive over the motion; whole turns are taken out where the region is a turn wide."""
+    name = str(results.region["drive"].to_numpy()[number])
+    first, last = results.region[DIMENSIONS[number]].to_numpy()[[0, -1]]
+    values: Array = motion["drive_value"].sel(drive=name).to_numpy()
+    if results.mechanism.motion_parameter.drive(name).turns and last - first >= TURN * (1 - 1e-9):
+        values = values - TURN * np.floor((values - first) / TURN)
+    return values
