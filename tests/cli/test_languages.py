@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import centrode as ct
+from centrode import render
 from centrode.cli import output
 from centrode.kinematics.solve import Solved, solve
 from centrode.study import running
@@ -137,7 +138,7 @@ def test_columns_stand_in_line(centrode: Centrode) -> None:
 
 
 def test_letters_with_marks_and_wide_letters_keep_the_columns() -> None:
-    text = output.table([("e\u0301", "1"), ("漢", "2"), ("ab", "3")])
+    text = render.aligned([("e\u0301", "1"), ("漢", "2"), ("ab", "3")])
     assert text.splitlines() == ["e\u0301   1", "漢  2", "ab  3"]
 
 

@@ -47,8 +47,9 @@ force_option = click.option("--force", is_flag=True, help=mark("Replace FILE whe
 def topic_command(topic: Topic, command: Command) -> click.Command:
     """The command of a topic: `centrode TOPIC MECHANISM [options] [--out DIR]`."""
 
-    def run(mechanism: str, out: Path | None, samples: int | None = None, **given: Any) -> None:
+    def run(mechanism: str, out: Path | None, **given: Any) -> None:
         description = ct.load(mechanism)
+        samples = given.pop("samples") if command.samples else None
         if command.samples and command.extent is None:
             announce_size(description, samples)
         description = _in_range(description, given)
@@ -213,9 +214,10 @@ def _beside_folder(
             result = _result(topic, mechanism, arguments, progress)
             return result, topic.view(result), ""
     # a folder that cannot be written is refused before anything is computed
-    with about(name), output.output_folder(folder) as draft, Progress() as progress:
+    with output.output_folder(folder) as draft, Progress() as progress:
         progress.say(_("solving"))
-        result = _result(topic, mechanism, arguments, progress)
+        with about(name):
+            result = _result(topic, mechanism, arguments, progress)
         sheet = topic.view(result)
         figures = command.pictures and not written["no_figures"]
         write_sheet(sheet, draft, mechanism.display, progress, figures=figures, dark=written["dark"])
@@ -224,7 +226,8 @@ def _beside_folder(
         if command.animation is not None and written["animate"]:
             animation = f"{topic.name}.gif"
             progress.say(_("drawing {name}").format(name=animation))
-            command.animation(result, draft / animation, written["dark"])
+            with about(name):
+                command.animation(result, draft / animation, written["dark"])
         names = output.finished(draft)
     return result, sheet, output.files_in(folder, names)
 
