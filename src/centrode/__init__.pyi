@@ -223,15 +223,14 @@ from .analysis.instant_centres.construction import Construction as Construction
 from .analysis.instant_centres.kennedy import MOST_BODIES as MOST_BODIES
 from .analysis.instant_centres.centrodes import centrodes as centrodes
 from .analysis.instant_centres.curvature import curvature as curvature
-from .study.centres import body_names as body_names
+from .analysis.instant_centres.results import centre_results as centre_results
+from .analysis.instant_centres.results import CentreResults as CentreResults
+from .analysis.instant_centres.results import centrode_results as centrode_results
+from .analysis.instant_centres.results import CentrodeResults as CentrodeResults
+from .analysis.instant_centres.bodies import body_names as body_names
 from .model.spoken import body_name as body_name
-from .study.centres import initial_place as initial_place
-from .study.centres import place_words as place_words
-from .study.centres import centres_header as centres_header
-from .study.centres import centres_rows as centres_rows
-from .study.centres import steps_leading_to as steps_leading_to
-from .study.centres import centrode_rows as centrode_rows
-from .study.centres import curvature_rows as curvature_rows
+from .kinematics.motion import initial_place as initial_place
+from .study.wording import place_words as place_words
 
 # Integration, variants, words
 from .equations.integrated import integrate as integrate
@@ -278,11 +277,6 @@ from .present import write_reduction_csv as write_reduction_csv
 from .present import write_reactions_csv as write_reactions_csv
 from .present import write_joint_table_csv as write_joint_table_csv
 from .present import write_region_csv as write_region_csv
-from .present import write_centres_csv as write_centres_csv
-from .present import write_centrodes_csv as write_centrodes_csv
-from .present import centres_figure as centres_figure
-from .present import centrodes_figure as centrodes_figure
-from .present import curvature_figure as curvature_figure
 from .present import darkened as darkened
 from .present import write_integration_csv as write_integration_csv
 from .present import write_variants as write_variants

@@ -24,8 +24,6 @@ from centrode.cli.angles import angles
 from centrode.cli.animate import animate
 from centrode.cli.balance import balance
 from centrode.cli.cam import cam
-from centrode.cli.centres import centres
-from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
 from centrode.cli.describe import describe
 from centrode.cli.diagrams import diagrams
@@ -54,7 +52,7 @@ from centrode.files.inputs import guarded
 from centrode.locale import _, choose_language_of_process, mark
 from centrode.topics.registry import TOPICS
 
-COMMANDS: tuple[click.Command, ...] = (
+OTHERS: tuple[click.Command, ...] = (
     run,
     report,
     animate,
@@ -69,12 +67,9 @@ COMMANDS: tuple[click.Command, ...] = (
     variants,
     limits,
     region,
-    *map(topic_command, TOPICS),
     simulate,
     balance,
     cam,
-    centres,
-    centrodes,
     diagrams,
     plan,
     angles,
@@ -84,6 +79,19 @@ COMMANDS: tuple[click.Command, ...] = (
     examples,
     schema,
 )
+"""Commands of what is no topic of the registry."""
+
+
+def with_topics(others: Sequence[click.Command]) -> tuple[click.Command, ...]:
+    """Commands with those of the registry among them, each behind the one that it names."""
+    found = list(others)
+    for topic in TOPICS:
+        place = [command.name for command in found].index(topic.after) + 1 if topic.after else len(found)
+        found.insert(place, topic_command(topic))
+    return tuple(found)
+
+
+COMMANDS = with_topics(OTHERS)
 """In the order that `centrode --help` lists them."""
 
 FAULT, INTERRUPTED, READER_GONE = 70, 130, 141

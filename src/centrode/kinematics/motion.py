@@ -74,6 +74,12 @@ def motion(
     return dataset_of(_solved(prepared, span, numbers, lanes, progress), vary)
 
 
+def initial_place(mechanism: Mechanism) -> float:
+    """Value of the drive in the initial position, with a law or several drives the time there [rad, m or s]."""
+    prepared = ready(mechanism)
+    return float(prepared.kinematics.path.initial) if prepared.parameter.is_uniform else 0.0
+
+
 def _solved(
     ready: Ready, span: Span, numbers: Dimensions | None, lanes: int, progress: Progress | None
 ) -> Solved:

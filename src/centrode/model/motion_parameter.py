@@ -18,6 +18,7 @@ from centrode.model.units import KINDS, to_si
 
 if TYPE_CHECKING:
     from centrode.model.driving import Drive
+    from centrode.model.mechanism import Mechanism
 
 Kind: TypeAlias = Literal["time", "angle", "length"]
 """A kind of quantity by its name in `units.KINDS`."""
@@ -202,6 +203,11 @@ class MotionParameter:
 def drive_coordinate(name: str, driven: str, space: str, speed: float | None) -> DriveCoordinate:
     """The coordinate of a drive in the plane or on the sphere."""
     return DriveCoordinate(kind_of_value(driven, space), SYMBOLS[driven], name, driven, speed)
+
+
+def read_instant(mechanism: Mechanism, text: float | str, where: str) -> float:
+    """An instant of a mechanism [rad, m or s] from a number in SI or a text with a unit; InputError names `where`."""
+    return mechanism.motion_parameter.instant.read(text, where)
 
 
 def kind_of_value(driven: str, space: str) -> Kind:

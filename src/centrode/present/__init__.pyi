@@ -10,8 +10,6 @@ from .decimal_comma import spell_with_comma as spell_with_comma
 from .spelled_tables import TableSpelling as TableSpelling
 from .coefficient_tables import write_coefficients_csv as write_coefficients_csv
 from .region_tables import write_region_csv as write_region_csv
-from .centres_tables import write_centres_csv as write_centres_csv
-from .centres_tables import write_centrodes_csv as write_centrodes_csv
 from .integration_tables import write_integration_csv as write_integration_csv
 from .sweep_tables import sweep_csv as sweep_csv
 from .variant_folders import write_variants as write_variants
@@ -24,9 +22,6 @@ from .reading import scene_of as scene_of
 from .drawing import draw_mechanism as draw_mechanism
 from .transmission_curves import transmission_figure as transmission_figure
 from .regions import region_figure as region_figure
-from .centres import centres_figure as centres_figure
-from .centrodes import centrodes_figure as centrodes_figure
-from .curvature import curvature_figure as curvature_figure
 from .instant_drawing import diagram_figures as diagram_figures
 from .plan_drawing import plan_figure as plan_figure
 from .integrations import integration_figures as integration_figures

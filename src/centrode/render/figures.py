@@ -14,10 +14,13 @@ from centrode.locale import _
 from centrode.present.abscissa import CHANGE_POINT, LIMIT
 from centrode.present.abscissa import Abscissa as DrawnAbscissa
 from centrode.present.curves import Panel, sheet, write_legend, write_title
+from centrode.present.dark import darkened
 from centrode.present.saving import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
+from centrode.render.scenes import scene_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.sheets.plots import Abscissa, CurvePanel, Diagram, EventKind, Plot, Trace, TraceKind
+from centrode.sheets.scenes import Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,22 +47,28 @@ def write_pictures(
     folder: Path,
     display: Display,
     say: Callable[[str, int, int], None] = lambda *_progress: None,
+    dark: bool = False,
 ) -> None:
-    """Write the pictures of a sheet as PNG and SVG; `say` hears which is drawn, its number and how many there are."""
+    """Write the pictures of a sheet as PNG and SVG, with light lines on a dark ground if `dark`.
+
+    `say` hears which is drawn, its number and how many there are.
+    """
     drawn = figures_of(pictures, display)
     for number, (name, figure) in enumerate(drawn.items(), start=1):
         say(_("drawing {name}").format(name=name), number, len(drawn))
-        save_figures({name: figure}, folder)
+        save_figures({name: darkened(figure) if dark else figure}, folder)
 
 
 def figure_of(picture: Picture, display: Display) -> Figure:
-    """A plot or a diagram as a figure, lengths and angles in the units of the display."""
+    """A plot, a diagram or a scene as a figure, lengths and angles in the units of the display."""
     with house_style():
         match picture:
             case Plot():
                 return _plot(picture, display)
             case Diagram():
                 return _diagram(picture, display)
+            case Scene():
+                return scene_figure(picture, display)
             case _:
                 assert_never(picture)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
@@ -10,9 +11,11 @@ from centrode.locale import _, ngettext
 from centrode.present.shown import formula, plain, shown_as
 from centrode.quantities import typeset_unit
 from centrode.sheets.texts import (
+    Coordinates,
     Counted,
     Expression,
     Factor,
+    Indexed,
     Joined,
     Name,
     Number,
@@ -34,7 +37,11 @@ class Spelling(ABC):
     ----------
     display : Display or None
         Units of lengths and angles; SI where None.
+    apart : str
+        What parts coordinates.
     """
+
+    apart = ", "
 
     def __init__(self, display: Display | None) -> None:
         self.display = display
@@ -58,8 +65,20 @@ class Spelling(ABC):
                 return self.symbol(text)
             case Expression():
                 return self.expression(text)
+            case Coordinates():
+                return self.coordinates(text)
+            case Indexed():
+                return self.indexed(text)
             case _:
                 assert_never(text)
+
+    def coordinates(self, place: Coordinates) -> str:
+        """A place in brackets, its unit behind it."""
+        numbers = [
+            self.number(Number(value, place.unit, place.digits, unit_hidden=True)) for value in place.values
+        ]
+        unit = self.unit(Number(0.0, place.unit))
+        return f"({self.apart.join(numbers)}) {unit}".rstrip()
 
     def _filled(self, message: str, values: Mapping[str, Text]) -> str:
         # a message without holes may hold braces of its own
@@ -89,6 +108,14 @@ class Spelling(ABC):
     def expression(self, expression: Expression) -> str:
         """A piece of mathematics."""
 
+    @abstractmethod
+    def indexed(self, symbol: Indexed) -> str:
+        """A letter with numbers of bodies as its index."""
+
+    @abstractmethod
+    def unit(self, number: Number) -> str:
+        """The unit that a number appears in; nothing where there is none."""
+
 
 class PlainSpelling(Spelling):
     """Plain text, as terminals print it: a decimal point in every language, units with raised digits."""
@@ -101,7 +128,19 @@ class PlainSpelling(Spelling):
         """A number with its unit behind a blank."""
         factor, unit = self.shown_unit(number)
         digits = format(number.value * factor if factor != 1.0 else number.value, number.digits or ".6g")
-        return digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
+        text = digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
+        if number.degrees_too and unit == "rad":
+            return f"{text} ({math.degrees(number.value):.6g} deg)"
+        return text
+
+    def unit(self, number: Number) -> str:
+        """The unit with raised digits."""
+        unit = self.shown_unit(number)[1]
+        return "" if unit in ("", "1") else typeset_unit(unit)
+
+    def indexed(self, symbol: Indexed) -> str:
+        """The letter with its index right behind it."""
+        return f"{symbol.letter}{symbol.index}"
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""
@@ -132,6 +171,10 @@ class FigureSpelling(PlainSpelling):
         """A letter with its index, as mathematics; an index that is a name stands upright."""
         index = symbol.index if symbol.slanted or not symbol.index else rf"\mathrm{{{symbol.index}}}"
         return formula(symbol.letter, index)
+
+    def indexed(self, symbol: Indexed) -> str:
+        """The letter with its index below it."""
+        return f"${symbol.letter}_{{{symbol.index}}}$"
 
     def label(self, label: AxisLabel) -> tuple[float, str, str]:
         """Factor from the label's unit to the one shown, the text of an axis with that unit behind it, and the unit."""

@@ -21,10 +21,14 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
     """
-    if study.is_cam or not topic.concerns(study.mechanism):
+    concerns = topic.concerns if chapter.concerns is None else chapter.concerns
+    if study.is_cam or (concerns is not None and not concerns(study.mechanism)):
         return None
     try:
-        return document_chapter(chapter.name, _sheet(topic, study), study.numbers)
+        sheet = _sheet(topic, study)
+        return (
+            document_chapter(chapter.name, sheet, study.numbers) if chapter.name in sheet.chapters else None
+        )
     except (MotionError, NotComputedYet) as reason:
         if study.wishes.chapters is not None:
             raise

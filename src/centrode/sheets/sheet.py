@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from centrode.sheets.plots import Diagram, Plot
+from centrode.sheets.scenes import Scene
 from centrode.sheets.texts import NOTHING, Leaf, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
-Picture: TypeAlias = Plot | Diagram
+Picture: TypeAlias = Plot | Diagram | Scene
 
 
 @dataclass(frozen=True)
@@ -39,13 +40,16 @@ class Column:
     unit : str
         SI unit; the renderer converts lengths and angles to the units of the display.
     head : text
-        In documents; the name of the column if left out.
+        In documents and on terminals; the name of the column if left out.
+    whole : bool
+        The numbers are whole, and files write them so; NaN is an empty field all the same.
     """
 
     name: str
     values: NDArray[np.float64] | tuple[Text, ...]
     unit: str = "1"
     head: Text = NOTHING
+    whole: bool = False
 
 
 @dataclass(frozen=True)
@@ -93,9 +97,9 @@ class FactTable:
 
 @dataclass(frozen=True)
 class Illustration:
-    """A picture of the sheet in a document, by its name, with a caption; its own title if None."""
+    """A picture of the sheet by its name, or one of a document alone, with a caption; its own title if None."""
 
-    picture: str
+    picture: str | Picture
     caption: Text | None = None
 
 
@@ -116,7 +120,15 @@ class Check:
     bound: float
 
 
-Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check
+@dataclass(frozen=True)
+class Listing:
+    """A heading and what is listed behind it; no item is broken over two lines."""
+
+    heading: Text
+    items: tuple[Text, ...]
+
+
+Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check | Listing
 
 
 @dataclass(frozen=True)
@@ -159,6 +171,8 @@ class Sheet:
     datasets : name of a file without its ending -> dataset, as netCDF
     pictures : name -> plot, diagram or scene
     chapters : name -> chapter of a document
+    printed : what a terminal prints where that is more than facts: a blank line parts the sections, and the title of
+        one stands on the line above it
     """
 
     facts: tuple[Fact, ...] = ()
@@ -167,6 +181,7 @@ class Sheet:
     datasets: Mapping[str, xarray.Dataset] = field(default_factory=dict)
     pictures: Mapping[str, Picture] = field(default_factory=dict)
     chapters: Mapping[str, Chapter] = field(default_factory=dict)
+    printed: tuple[Section, ...] = ()
 
 
 def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:

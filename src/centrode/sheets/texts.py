@@ -43,7 +43,7 @@ class Number:
     unit_hidden : bool
         Without the unit, which stands elsewhere in the sentence.
     degrees_too : bool
-        Where angles appear in radians a document adds degrees in brackets, as people think of positions.
+        Where angles appear in radians degrees follow in brackets, as people think of positions.
     """
 
     value: float
@@ -150,9 +150,35 @@ class Expression:
         object.__setattr__(self, "values", values)
 
 
+@dataclass(frozen=True)
+class Coordinates:
+    """A place.
+
+    Attributes
+    ----------
+    values : along the axes, in `unit`
+    unit : SI unit; "1" of a unit vector
+    digits : Python's format of each of them
+    """
+
+    values: tuple[float, ...]
+    unit: str = "m"
+    digits: str = ".9g"
+
+
+@dataclass(frozen=True)
+class Indexed:
+    """A letter with numbers of bodies as its index: P20 is the centre of bodies 2 and 0."""
+
+    letter: str
+    index: str
+
+
 Leaf: TypeAlias = "str | Number | Factor | Name | Expression"
 """A piece of a formula; a string is notation without leaves of its own."""
-Text: TypeAlias = "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression"
+Text: TypeAlias = (
+    "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression | Coordinates | Indexed"
+)
 
 NOTHING = Joined(())
 """An empty text."""

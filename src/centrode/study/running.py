@@ -20,6 +20,7 @@ from centrode.kinematics.solve import Solved, asked_span, solve
 from centrode.kinematics.spans import span_at
 from centrode.locale import _, ngettext
 from centrode.model.mechanism import Mechanism, Study
+from centrode.model.motion_parameter import read_instant
 from centrode.sheets.sheet import Scalar
 from centrode.study.checking import Check, check_of
 from centrode.study.forces.bearing_loads import BearingLoad, bearing_load_scalars, bearing_loads
@@ -175,7 +176,7 @@ def range_value(mechanism: Mechanism, text: float | str, where: str) -> float:
 
     Raises InputError for a unit of another kind.
     """
-    return mechanism.motion_parameter.instant.read(text, where)
+    return read_instant(mechanism, text, where)
 
 
 def _scalars(checked: Check, solved: Solved) -> dict[str, Scalar]:

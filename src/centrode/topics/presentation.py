@@ -33,8 +33,8 @@ def sheet_of(result: Any) -> Sheet:
 
 
 def summary(result: Any) -> str:
-    """The facts of a result as lines of text, in the language that is spoken and the units of its description."""
-    return render.facts_text(sheet_of(result).facts, result.mechanism.display)
+    """A result as lines of text, in the language that is spoken and the units of its description."""
+    return render.sheet_text(sheet_of(result), result.mechanism.display)
 
 
 def tables(result: Any) -> Mapping[str, Table]:

@@ -14,6 +14,7 @@ from centrode.sheets.texts import Name
 
 if TYPE_CHECKING:
     import xarray
+    from numpy.typing import NDArray
 
 VARIABLES = (
     "turned",
@@ -120,3 +121,11 @@ def rows_shown(count: int, most: int = SHOWN_ROWS) -> tuple[int, ...]:
     if step is not None:
         return tuple(range(0, count, step))
     return tuple(round(float(k)) for k in np.linspace(0, count - 1, most))
+
+
+def instant_columns(dataset: xarray.Dataset, samples: NDArray[np.intp]) -> Iterator[Column]:
+    """Time and values of the drives of some samples, which may come more than once."""
+    yield Column("time", dataset["time"].to_numpy()[samples], "s")
+    values = dataset["drive_value"].to_numpy()[samples]
+    for number, (name, unit) in enumerate(zip(dataset["drive"].values, drive_units(dataset), strict=True)):
+        yield Column(f"drive_{name}", values[:, number], unit)

@@ -123,7 +123,7 @@ def flywheel(mechanism: Mechanism, mean: Mean = "middle") -> Flywheel:
     return flywheel_of(solution_of(mechanism, mean))
 
 
-def need_fluctuation(mechanism: Mechanism) -> None:
+def need_fluctuation(mechanism: Mechanism, **_options: object) -> None:
     """Raise InputError for a machine whose description does not limit the fluctuation of its speed."""
     if mechanism.machine is not None and mechanism.machine.fluctuation is None:
         raise InputError(

@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, assert_never
 
 from centrode.present.equations.typst import quoted, shown
-from centrode.render.document.numbers import Numbers, spelled_number, spelled_unit
+from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
 from centrode.render.spelling import Spelling
-from centrode.sheets.texts import Expression, Factor, Leaf, Name, Number, Symbol
+from centrode.sheets.texts import Expression, Factor, Indexed, Leaf, Name, Number, Symbol
 
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Column
@@ -26,6 +26,8 @@ class DocumentSpelling(Spelling):
         How many digits numbers have, and how they are spelled.
     """
 
+    apart = "; "  # a comma would be taken for a decimal mark
+
     def __init__(self, numbers: Numbers) -> None:
         super().__init__(numbers.display)
         self.numbers = numbers
@@ -39,17 +41,20 @@ class DocumentSpelling(Spelling):
         factor, unit = self.shown_unit(number)
         value = number.value * factor if factor != 1.0 else number.value
         text = self._digits(value, number.digits)
+        gap = " " if number.digits else NARROW
         if number.degrees_too and unit == "rad" and value:
-            return f"{text} rad ({self.numbers.plain(math.degrees(value))}°)"
+            return f"{text}{gap}rad ({self.numbers.plain(math.degrees(value))}°)"
         label = "" if number.unit_hidden else spelled_unit(unit)
         if label == "°":
             return f"{text}°"
-        return f"{text} {label}" if label else text
+        return f"{text}{gap}{label}" if label else text
 
     def _digits(self, value: float, digits: str) -> str:
         """A number in the format that its sentence wants, with no more digits than the document has."""
         if not digits or not math.isfinite(value):
             return self.numbers.plain(value)
+        if not value and digits.endswith("e"):
+            return "0"
         text = format(value, digits)
         sign = text[0] if text[0] in "+-" else ""
         body, percent = (text[len(sign) :].removesuffix("%"), "%" if text.endswith("%") else "")
@@ -62,6 +67,14 @@ class DocumentSpelling(Spelling):
         """A letter with its index, as mathematics."""
         index = symbol.index if symbol.slanted else f"upright({quoted(symbol.index)})"
         return f"${symbol.letter}_({index})$" if symbol.index else f"${symbol.letter}$"
+
+    def indexed(self, symbol: Indexed) -> str:
+        """A letter with its index, as mathematics."""
+        return f"${symbol.letter}_({quoted(symbol.index)})$"
+
+    def unit(self, number: Number) -> str:
+        """The unit as books write it."""
+        return spelled_unit(self.shown_unit(number)[1])
 
     def expression(self, expression: Expression) -> str:
         """Mathematics between dollar signs."""

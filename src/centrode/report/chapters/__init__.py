@@ -34,7 +34,6 @@ from centrode.report.chapters.forces.polygons import polygons_chapter
 from centrode.report.chapters.forces.reduction import reduction_chapter
 from centrode.report.chapters.forces.running import simulation_chapter
 from centrode.report.chapters.forces.shaken import balance_chapter
-from centrode.report.chapters.linkages.centres import centres_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
@@ -48,7 +47,7 @@ from centrode.report.chapters.linkages.tables import tables_chapter
 from centrode.report.chapters.linkages.turning import turning_chapter
 from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.chapters.sphere.data import sphere_data_chapter
-from centrode.report.chapters.sphere.pictures import axes_chapter, sphere_plots_chapter
+from centrode.report.chapters.sphere.pictures import sphere_plots_chapter
 from centrode.report.chapters.sphere.relations import sphere_equations_chapter
 from centrode.report.chapters.sphere.tables import sphere_tables_chapter
 from centrode.report.study import ReportStudy
@@ -74,16 +73,19 @@ def either(*makers: Make) -> Make:
     return make
 
 
-def topic_chapters() -> dict[str, Kind]:
-    """The chapters of every topic of the registry."""
-    return {
-        chapter.name: Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
-        for topic in TOPICS
-        for chapter in topic.chapters
-    }
+def with_topics(others: Mapping[str, Kind]) -> Mapping[str, Kind]:
+    """Chapters with those of the registry among them, each behind the one that it names."""
+    found = list(others.items())
+    for topic in TOPICS:
+        for chapter in topic.chapters:
+            kind = Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
+            before = [name for name, _kind in found]
+            place = before.index(chapter.after) + 1 if chapter.after else len(found)
+            found.insert(place, (chapter.name, kind))
+    return dict(found)
 
 
-CHAPTERS: Mapping[str, Kind] = {
+OTHERS: Mapping[str, Kind] = {
     "data": Kind(
         mark("Data"), either(data_chapter, sphere_data_chapter, cam_data_chapter, follower_data_chapter)
     ),
@@ -96,13 +98,10 @@ CHAPTERS: Mapping[str, Kind] = {
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
-    "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
     "integration": Kind(mark("Integration of the equations"), integration_chapter),
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
-    "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "reduction": Kind(mark("Reduction to the drive"), reduction_chapter),
-    **topic_chapters(),
     "simulation": Kind(mark("Motion under loads"), simulation_chapter),
     "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
@@ -118,3 +117,6 @@ CHAPTERS: Mapping[str, Kind] = {
     "contact": Kind(mark("Contact of roller and cam"), cam_contact_chapter),
     "choice": Kind(mark("Chosen parameters"), cam_choice_chapter),
 }
+"""Chapters of what is no topic of the registry."""
+
+CHAPTERS: Mapping[str, Kind] = with_topics(OTHERS)
