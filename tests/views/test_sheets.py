@@ -16,14 +16,18 @@ import pytest
 import centrode as ct
 from centrode.locale import _, choose_language
 from centrode.present.spelled_tables import TableSpelling
+from centrode.render.document import blocks
+from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.files import write_table
 from centrode.render.spelling import FigureSpelling, PlainSpelling
+from centrode.render.terminal import listing
 from centrode.sheets.plots import Abscissa
 from centrode.sheets.sheet import Column, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Sentence, Title
 from centrode.topics.registry import TOPICS
+from centrode.topics.topic import Given
 
 SOURCE = Path(ct.__file__).parent
 HOSTILE = ("No 1.23456", "run 30 deg", "2.50 kg", "$x_1$", "<b>", "#a")
@@ -49,8 +53,15 @@ def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
     for name in names:
         mechanism = ct.example(name)
         for topic in TOPICS:
-            if topic.concerns(mechanism):
-                yield f"{topic.name} of {name}", topic.view(topic.compute(mechanism, 9))
+            if topic.concerns is None or topic.concerns(mechanism):
+                given = {"samples": 9} if topic.samples else {}
+                # what has to be named is a link
+                given |= {
+                    option.parameter: mechanism.link_names[1]
+                    for option in topic.options
+                    if isinstance(option, Given) and option.required
+                }
+                yield f"{topic.name} of {name}", topic.view(topic.compute(mechanism, **given))
 
 
 def test_no_sentence_holds_a_number_or_a_unit() -> None:
@@ -58,7 +69,7 @@ def test_no_sentence_holds_a_number_or_a_unit() -> None:
     seen = 0
     for language in ("en", "ru", "uk"):
         choose_language(language)
-        for where, sheet in sheets(("six-bar-press", "six-bar-press-printed")):
+        for where, sheet in sheets(("six-bar-press", "six-bar-press-printed", "spherical-crank-guide")):
             for leaf in leaves(dataclasses.replace(sheet, datasets={})):
                 messages = [leaf.message] if isinstance(leaf, Sentence) else []
                 if isinstance(leaf, Counted):
@@ -82,8 +93,8 @@ def test_every_literal_of_a_sentence_is_in_the_catalogues() -> None:
             named = isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
             if named and node.func.id in ("Sentence", "Counted"):  # type: ignore[attr-defined]
                 first = node.args[0]  # type: ignore[attr-defined]
-                if isinstance(first, ast.Attribute) and first.attr == "long_name":
-                    continue  # of the vocabulary of quantities, which marks its own
+                if isinstance(first, ast.Attribute) and first.attr in ("long_name", "word"):
+                    continue  # of a vocabulary that marks its own: quantities, statuses, cases of centres
                 assert isinstance(first, ast.Constant), f"{file}:{first.lineno}: a sentence is a literal"
                 escaped = str(first.value).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
                 assert f'"{escaped}"' in known, first.value
@@ -119,7 +130,10 @@ def test_names_come_out_character_by_character(hostile: str, language: str, tmp_
 
 def test_every_entry_of_the_registry_is_there() -> None:
     for topic in TOPICS:
-        for lazily in (topic.compute, topic.result, topic.view, topic.concerns, topic.needs):
+        more = [chapter.concerns for chapter in topic.chapters]
+        more += [option.read for option in topic.options if isinstance(option, Given)]
+        more += [topic.concerns, topic.needs, topic.shortfall, topic.animation]
+        for lazily in (topic.compute, topic.result, topic.view, *more):
             assert lazily is None or callable(lazily.load())
 
 
@@ -139,6 +153,38 @@ def test_a_result_is_written_as_the_command_writes_it(tmp_path: Path) -> None:
 
 def test_an_abscissa_without_gaps() -> None:
     """The parts of an abscissa that most plots do without are empty, not missing."""
-    for _where, sheet in sheets(("six-bar-press",)):
-        plots = [leaf for leaf in leaves(sheet.pictures) if isinstance(leaf, Abscissa)]
-        assert plots and all(len(one.values) == len(one.order) for one in plots)
+    plots = [
+        leaf
+        for _where, sheet in sheets(("six-bar-press",))
+        for leaf in leaves(sheet.pictures)
+        if isinstance(leaf, Abscissa)
+    ]
+    assert plots and all(len(one.values) == len(one.order) for one in plots)
+
+
+def test_no_item_of_a_listing_is_broken() -> None:
+    """A line holds a hundred columns; what is longer stands alone."""
+    assert listing("bodies", ["0 frame", "1 OA"]) == "bodies: 0 frame, 1 OA"
+    items = [f"{number} link of many words" for number in range(20)] + ["x" * 120]
+    heading, *lines = listing("bodies", items).splitlines()
+    assert heading == "bodies:"
+    assert max(map(len, lines[:-1])) <= 100
+    assert ", ".join(line.strip().rstrip(",") for line in lines) == ", ".join(items)
+
+
+@pytest.mark.parametrize("hostile", HOSTILE)
+def test_names_in_a_scene_come_out_character_by_character(hostile: str) -> None:
+    """A link of any name: in the printed table, the file, the drawing and the chapter of its centres."""
+    coupler = f'[links."{hostile}"]\npoints = ["A", "B"]'
+    mechanism = ct.parse_mechanism(ct.example_text("crank-rocker").replace("[links.AB]", coupler))
+    assert hostile in mechanism.link_names
+    results = ct.centre_results(mechanism)
+    assert f"{hostile} against frame" in ct.summary(results)
+    assert Name(hostile) in ct.tables(results)["centres"].columns[2].values
+    axes = ct.figures(results)["centres"].axes
+    key = [label.get_text() for one in axes if one.get_legend() for label in one.get_legend().get_texts()]
+    assert any(label.replace(r"\$", "$").endswith(f" {hostile}") for label in key)
+    sheet = TOPICS[1].view(results)
+    document = document_chapter("centres", sheet, Numbers(mechanism.display))
+    (table,) = [block for block in document.sections[1].blocks if isinstance(block, blocks.Table)]
+    assert f"{hostile} – frame" in [row[1].replace(r"\$", "$") for row in table.rows]

@@ -62,13 +62,15 @@ def topic_command(topic: Topic) -> click.Command:
         **given: Any,
     ) -> None:
         description = ct.load(mechanism)
-        announce_size(description, given.get("samples"))
+        if topic.samples:
+            announce_size(description, given["samples"])
         description = ct.with_range(description, given.pop("ranged", None))
         folder = output.folder_of(out, mechanism, topic.name) if topic.out is OutFolder.ALWAYS else out
         names: list[str] = []
         with ExitStack() as stack:
             # a folder that cannot be written is refused before anything is computed
-            draft = None if folder is None else stack.enter_context(output.output_folder(folder))
+            with about(mechanism):
+                draft = None if folder is None else stack.enter_context(output.output_folder(folder))
             progress = stack.enter_context(Progress())
             progress.say(_("solving"))
             with about(mechanism):

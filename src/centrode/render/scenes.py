@@ -163,8 +163,8 @@ class _Drawing:
         if not isinstance(self.paper, Globe):
             places = self.paper.factor * curve.places
             with np.errstate(invalid="ignore"):
-                seen = ((places >= self.paper.low) & (places <= self.paper.high)).all(axis=1)
-            known = np.isfinite(places).all(axis=1)
+                seen = np.asarray(((places >= self.paper.low) & (places <= self.paper.high)).all(axis=1))
+            known = np.asarray(np.isfinite(places).all(axis=1))
         candidates = np.flatnonzero(seen if seen.any() else known)
         return int(candidates[np.argmin(np.abs(candidates - start))]) if candidates.size else start
 
@@ -196,7 +196,7 @@ class _Drawing:
 
     def _inside(self, curve: Array) -> Array:
         with np.errstate(invalid="ignore"):
-            near = ((curve >= self.paper.low) & (curve <= self.paper.high)).all(axis=1)
+            near = np.asarray(((curve >= self.paper.low) & (curve <= self.paper.high)).all(axis=1))
         return np.where(near[:, None], curve, np.nan)
 
     # what is drawn
