@@ -8,19 +8,20 @@ from typing import TYPE_CHECKING
 import click
 
 import centrode as ct
-from centrode.analysis.instant_centres.results import require_centres
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
 from centrode.cli.expected import announce_size
 from centrode.errors import InputError, MotionError, Status
 from centrode.locale import _, mark
+from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
     import xarray
 
 PLACED = (Status.OK, Status.CUT_OFF, Status.SINGULAR)
 """Statuses of samples that have a position."""
+REQUIRE_CENTRES = Lazily("centrode.analysis.instant_centres.results", "require_centres")
 KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
 
 
@@ -101,5 +102,5 @@ def draw(
 def _centrodes(course: xarray.Dataset, link: str) -> xarray.Dataset:
     """The centrodes of a link against the frame; MotionError where there are none."""
     found = ct.centrodes(course, link)
-    require_centres(found)
+    REQUIRE_CENTRES(found)
     return found

@@ -28,7 +28,7 @@ from centrode.cli.expected import announce_size
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, tables_options
 from centrode.locale import _, mark
-from centrode.model.motion_parameter import read_instant
+from centrode.topics.registry import INSTANT
 from centrode.topics.topic import Choice, OutFolder
 
 if TYPE_CHECKING:
@@ -95,9 +95,11 @@ def topic_command(topic: Topic) -> click.Command:
             with about(mechanism):
                 topic.shortfall(result)
 
-    for decorate in reversed([mechanism_argument, *_decorators(topic)]):
-        command = decorate(command)
-    return click.command(topic.name, help=topic.help)(command)
+    decorators: list[Decorator] = [mechanism_argument, *_decorators(topic)]
+    decorated: Callable[..., None] = command
+    for decorate in reversed(decorators):
+        decorated = decorate(decorated)
+    return click.command(topic.name, help=topic.help)(decorated)
 
 
 def _decorators(topic: Topic) -> Iterator[Decorator]:
@@ -149,7 +151,7 @@ def _read(topic: Topic, mechanism: Mechanism, given: dict[str, Any]) -> dict[str
     if topic.ranged:
         for name, where in (("start", "--from"), ("stop", "--to")):
             if values[name] is not None:
-                values[name] = read_instant(mechanism, values[name], where)
+                values[name] = INSTANT(mechanism, values[name], where)
     for option in topic.options:
         if isinstance(option, Choice) or values[option.parameter] is None:
             continue

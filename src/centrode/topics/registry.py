@@ -8,6 +8,9 @@ from centrode.topics.topic import ChapterOfTopic, Choice, Given, Lazily, OutFold
 INSTANT = Lazily("centrode.model.motion_parameter", "read_instant")
 """Reads a value of the drive, or a time where that states an instant."""
 
+READ_PAIR = Lazily("centrode.analysis.instant_centres.results", "read_pair")
+"""Reads the names of two bodies."""
+
 FLYWHEEL = Topic(
     name="flywheel",
     help=mark("Find the flywheel of a machine, and its real motion."),
@@ -58,7 +61,7 @@ CENTRES = Topic(
             "pairs",
             mark("LINK,LINK"),
             mark('Two links ("AC,frame"); all pairs if left out. As often as needed.'),
-            read=Lazily("centrode.analysis.instant_centres.results", "read_pair"),
+            read=READ_PAIR,
             several=True,
         ),
     ),

@@ -173,7 +173,7 @@ def _curvature_scene(results: CentrodeResults, sample: int) -> Scene:
     """
     assert results.curvature is not None and results.instants is not None
     mechanism, here = results.mechanism, results.curvature.isel(sample=sample)
-    names = {
+    names: dict[str, Text] = {
         "pole": Sentence("pole"),
         "inflection_pole": Symbol("W"),
         "ball_point": Symbol("U"),
