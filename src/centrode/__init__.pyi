@@ -207,15 +207,14 @@ from .analysis.instant_centres.kennedy import Construction as Construction
 from .analysis.instant_centres.kennedy import MOST_BODIES as MOST_BODIES
 from .analysis.instant_centres.centrodes import centrodes as centrodes
 from .analysis.instant_centres.curvature import curvature as curvature
-from .study.centres import body_names as body_names
+from .analysis.instant_centres.results import centre_results as centre_results
+from .analysis.instant_centres.results import CentreResults as CentreResults
+from .analysis.instant_centres.results import centrode_results as centrode_results
+from .analysis.instant_centres.results import CentrodeResults as CentrodeResults
+from .analysis.instant_centres.bodies import body_names as body_names
 from .model.labels import body_name as body_name
-from .study.centres import initial_place as initial_place
-from .study.centres import place_words as place_words
-from .study.centres import centres_header as centres_header
-from .study.centres import centres_rows as centres_rows
-from .study.centres import steps_leading_to as steps_leading_to
-from .study.centres import centrode_rows as centrode_rows
-from .study.centres import curvature_rows as curvature_rows
+from .kinematics.motion import initial_place as initial_place
+from .study.wording import place_words as place_words
 
 # Integration, variants, words
 from .equations.integration import integrate as integrate
@@ -257,11 +256,6 @@ from .present import workbook_of_csv as workbook_of_csv
 from .present import spell_with_comma as spell_with_comma
 from .present import TableSpelling as TableSpelling
 from .present import write_coefficients_csv as write_coefficients_csv
-from .present import write_centres_csv as write_centres_csv
-from .present import write_centrodes_csv as write_centrodes_csv
-from .present import centres_figure as centres_figure
-from .present import centrodes_figure as centrodes_figure
-from .present import curvature_figure as curvature_figure
 from .present import darkened as darkened
 from .report.variants.folders import write_variants as write_variants
 from .present import motion_figures as motion_figures

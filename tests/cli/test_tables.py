@@ -141,7 +141,6 @@ def test_a_command_asked_plainly_writes_plain_tables(centrode: Callable[..., Any
     assert b";" not in (tmp_path / "motion.csv").read_bytes()
 
 
-@pytest.mark.xfail(strict=True, reason="fields that read like numbers are rewritten, whatever they are")
 def test_a_name_that_reads_like_a_number_keeps_its_point(
     centrode: Callable[..., Any], folder: Path, four_bar: str
 ) -> None:

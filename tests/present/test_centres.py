@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import Any
 
@@ -14,18 +15,35 @@ from PIL import Image
 
 import centrode as ct
 from centrode.present.tags import Tag, write_tags
+from centrode.render.figures import figure_of
+from centrode.sheets.scenes import Scene
+from centrode.topics.presentation import sheet_of
 
 PLANAR = [name for name in ct.example_names() if "space" not in ct.example_text(name)]
 A5 = (8.27, 5.83)
 
 
-def position(name: str, share: float = 0.4) -> tuple[ct.Mechanism, Any, ct.Construction]:
-    """A mechanism at one of its regular samples, with its construction."""
+def position(
+    name: str, share: float = 0.4, pairs: Any = None
+) -> tuple[ct.CentreResults, ct.Construction, Figure]:
+    """A mechanism at one of its regular samples, with its construction and the figure of it."""
     mechanism = ct.example(name)
     motion = ct.motion(mechanism, samples=13)
     regular = np.flatnonzero(motion["status"].to_numpy() == ct.Status.OK)
-    motion = motion.isel(sample=[int(regular[int(share * regular.size)])])
-    return mechanism, motion, ct.construct_centres(motion)
+    sample = int(regular[int(share * regular.size)])
+    instant = float(mechanism.motion_parameter.instants(motion)[sample])
+    results = ct.centre_results(mechanism, pairs=pairs, instants=[instant])
+    (made,) = results.constructions
+    assert made is not None
+    return results, made, ct.figures(results)["centres"]
+
+
+def drawn_at(results: ct.CentrodeResults, sample: int) -> Figure:
+    """The centrodes as they lie at a sample."""
+    scene = sheet_of(results).pictures["centrodes"]
+    assert isinstance(scene, Scene)
+    linkage = dataclasses.replace(scene.linkage, sample=sample)
+    return figure_of(dataclasses.replace(scene, linkage=linkage), results.mechanism.display)
 
 
 def texts_of(figure: Figure) -> list[tuple[str, Any]]:
@@ -38,8 +56,7 @@ def texts_of(figure: Figure) -> list[tuple[str, Any]]:
 
 @pytest.mark.parametrize("name", PLANAR)
 def test_names_of_no_example_cover_each_other(name: str) -> None:
-    mechanism, motion, made = position(name)
-    figure = ct.centres_figure(mechanism, motion, made)
+    results, _made, figure = position(name)
     boxes = texts_of(figure)
     room = figure.axes[0].get_window_extent()
     for number, (text, box) in enumerate(boxes):
@@ -48,12 +65,11 @@ def test_names_of_no_example_cover_each_other(name: str) -> None:
     assert (np.array(figure.get_size_inches()) <= A5).all()
     assert figure.axes[0].get_aspect() == 1.0
     named = {point for text, _box in boxes for point in text.replace("\n", ", ").split(", ")}
-    assert set(mechanism.points) <= named
+    assert set(results.mechanism.points) <= named
 
 
 def test_centres_stand_at_their_places() -> None:
-    mechanism, motion, made = position("slider-between-cranks")
-    figure = ct.centres_figure(mechanism, motion, made)
+    _results, made, figure = position("slider-between-cranks")
     marks = [line for line in figure.axes[0].get_lines() if line.get_marker() == "D"]
     shown = {tuple(float(x[0]) for x in line.get_data()) for line in marks}
     assert shown <= {step.place for step in made.steps}
@@ -69,8 +85,7 @@ def test_centres_stand_at_their_places() -> None:
 
 
 def test_the_pairs_that_are_asked_for() -> None:
-    mechanism, motion, made = position("jansen-leg")
-    figure = ct.centres_figure(mechanism, motion, made, pairs=[("AB", "frame")])
+    _results, made, figure = position("jansen-leg", pairs=[("AB", "frame")])
     assert sum(line.get_marker() == "D" for line in figure.axes[0].get_lines()) == 1
     needed = made.needed([(2, 0)])
     chords = [line for line in figure.axes[1].get_lines() if len(line.get_xdata()) == 2]
@@ -89,10 +104,8 @@ def test_a_crowd_of_names_finds_room() -> None:
 
 
 def test_centrodes_are_drawn_piece_by_piece() -> None:
-    mechanism = ct.example("crank-rocker")
-    motion = ct.motion(mechanism, samples=91)
-    found = ct.centrodes(motion, "AB")
-    figure = ct.centrodes_figure(mechanism, motion, found, 20)
+    results = ct.centrode_results(ct.example("crank-rocker"), 91, link="AB")
+    found, figure = results.centrodes, drawn_at(results, 20)
     pieces = found["centrode_piece"].to_numpy()
     curves = [line for line in figure.axes[0].get_lines() if line.get_zorder() == 7.2]
     assert len(curves) == 2 * (pieces.max() + 1)
@@ -106,16 +119,15 @@ def test_centrodes_are_drawn_piece_by_piece() -> None:
 
 def test_against_a_moving_link_both_move() -> None:
     mechanism = ct.example("antiparallelogram")
-    motion = ct.motion(mechanism, samples=31, start=0.4, stop=2.8)
-    found = ct.centrodes(motion, "DB", "OA")
+    results = ct.centrode_results(mechanism, 31, 0.4, 2.8, link="DB", against="OA")
     for sample in (3, 20):
-        figure = ct.centrodes_figure(mechanism, motion, found, sample)
+        figure = drawn_at(results, sample)
         first, second = (
             np.stack(line.get_data(), axis=1)
             for line in figure.axes[0].get_lines()
             if line.get_zorder() == 7.2
         )
-        expected = ct.instant_centres(motion, [("DB", "OA")])["centre"].to_numpy()[sample, 0]
+        expected = ct.instant_centres(results.motion, [("DB", "OA")])["centre"].to_numpy()[sample, 0]
         for curve in (first, second):
             np.testing.assert_allclose(curve[sample], expected, atol=1e-12)
 
@@ -138,10 +150,9 @@ def test_the_animation_rolls(tmp_path: Path) -> None:
 
 
 def test_the_curvature_figure_shows_its_curves() -> None:
-    mechanism = ct.example("crank-rocker")
-    motion = ct.motion(mechanism, at=[2.5])
-    bent = ct.curvature(motion, "AB")
-    figure = ct.curvature_figure(mechanism, motion, bent)
+    results = ct.centrode_results(ct.example("crank-rocker"), 9, link="AB", instants=[2.5])
+    bent, figure = results.curvature, ct.figures(results)["curvature"]
+    assert bent is not None
     circle, cubic = (
         np.stack(line.get_data(), axis=1) for line in figure.axes[0].get_lines() if line.get_zorder() == 6.8
     )
@@ -164,8 +175,8 @@ def test_the_curvature_figure_shows_its_curves() -> None:
 
 
 def test_dark_pictures_are_light_on_dark() -> None:
-    mechanism, motion, made = position("slider-between-cranks")
-    figure = ct.darkened(ct.centres_figure(mechanism, motion, made))
+    _results, _made, figure = position("slider-between-cranks")
+    figure = ct.darkened(figure)
     canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
     picture = np.asarray(canvas.buffer_rgba())[..., :3].astype(float).mean(axis=-1)

@@ -41,8 +41,7 @@ def integration(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
 
 
 def centres(mechanism: ct.Mechanism) -> Mapping[str, Figure]:
-    motion = ct.motion(mechanism, at=[0.2])
-    return {"centres": ct.centres_figure(mechanism, motion, ct.construct_centres(motion, 0))}
+    return ct.figures(ct.centre_results(mechanism, instants=[0.2]))
 
 
 @pytest.mark.parametrize("language", ["ru", "uk"])

@@ -12,7 +12,11 @@ from report.texts import texts_of
 EDITED = pytest.mark.xfail(
     strict=True, reason="sentences are respelled after the names have been put into them"
 )
-CHAPTERS_WITH_NAMES = ("words", "rotatability", "centres")
+CHAPTERS_WITH_NAMES = (
+    pytest.param("words", marks=EDITED),
+    pytest.param("rotatability", marks=EDITED),
+    "centres",
+)
 
 
 def crank_rocker(crank: str) -> ct.Mechanism:
@@ -25,7 +29,6 @@ def crank_rocker(crank: str) -> ct.Mechanism:
     )
 
 
-@EDITED
 @pytest.mark.parametrize("chapter", CHAPTERS_WITH_NAMES)
 @pytest.mark.parametrize(
     ("name", "edited", "language"),

@@ -18,17 +18,20 @@ import centrode as ct
 from centrode.locale import _, choose_language
 from centrode.model.settings import Display
 from centrode.present.spelled_tables import TableSpelling
+from centrode.render.document import blocks
+from centrode.render.document.chapters import document_chapter
 from centrode.render.document.numbers import Numbers
 from centrode.render.document.spelling import DocumentSpelling
 from centrode.render.files import write_table
+from centrode.render.plain_table import listing
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.terminal import table_text
 from centrode.sheets.plots import Abscissa
 from centrode.sheets.sheet import Column, Sheet, Table
 from centrode.sheets.texts import Counted, Name, Number, Part, Place, Sentence, Title, Unit
 from centrode.topics.order import in_order
-from centrode.topics.registry import TOPICS
-from centrode.topics.topic import Lazily
+from centrode.topics.registry import CENTRES, TOPICS
+from centrode.topics.topic import Given, Lazily, Topic
 
 SOURCE = Path(ct.__file__).parent
 HOSTILE = ("No 1.23456", "run 30 deg", "2.50 kg", "$x_1$", "<b>", "#a")
@@ -61,6 +64,12 @@ def lazy_functions(value: object) -> Iterator[Lazily]:
             yield from lazy_functions(getattr(value, field.name))
 
 
+def required_options(topic: Topic) -> list[Given]:
+    """Options without which a command does not begin."""
+    options = () if topic.command is None else topic.command.options
+    return [option for option in options if isinstance(option, Given) and option.required]
+
+
 def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
     """The sheets of all topics on the examples that have what they are about."""
     for name in names:
@@ -68,8 +77,10 @@ def sheets(names: tuple[str, ...]) -> Iterator[tuple[str, Sheet]]:
         for topic in TOPICS:
             if topic.concerns is None or topic.concerns(mechanism):
                 takes_samples = topic.command is None or topic.command.samples
-                result = topic.compute(mechanism, **({"samples": 9} if takes_samples else {}))
-                yield f"{topic.name} of {name}", topic.view(result)
+                given: dict[str, Any] = {"samples": 9} if takes_samples else {}
+                # what has to be named is a link
+                given |= {option.name: mechanism.link_names[1] for option in required_options(topic)}
+                yield f"{topic.name} of {name}", topic.view(topic.compute(mechanism, **given))
 
 
 def test_no_sentence_holds_a_number_or_a_unit() -> None:
@@ -77,7 +88,9 @@ def test_no_sentence_holds_a_number_or_a_unit() -> None:
     seen = 0
     for language in ("en", "ru", "uk"):
         choose_language(language)
-        for where, sheet in sheets(("six-bar-press", "six-bar-press-printed", "five-bar-two-drives")):
+        for where, sheet in sheets(
+            ("six-bar-press", "six-bar-press-printed", "five-bar-two-drives", "spherical-crank-guide")
+        ):
             for leaf in leaves(dataclasses.replace(sheet, datasets={})):
                 messages = [leaf.message] if isinstance(leaf, Sentence) else []
                 if isinstance(leaf, Counted):
@@ -101,8 +114,8 @@ def test_every_literal_of_a_sentence_is_in_the_catalogues() -> None:
             named = isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
             if named and node.func.id in ("Sentence", "Counted"):  # type: ignore[attr-defined]
                 first = node.args[0]  # type: ignore[attr-defined]
-                if isinstance(first, ast.Attribute) and first.attr == "long_name":
-                    continue  # of the vocabulary of quantities, which marks its own
+                if isinstance(first, ast.Attribute) and first.attr in ("long_name", "word"):
+                    continue  # of a vocabulary that marks its own: quantities, statuses, cases of centres
                 if isinstance(first, ast.Subscript) and ast.unparse(first.value) == "STATUS_WORDS":
                     continue  # of the vocabulary as well
                 assert isinstance(first, ast.Constant), f"{file}:{first.lineno}: a sentence is a literal"
@@ -238,3 +251,31 @@ def test_fixed_columns_stay_in_si(tmp_path: Path) -> None:
     columns = (Column("a", np.array([1.0]), "rad", unit_fixed=True), Column("b", np.array([math.pi]), "rad"))
     write_table(Table(columns), tmp_path / "t.csv", Display(angle="deg"))
     assert (tmp_path / "t.csv").read_text(encoding="utf-8") == "a [rad],b [deg]\n1.0,180.0\n"
+
+
+def test_no_item_of_a_listing_is_broken() -> None:
+    """A line holds a hundred columns; what is longer stands alone."""
+    assert listing("bodies", ["0 frame", "1 OA"]) == "bodies: 0 frame, 1 OA"
+    items = [f"{number} link of many words" for number in range(20)] + ["x" * 120]
+    heading, *lines = listing("bodies", items).splitlines()
+    assert heading == "bodies:"
+    assert max(map(len, lines[:-1])) <= 100
+    assert ", ".join(line.strip().rstrip(",") for line in lines) == ", ".join(items)
+
+
+@pytest.mark.parametrize("hostile", HOSTILE)
+def test_names_in_a_scene_come_out_character_by_character(hostile: str) -> None:
+    """A link of any name: in the printed table, the file, the drawing and the chapter of its centres."""
+    coupler = f'[links."{hostile}"]\npoints = ["A", "B"]'
+    mechanism = ct.parse_mechanism(ct.example_text("crank-rocker").replace("[links.AB]", coupler))
+    assert hostile in mechanism.link_names
+    results = ct.centre_results(mechanism)
+    assert f"{hostile} against frame" in ct.summary(results)
+    assert Name(hostile) in ct.tables(results)["centres"].columns[2].values
+    axes = ct.figures(results)["centres"].axes
+    key = [label.get_text() for one in axes if one.get_legend() for label in one.get_legend().get_texts()]
+    assert any(label.replace(r"\$", "$").endswith(f" {hostile}") for label in key)
+    sheet = CENTRES.view(results)
+    document = document_chapter("centres", sheet, Numbers(mechanism.display))
+    (table,) = [block for block in document.sections[1].blocks if isinstance(block, blocks.Table)]
+    assert f"{hostile} – frame" in [row[1].replace(r"\$", "$") for row in table.rows]

@@ -12,13 +12,16 @@ from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import mechanism_argument, range_option, samples_option, start_option, stop_option
 from centrode.cli.expected import announce_size
-from centrode.cli.reached import is_placed, tell_no_centre
-from centrode.errors import InputError, MotionError
+from centrode.errors import InputError, MotionError, Status
 from centrode.locale import _, mark
+from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
     import xarray
 
+PLACED = (Status.OK, Status.CUT_OFF, Status.SINGULAR)
+"""Statuses of samples that have a position."""
+REQUIRE_CENTRES = Lazily("centrode.analysis.instant_centres.results", "require_centres")
 KINDS = {".dxf": "write_drawing_dxf", ".svg": "write_drawing_svg"}
 
 
@@ -75,7 +78,7 @@ def draw(
     with about(mechanism):
         course = ct.motion(description, samples, first, last)
         motion, sample = ct.motion_among(description, course, place)
-        rolled = [_centrodes(mechanism, course, link) for link in links]
+        rolled = [_centrodes(course, link) for link in links]
         drawing = ct.mechanism_drawing(
             description,
             motion,
@@ -88,7 +91,7 @@ def draw(
     with output.output_file(out, force=force) as draft:
         getattr(ct, KINDS[kind])(drawing, draft)
     click.echo(_("wrote {file}").format(file=out))
-    if not is_placed(motion, sample):
+    if Status(int(motion["status"][sample])) not in PLACED:
         raise MotionError(
             mechanism,
             _("there is no position at {place}").format(place=ct.place_words(description, motion, sample)),
@@ -96,9 +99,8 @@ def draw(
         )
 
 
-def _centrodes(mechanism: str, course: xarray.Dataset, link: str) -> xarray.Dataset:
+def _centrodes(course: xarray.Dataset, link: str) -> xarray.Dataset:
     """The centrodes of a link against the frame; MotionError where there are none."""
     found = ct.centrodes(course, link)
-    if not (found["centrode_piece"] >= 0).any():
-        tell_no_centre(mechanism, link, "frame")
+    REQUIRE_CENTRES(found)
     return found

@@ -22,8 +22,6 @@ import centrode as ct
 from centrode.cli import output
 from centrode.cli.animate import animate
 from centrode.cli.cam import cam
-from centrode.cli.centres import centres
-from centrode.cli.centrodes import centrodes
 from centrode.cli.check import check
 from centrode.cli.describe import describe
 from centrode.cli.diagrams import diagrams
@@ -59,8 +57,6 @@ OWN: tuple[click.Command, ...] = (
     polygons,
     variants,
     cam,
-    centres,
-    centrodes,
     diagrams,
     plan,
     sweep,

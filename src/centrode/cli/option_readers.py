@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import centrode as ct
+from centrode.analysis.instant_centres.results import read_pair
 from centrode.cli.pairs import pairs, ranges
 
 if TYPE_CHECKING:
@@ -25,6 +26,11 @@ def read_ranges(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict
 def read_instant(mechanism: Mechanism, text: str, where: str) -> float:
     """A value of the drive [rad or m], or a time [s] where the drive is a law."""
     return ct.range_value(mechanism, text, where)
+
+
+def read_pairs_of_bodies(mechanism: Mechanism, texts: Iterable[str], where: str) -> list[tuple[str, str]]:
+    """Pairs of bodies of texts LINK,LINK."""
+    return [read_pair(mechanism, text, where) for text in texts]
 
 
 def read_instants(mechanism: Mechanism, texts: Iterable[str], where: str) -> list[float]:

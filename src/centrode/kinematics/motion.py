@@ -285,6 +285,12 @@ def motion(
     return dataset_of(_solve_range(prepared, span, numbers, lanes, progress), vary)
 
 
+def initial_place(mechanism: Mechanism) -> float:
+    """Value of the drive in the initial position, with a law or several drives the time there [rad, m or s]."""
+    prepared = ready(mechanism)
+    return float(prepared.kinematics.path.initial) if prepared.parameter.is_uniform else 0.0
+
+
 def _solve_range(
     ready: Ready, span: SampleGrid, numbers: Dimensions | None, lanes: int, progress: Progress | None
 ) -> Solved:

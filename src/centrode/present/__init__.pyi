@@ -9,8 +9,6 @@ from .workbooks import write_motion_xlsx as write_motion_xlsx
 from .decimal_comma import spell_with_comma as spell_with_comma
 from .spelled_tables import TableSpelling as TableSpelling
 from .coefficient_tables import write_coefficients_csv as write_coefficients_csv
-from .centres_tables import write_centres_csv as write_centres_csv
-from .centres_tables import write_centrodes_csv as write_centrodes_csv
 from .sweep_tables import sweep_csv as sweep_csv
 
 # Figures of motions, centres and plans
@@ -19,9 +17,6 @@ from .dark import darkened as darkened
 from .figures import motion_figures as motion_figures
 from .reading import scene_of as scene_of
 from .drawing import draw_mechanism as draw_mechanism
-from .centres import centres_figure as centres_figure
-from .centrodes import centrodes_figure as centrodes_figure
-from .curvature import curvature_figure as curvature_figure
 from .instant_drawing import diagram_figures as diagram_figures
 from .plan_drawing import plan_figure as plan_figure
 

@@ -21,6 +21,7 @@ from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_st
 from centrode.render.areas import area_figure
 from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.panel_grids import grid_figure
+from centrode.render.scenes import scene_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
@@ -39,6 +40,7 @@ from centrode.sheets.plots import (
     TraceKind,
     VectorPage,
 )
+from centrode.sheets.scenes import Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -100,6 +102,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return linkage_figure(picture, display)
             case AreaDiagram():
                 return area_figure(picture, display)
+            case Scene():
+                return scene_figure(picture, display)
             case _:
                 assert_never(picture)
 

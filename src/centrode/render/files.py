@@ -91,9 +91,15 @@ def _cells(column: Column, words: PlainSpelling, rows: slice = slice(None)) -> l
     return numbers
 
 
+def _number(cell: float, column: Column) -> float | int:
+    return int(cell) if column.whole else cell
+
+
 def _fields(column: Column, rows: slice, words: PlainSpelling, mark: str) -> list[str]:
     """Cells as fields: the shortest digits that read back as the same number."""
     return [
-        cell if isinstance(cell, str) else ("" if cell != cell else repr(cell).replace(".", mark))
+        cell
+        if isinstance(cell, str)
+        else ("" if cell != cell else repr(_number(cell, column)).replace(".", mark))
         for cell in _cells(column, words, rows)
     ]

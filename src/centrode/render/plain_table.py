@@ -5,6 +5,9 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Sequence
 
+WIDTH = 100
+"""Columns of a listing."""
+
 
 def aligned(rows: Sequence[Sequence[str]], header: Sequence[str] = (), right: Sequence[int] = ()) -> str:
     """Rows as plain text, columns aligned and two spaces apart; the columns numbered in `right` align right."""
@@ -26,3 +29,19 @@ def width_of(text: str) -> int:
     marks = sum(unicodedata.category(letter) in ("Mn", "Me", "Cf") for letter in text)
     wide = sum(unicodedata.east_asian_width(letter) in ("W", "F") for letter in text)
     return len(text) - marks + wide
+
+
+def listing(heading: str, items: Sequence[str]) -> str:
+    """A heading with items behind it, or indented below it where one line does not hold them; no item is broken."""
+    line = ", ".join(items)
+    if len(heading) + 2 + len(line) <= WIDTH:
+        return f"{heading}: {line}"
+    lines = [f"{heading}:", ""]
+    for number, item in enumerate(items, start=1):
+        piece = item if number == len(items) else f"{item},"
+        longer = f"{lines[-1]} {piece}" if lines[-1] else f"  {piece}"
+        if lines[-1] and len(longer) > WIDTH:
+            lines.append(f"  {piece}")
+        else:
+            lines[-1] = longer
+    return "\n".join(lines)

@@ -14,6 +14,7 @@ from centrode.sheets.texts import (
     Counted,
     Expression,
     Factor,
+    Indexed,
     Joined,
     Name,
     Number,
@@ -66,8 +67,12 @@ class Spelling(ABC):
                 return self.expression(text)
             case Unit(unit):
                 return self.unit(unit)
-            case Place(coordinates, unit):
-                return self.place([Number(value, unit, unit_hidden=True) for value in coordinates], unit)
+            case Place(coordinates, unit, digits):
+                return self.place(
+                    [Number(value, unit, digits, unit_hidden=True) for value in coordinates], unit
+                )
+            case Indexed():
+                return self.indexed(text)
             case Part(part):
                 return self.part(self.text(part))
             case _:
@@ -106,6 +111,10 @@ class Spelling(ABC):
         """A unit on its own."""
 
     @abstractmethod
+    def indexed(self, symbol: Indexed) -> str:
+        """A letter with numbers of bodies as its index."""
+
+    @abstractmethod
     def place(self, coordinates: Sequence[Number], unit: str) -> str:
         """A place."""
 
@@ -126,9 +135,9 @@ class PlainSpelling(Spelling):
         factor, unit = self.shown_unit(number)
         digits = format(number.value * factor if factor != 1.0 else number.value, number.digits or ".6g")
         text = digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
-        return (
-            f"{text} ({math.degrees(number.value):.6g} deg)" if number.degrees_too and unit == "rad" else text
-        )
+        if number.degrees_too and unit == "rad":
+            return f"{text} ({math.degrees(number.value):.6g} deg)"
+        return text
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""
@@ -144,6 +153,10 @@ class PlainSpelling(Spelling):
         }
         return expression.notation.format(**holes)
 
+    def indexed(self, symbol: Indexed) -> str:
+        """The letter with its index right behind it."""
+        return f"{symbol.letter}{symbol.index}"
+
     def unit(self, unit: str) -> str:
         """A unit as tables head their columns: "kg m^2"."""
         return unit
@@ -151,7 +164,8 @@ class PlainSpelling(Spelling):
     def place(self, coordinates: Sequence[Number], unit: str) -> str:
         """A place as "(1.25, 0) m"."""
         shown = shown_as(unit, self.display)[1]
-        return f"({', '.join(map(self.number, coordinates))}) {typeset_unit(shown)}"
+        label = "" if shown in ("", "1") else typeset_unit(shown)
+        return f"({', '.join(map(self.number, coordinates))}) {label}".rstrip()
 
     def part(self, text: str) -> str:
         """What belongs to the entry above it, indented."""
@@ -181,6 +195,10 @@ class FigureSpelling(PlainSpelling):
         """A letter with its index, as mathematics; an index that is a name stands upright."""
         index = symbol.index if symbol.slanted or not symbol.index else rf"\mathrm{{{symbol.index}}}"
         return formula(symbol.letter, index)
+
+    def indexed(self, symbol: Indexed) -> str:
+        """The letter with its index below it."""
+        return f"${symbol.letter}_{{{symbol.index}}}$"
 
     def label(self, label: AxisLabel) -> tuple[float, str, str]:
         """Factor from the label's unit to the one shown, the text of an axis with that unit behind it, and the unit."""

@@ -7,9 +7,21 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from centrode.render.plain_table import aligned
+from centrode.quantities import typeset_unit
+from centrode.render.plain_table import aligned, listing
 from centrode.render.spelling import PlainSpelling
-from centrode.sheets.sheet import Items, Paragraph, Table
+from centrode.sheets.sheet import (
+    Block,
+    Check,
+    FactTable,
+    Formula,
+    Illustration,
+    Items,
+    Listing,
+    Paragraph,
+    Section,
+    Table,
+)
 from centrode.sheets.texts import Number
 
 if TYPE_CHECKING:
@@ -35,20 +47,40 @@ def plain_text(text: Text, display: Display) -> str:
 
 
 def sheet_text(sheet: Sheet, display: Display) -> str:
-    """What a terminal prints of a sheet: its facts, and tables, paragraphs and items below them."""
-    spelling, text = PlainSpelling(display), facts_text(sheet.facts, display)
+    """What a terminal prints of a sheet: its facts and what it prints below them, a blank line between the parts."""
+    spelling = PlainSpelling(display)
+    parts = [facts_text(sheet.facts, display)] if sheet.facts else []
     for block in sheet.printed:
-        apart = "\n\n" if text else ""
-        match block:
-            case Table():
-                text += apart + table_text(block, spelling)
-            case Paragraph(sentences):
-                text += apart + spelling.text(sentences)
-            case Items(texts):
-                text += "".join(f"\n  {spelling.text(item)}" for item in texts)
-            case _:
-                assert_never(block)
-    return text
+        text = _section(block, spelling) if isinstance(block, Section) else _block(block, spelling)
+        if isinstance(block, Items) and parts:
+            parts[-1] += "\n" + text  # what is above them is their heading
+        else:
+            parts.append(text)
+    return "\n\n".join(parts)
+
+
+def _section(section: Section, spelling: PlainSpelling) -> str:
+    parts = [spelling.text(section.title), *(_block(block, spelling) for block in section.blocks)]
+    return "\n".join(filter(None, parts))
+
+
+def _block(block: Block, spelling: PlainSpelling) -> str:
+    """A block as lines; formulas, pictures and checks belong to documents."""
+    match block:
+        case FactTable(facts):
+            return aligned([(spelling.text(fact.label), spelling.text(fact.value)) for fact in facts])
+        case Table():
+            return table_text(block, spelling)
+        case Paragraph(text):
+            return spelling.text(text)
+        case Items(texts):
+            return "\n".join(f"  {spelling.text(item)}" for item in texts)
+        case Listing(heading, items):
+            return listing(spelling.text(heading), [spelling.text(item) for item in items])
+        case Formula() | Illustration() | Check():
+            return ""
+        case _:
+            assert_never(block)
 
 
 def table_text(table: Table, spelling: PlainSpelling) -> str:
@@ -69,9 +101,10 @@ def table_text(table: Table, spelling: PlainSpelling) -> str:
 
 
 def _head(column: Column, spelling: PlainSpelling) -> str:
-    """What a column holds, with its unit behind it."""
+    """What a column holds, with the unit that is shown behind it."""
     name = spelling.text(column.head) or column.name
-    return f"{name}, {column.unit}" if column.unit not in ("", "1") else name
+    unit = spelling.shown_unit(Number(0.0, column.unit))[1]
+    return f"{name}, {typeset_unit(unit)}" if unit not in ("", "1") else name
 
 
 def _stands_right(column: Column) -> bool:

@@ -8,12 +8,11 @@ import numpy as np
 import xarray as xr
 
 from centrode.errors import Status
-from centrode.kinematics.motion import motion
+from centrode.kinematics.motion import initial_place, motion
 from centrode.locale import _
 from centrode.quantities import status_word
 from centrode.render.document.numbers import Numbers
 from centrode.report.study import ReportStudy
-from centrode.study.centres import initial_place
 
 
 @dataclass(frozen=True)
@@ -53,11 +52,6 @@ class Moment:
 def moments_of(study: ReportStudy) -> tuple[Moment, ...]:
     """The instants asked for; else the initial position, or the first sample that is reached."""
     return study.once("moments", lambda: tuple(_moments(study)))
-
-
-def reached_moments(study: ReportStudy) -> tuple[Moment, ...]:
-    """Those of them where everything is known."""
-    return tuple(moment for moment in moments_of(study) if moment.reached)
 
 
 def _moments(study: ReportStudy) -> list[Moment]:

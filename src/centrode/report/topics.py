@@ -21,7 +21,8 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
     """
-    if study.is_cam or (topic.concerns is not None and not topic.concerns(study.mechanism)):
+    concerns = topic.concerns if chapter.concerns is None else chapter.concerns
+    if study.is_cam or (concerns is not None and not concerns(study.mechanism)):
         return None
     try:
         sheet = _sheet(topic, study)

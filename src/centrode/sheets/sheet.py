@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
 from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, VectorPage
+from centrode.sheets.scenes import Scene
 from centrode.sheets.texts import NOTHING, Leaf, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
 Picture: TypeAlias = (
-    Plot | Diagram | PanelGrid | VectorPage | Hodograph | BarChart | LinkageWithDiscs | AreaDiagram
+    Plot | Diagram | PanelGrid | VectorPage | Hodograph | BarChart | LinkageWithDiscs | AreaDiagram | Scene
 )
 
 
@@ -45,6 +46,8 @@ class Column:
         In documents and on terminals; the name of the column if left out.
     unit_fixed : bool
         The unit stays whatever the display says: tables that are in SI for every reader.
+    whole : bool
+        The numbers are whole, and files write them so; NaN is an empty field all the same.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Column:
     unit: str = "1"
     head: Text = NOTHING
     unit_fixed: bool = False
+    whole: bool = False
 
     @property
     def is_numeric(self) -> bool:
@@ -114,9 +118,9 @@ class FactTable:
 
 @dataclass(frozen=True)
 class Illustration:
-    """A picture of the sheet in a document, by its name, with a caption; its own title if None."""
+    """A picture of the sheet by its name, or one of a document alone, with a caption; its own title if None."""
 
-    picture: str
+    picture: str | Picture
     caption: Text | None = None
 
 
@@ -144,7 +148,15 @@ class Items:
     texts: tuple[Text, ...]
 
 
-Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check | Items
+@dataclass(frozen=True)
+class Listing:
+    """A heading and what is listed behind it; no item is broken over two lines."""
+
+    heading: Text
+    items: tuple[Text, ...]
+
+
+Block: TypeAlias = Paragraph | Formula | Table | FactTable | Illustration | Check | Items | Listing
 
 
 @dataclass(frozen=True)
@@ -195,7 +207,7 @@ class Sheet:
     datasets : name of a file without its ending -> dataset, as netCDF
     pictures : name -> plot, diagram or scene
     chapters : name -> chapter of a document
-    printed : tables, paragraphs and items that a terminal prints below the facts
+    printed : what a terminal prints below the facts; the title of a section stands on the line above it
     files : name of a further file -> its text
     record : the result as JSON holds it, in SI and in English; None where a result has no such form
     failure : what ends a command after everything is shown and written; None if nothing does
@@ -207,7 +219,7 @@ class Sheet:
     datasets: Mapping[str, xarray.Dataset] = field(default_factory=dict)
     pictures: Mapping[str, Picture] = field(default_factory=dict)
     chapters: Mapping[str, Chapter] = field(default_factory=dict)
-    printed: tuple[Table | Paragraph | Items, ...] = ()
+    printed: tuple[Block | Section, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict)
     record: Mapping[str, Any] | None = None
     failure: Failure | None = None

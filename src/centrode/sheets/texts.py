@@ -159,10 +159,18 @@ class Unit:
 
 @dataclass(frozen=True)
 class Place:
-    """Coordinates of a place, in `unit`."""
+    """A place or a direction by its coordinates.
+
+    Attributes
+    ----------
+    coordinates : along the axes, in `unit`
+    unit : SI unit; "1" of a unit vector
+    digits : as of a number
+    """
 
     coordinates: tuple[float, ...]
-    unit: str
+    unit: str = "m"
+    digits: str = ""
 
 
 @dataclass(frozen=True)
@@ -172,11 +180,17 @@ class Part:
     text: Text
 
 
+@dataclass(frozen=True)
+class Indexed:
+    """A letter with numbers of bodies as its index: P20 is the centre of bodies 2 and 0."""
+
+    letter: str
+    index: str
+
+
 Leaf: TypeAlias = "str | Number | Factor | Name | Expression"
 """A piece of a formula; a string is notation without leaves of its own."""
-Text: TypeAlias = (
-    "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression | Unit | Part | Place"
-)
+Text: TypeAlias = "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression | Unit | Part | Place | Indexed"
 
 NOTHING = Joined(())
 """An empty text."""

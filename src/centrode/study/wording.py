@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from math import tau
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from centrode.errors import Status
 from centrode.kinematics.solve import Solved
 from centrode.locale import _
-from centrode.model.mechanism import Display, Drive
+from centrode.model.mechanism import Display, Drive, Mechanism
 from centrode.numerics.arrays import ARRAYS
-from centrode.quantities import display_unit
+from centrode.quantities import display_unit, status_word
 from centrode.structure.assur import name_of
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def extremes(solved: Solved) -> list[tuple[Drive, float, float]]:
@@ -27,6 +32,18 @@ def value_text(at: float, unit: str, display: Display) -> str:
     factor, shown = display_unit(unit, display.length, display.angle)
     text = f"{at * factor:.9g} {shown}"
     return f"{text} ({np.degrees(at):.6g} deg)" if shown == "rad" else text
+
+
+def place_words(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> str:
+    """Where a sample is: values of the drives with their units, and its status where it is not ok."""
+    values = motion["drive_value"].to_numpy()[sample]
+    texts = []
+    for drive, value in zip(mechanism.drives, values, strict=True):
+        texts.append(
+            f"{drive.id} {value_text(float(value), mechanism.motion_parameter.drive(drive.id).unit, mechanism.display)}"
+        )
+    status = int(motion["status"][sample])
+    return ", ".join(texts) + ("" if status == Status.OK else f" ({status_word(status)})")
 
 
 class Words:

@@ -18,6 +18,7 @@ from centrode.topics.topic import (
 
 READ_PAIRS = Lazily("centrode.cli.option_readers", "read_pairs")
 READ_RANGES = Lazily("centrode.cli.option_readers", "read_ranges")
+READ_INSTANTS = Lazily("centrode.cli.option_readers", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_readers", "read_instant")
 
 INTEGRATE = Topic(
@@ -299,11 +300,90 @@ SHAKING = Topic(
     ),
 )
 
+CENTRES = Topic(
+    name="centres",
+    compute=Lazily("centrode.analysis.instant_centres.results", "centre_results"),
+    result=Lazily("centrode.analysis.instant_centres.results", "CentreResults"),
+    view=Lazily("centrode.views.centres", "sheet"),
+    command=Command(
+        help=mark("Find the instant centres of velocity of every pair of links."),
+        needs=Lazily("centrode.analysis.instant_centres.results", "need_pairs"),
+        options=(
+            Given(
+                "at",
+                mark("VALUE"),
+                mark(
+                    'Value of the drive ("pi/2 rad"), or time; the instants of the study if left out, else the start.'
+                ),
+                several=True,
+                parameter="instants",
+                read=READ_INSTANTS,
+            ),
+            Given(
+                "pair",
+                mark("LINK,LINK"),
+                mark('Two links ("AC,frame"); all pairs if left out. As often as needed.'),
+                several=True,
+                parameter="pairs",
+                read=Lazily("centrode.cli.option_readers", "read_pairs_of_bodies"),
+            ),
+        ),
+        samples=False,
+        ending=Lazily("centrode.analysis.instant_centres.results", "centre_shortfall"),
+        dark=True,
+    ),
+    document=InDocuments(
+        chapters=(
+            ChapterOfTopic(
+                "centres",
+                mark("Instant centres of velocity"),
+                concerns=Lazily("centrode.analysis.instant_centres.results", "is_planar"),
+            ),
+            ChapterOfTopic(
+                "axes",
+                mark("Instantaneous axes"),
+                concerns=Lazily("centrode.analysis.instant_centres.results", "is_on_sphere"),
+            ),
+        ),
+        may_be_left_out=True,
+    ),
+)
+
+CENTRODES = Topic(
+    name="centrodes",
+    compute=Lazily("centrode.analysis.instant_centres.results", "centrode_results"),
+    result=Lazily("centrode.analysis.instant_centres.results", "CentrodeResults"),
+    view=Lazily("centrode.views.centrodes", "sheet"),
+    command=Command(
+        help=mark("Compute the centrodes of a link and draw them."),
+        options=(
+            Given("link", mark("LINK"), mark("The link that carries the moving centrode."), required=True),
+            Given("against", mark("LINK"), mark("The link that it rolls on; the frame if left out.")),
+            Given(
+                "at",
+                mark("VALUE"),
+                mark("Also the curvature of the paths of the link's points there; as often as needed."),
+                several=True,
+                parameter="instants",
+                read=READ_INSTANTS,
+            ),
+            MotionRange(),
+        ),
+        ending=Lazily("centrode.analysis.instant_centres.results", "centrode_shortfall"),
+        folder="centrodes",
+        dark=True,
+        animation=Lazily("centrode.present.animations.given", "animate_rolling"),
+        animation_help=mark("Also write an animation: one centrode rolls on the other."),
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
     REGION,
     ANGLES,
+    CENTRES,
+    CENTRODES,
     REDUCTION,
     FLYWHEEL,
     SIMULATION,

@@ -16,6 +16,7 @@ from centrode.sheets.texts import Joined, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
+    from numpy.typing import NDArray
 
 VARIABLES = (
     "turned",
@@ -157,3 +158,11 @@ def counted_statuses(status: NDArray[np.int8]) -> Text:
             for code, count in zip(codes.tolist(), counts.tolist(), strict=True)
         ]
     )
+
+
+def instant_columns(dataset: xarray.Dataset, samples: NDArray[np.intp]) -> Iterator[Column]:
+    """Time and values of the drives of some samples, which may come more than once."""
+    yield Column("time", dataset["time"].to_numpy()[samples], "s")
+    values = dataset["drive_value"].to_numpy()[samples]
+    for number, (name, unit) in enumerate(zip(dataset["drive"].values, drive_units(dataset), strict=True)):
+        yield Column(f"drive_{name}", values[:, number], unit)

@@ -1,10 +1,12 @@
-"""Places and instants of a motion as texts: "OA = 90°", "t = 2 s, OA = 90°"."""
+"""Instants of a motion as texts: "OA = 90°", "t = 2 s, OA = 90°", "OA 1.57 rad (90 deg)"; names of bodies."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from centrode.sheets.texts import Joined, Name, Number, Text
+from centrode.errors import Status
+from centrode.model.reading import FRAME
+from centrode.sheets.texts import Joined, Name, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,6 +31,28 @@ def instant_title(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> Text
 def place_number(value: float, unit: str) -> Number:
     """A place on a path [SI]: with the digits to ask for it again, and degrees beside radians."""
     return Number(value, unit, ".9g", degrees_too=True)
+
+
+def instant_place(mechanism: Mechanism, motion: xr.Dataset, sample: int) -> Text:
+    """Where a sample is: the values of the drives, and its status where it is not ok."""
+    values = motion["drive_value"].to_numpy()[sample]
+    parts = [
+        Joined((Name(drive.name), Number(float(value), drive.unit, ".9g", degrees_too=True)), " ")
+        for drive, value in zip(mechanism.motion_parameter.drives, values, strict=True)
+    ]
+    status = Status(int(motion["status"][sample]))
+    if status == Status.OK:
+        return Joined(parts)
+    return Sentence("{value} ({remark})", value=Joined(parts), remark=Sentence(status.word))
+
+
+def body_text(mechanism: Mechanism, name: str) -> Text:
+    """A link by its own name; the frame, and a slider that no link is named for, by a word."""
+    if name == FRAME:
+        return Sentence("frame")
+    if name in mechanism.links:
+        return Name(name)
+    return Sentence("slider {point}", point=Name(name.removeprefix("slider ")))
 
 
 def _equal(name: str, number: Number) -> Text:

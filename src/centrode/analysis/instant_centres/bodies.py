@@ -170,6 +170,11 @@ def _column(motion: xr.Dataset, variable: str) -> Array | Places:
     return np.asarray(values[..., 0] + 1j * values[..., 1]) if "axis" in motion[variable].dims else values
 
 
+def body_names(mechanism: Mechanism) -> tuple[str, ...]:
+    """Bodies by number: the frame, links and sliders ("slider C": a point on a guide without a link of its own)."""
+    return (FRAME, *mechanism.link_names, *sliders_of(mechanism))
+
+
 def sliders_of(mechanism: Mechanism) -> dict[str, Guide]:
     """Name -> guide of the sliders that a description does not name as links."""
     found: dict[str, Guide] = {}

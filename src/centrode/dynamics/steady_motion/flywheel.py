@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
 
 from centrode.dynamics.steady_motion.coursework_method import needed_by_source
 from centrode.dynamics.steady_motion.speed import MeanSpeed, Tangents, with_inertia
@@ -202,7 +201,7 @@ def flywheel(mechanism: Mechanism, mean: MeanSpeed = "middle") -> Flywheel:
     return flywheel_of(solution_of(mechanism, mean))
 
 
-def need_fluctuation(mechanism: Mechanism, **_arguments: Any) -> None:
+def need_fluctuation(mechanism: Mechanism, **_arguments: object) -> None:
     """Raise InputError for a machine whose description does not limit the fluctuation of its speed."""
     if mechanism.machine is not None and mechanism.machine.fluctuation is None:
         raise InputError(

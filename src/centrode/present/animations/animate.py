@@ -20,9 +20,9 @@ from centrode.present.animations.paces import Animation, Pace, write_stage
 from centrode.present.animations.shown import Shown, check_shown, layers_of
 from centrode.present.animations.stage import Stage
 from centrode.present.animations.timing import SIZE, check_timing, kind_of, size_of
-from centrode.study.centres import place_words
 from centrode.study.moving.courses import Course, course_of
 from centrode.study.moving.films import Film, film_of
+from centrode.study.wording import place_words
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism

@@ -18,9 +18,8 @@ from centrode.model.reading import FRAME
 from centrode.present.animations.layers import WHOLE, Array
 from centrode.present.animations.motions import FAR, MotionLayer
 from centrode.present.scene import Scene
-from centrode.present.sphere.globe import Globe
+from centrode.present.sphere.globe import Globe, laid
 from centrode.present.sphere.globe_drawing import draw_line
-from centrode.present.sphere.polodes_drawing import laid
 from centrode.present.window import carried_by, within
 
 if TYPE_CHECKING:

@@ -27,6 +27,7 @@ from centrode.study.moving.films import film_from
 if TYPE_CHECKING:
     import xarray
 
+    from centrode.analysis.instant_centres.results import CentrodeResults
     from centrode.cams.followers.geometry import FollowerCam
     from centrode.cams.profiles import ProfileBody
     from centrode.cams.walking_wheel import WheelMover
@@ -96,6 +97,11 @@ def animate_centrodes(
     )
     stage, _notes = stage_of(film, Shown(()), SIZE, dark=dark, more=[rolling])
     write_stage(stage, Path(path), Timing(stage.frames, PER_SECOND), said)
+
+
+def animate_rolling(results: CentrodeResults, path: Path, dark: bool = False) -> None:
+    """Write an animation (GIF or MP4) of the centrodes of a result; raises InputError where nothing rolls."""
+    animate_centrodes(results.mechanism, results.motion, results.centrodes, path, dark)
 
 
 def animate_walking(

@@ -14,9 +14,9 @@ from centrode.present.labels import steady_offsets
 from centrode.present.obstacles import lines
 from centrode.present.scene import Scene
 from centrode.present.shown import plain
-from centrode.present.sphere.axes_drawing import arcs_on_paper
 from centrode.present.sphere.globe import Globe
 from centrode.present.sphere.globe_drawing import (
+    arcs_on_paper,
     draw_arcs,
     draw_circles,
     draw_points,

@@ -22,7 +22,7 @@ from centrode.present.drawing import (
 from centrode.present.reading import scene_of
 from centrode.present.style import pens
 from centrode.present.window import carried_by
-from centrode.study.centres import place_words
+from centrode.study.wording import place_words
 
 if TYPE_CHECKING:
     import xarray

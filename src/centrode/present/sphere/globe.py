@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -97,6 +97,11 @@ def globe_of(mechanism: Mechanism, dataset: xarray.Dataset) -> Globe:
     return Globe(mechanism=mechanism, tracks=tracks, view=view, low=low, high=high)
 
 
+def whole(globe: Globe) -> Globe:
+    """The same with the whole sphere in view: axes lie anywhere on it."""
+    return replace(globe, low=np.array([-1.0, -1.0]), high=np.array([1.0, 1.0]))
+
+
 def view_of(tracks: Mapping[str, Array]) -> Array:
     """To the right, up and towards the eye: over the middle of what moves, with the poles upright."""
     places = np.concatenate([*tracks.values(), np.empty((0, 3))])
@@ -109,3 +114,35 @@ def view_of(tracks: Mapping[str, Array]) -> Array:
     right = np.cross(upright, eye)
     right /= np.linalg.norm(right)
     return np.stack([right, np.cross(eye, right), eye])
+
+
+def laid(globe: Globe, body: str, curve: Array, sample: int) -> Array | None:
+    """A curve in the axes of a body (samples, 3) as it lies at a sample; nothing where the body has no position."""
+    guide = slider_guide(globe, body)
+    if guide is None:
+        return globe.carried(body, curve, sample)
+    pole = guide.pole
+    if isinstance(pole, str):
+        pole = globe.mechanism.points_of(guide.on)[pole]
+    inside = unit_vector(pole)  # type: ignore[arg-type]
+    longitude, latitude = pole  # type: ignore[misc]
+    north = np.array(unit_vector((longitude, latitude + np.pi / 2)))
+    frame = globe.carried(guide.on, np.eye(3), sample)
+    if frame is None:
+        return None
+    point = frame @ globe.tracks[guide.point][sample]
+    angle = np.arctan2(point @ np.cross(inside, north), point @ north)
+    axis = np.array(inside)
+    turned = (
+        np.cos(angle) * curve
+        + np.sin(angle) * np.cross(axis, curve)
+        + (1.0 - np.cos(angle)) * (curve @ axis)[:, None] * axis
+    )
+    return globe.carried(guide.on, turned, sample)
+
+
+def slider_guide(globe: Globe, body: str) -> Guide | None:
+    """The guide of a slider by the slider's name; none of a link or the frame."""
+    if body == "frame" or body in globe.mechanism.links:
+        return None
+    return next(guide for guide in globe.mechanism.guides if body.startswith(f"slider {guide.id}"))

@@ -164,3 +164,14 @@ def draw_names(axes: Axes, globe: Globe, sample: int) -> None:
             va="center",
             zorder=8,
         )
+
+
+def arcs_on_paper(globe: Globe, sample: int) -> list[tuple[Array, Array]]:
+    """Pieces of the links' arcs, for texts to keep clear of."""
+    places = globe.at(sample)
+    found: list[tuple[Array, Array]] = []
+    for link in globe.mechanism.links.values():
+        outline = [places[name] for name in corners(link) if name in places]
+        for start, end in pairwise(outline):
+            found += list(pairwise(globe.flat(great_arc(start, end))[::6]))
+    return found

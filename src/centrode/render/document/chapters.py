@@ -24,6 +24,7 @@ from centrode.sheets.sheet import (
     Formula,
     Illustration,
     Items,
+    Listing,
     Paragraph,
     Picture,
     Section,
@@ -53,7 +54,9 @@ def _section(section: Section, pictures: Pictures, spelling: DocumentSpelling) -
 
 def _is_there(block: Block, pictures: Pictures) -> bool:
     """Whether there is something to show: pictures belong to some descriptions only."""
-    return not isinstance(block, Illustration) or block.picture in pictures
+    return (
+        not (isinstance(block, Illustration) and isinstance(block.picture, str)) or block.picture in pictures
+    )
 
 
 def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> blocks.Block:
@@ -66,8 +69,8 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return _table(block, spelling)
         case FactTable(facts, caption):
             return _facts(facts, spelling.text(caption), spelling)
-        case Illustration(name, caption):
-            shown = pictures[name]
+        case Illustration(picture_or_name, caption):
+            shown = pictures[picture_or_name] if isinstance(picture_or_name, str) else picture_or_name
             figure = figures.figure_of(shown, spelling.numbers.display)
             if isinstance(shown, VectorPage):
                 # a page whose scales are true on paper: only what is empty is cut off
@@ -79,6 +82,8 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
             return _check(block, spelling)
         case Items(texts):
             return blocks.Items(tuple(map(spelling.text, texts)))
+        case Listing(heading, items):
+            return blocks.Paragraph(f"{spelling.text(heading)}: {', '.join(map(spelling.text, items))}")
         case _:
             assert_never(block)
 

@@ -10,7 +10,7 @@ from centrode.present.equations.typst import quoted, shown
 from centrode.render.document.formulas import in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
 from centrode.render.spelling import Spelling
-from centrode.sheets.texts import Expression, Factor, Leaf, Name, Number, Symbol
+from centrode.sheets.texts import Expression, Factor, Indexed, Leaf, Name, Number, Symbol
 
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Column
@@ -54,6 +54,8 @@ class DocumentSpelling(Spelling):
         """A number in the format that its sentence wants, with no more digits than the document has."""
         if not digits or not math.isfinite(value):
             return self.numbers.plain(value)
+        if not value and digits.endswith("e"):
+            return "0"
         text = format(value, digits)
         sign = text[0] if text[0] in "+-" else ""
         body, percent = (text[len(sign) :].removesuffix("%"), "%" if text.endswith("%") else "")
@@ -67,6 +69,10 @@ class DocumentSpelling(Spelling):
         index = symbol.index if symbol.slanted else f"upright({quoted(symbol.index)})"
         return f"${symbol.letter}_({index})$" if symbol.index else f"${symbol.letter}$"
 
+    def indexed(self, symbol: Indexed) -> str:
+        """A letter with its index, as mathematics."""
+        return f"${symbol.letter}_({quoted(symbol.index)})$"
+
     def expression(self, expression: Expression) -> str:
         """Mathematics between dollar signs."""
         return f"${self.mathematics(expression)}$"
@@ -78,7 +84,7 @@ class DocumentSpelling(Spelling):
     def place(self, coordinates: Sequence[Number], unit: str) -> str:
         """A place, its coordinates apart by semicolons: a comma may be their decimal mark."""
         label = self.numbers.shown(unit)[1]
-        return f"({'; '.join(map(self.number, coordinates))}) {label}"
+        return f"({'; '.join(map(self.number, coordinates))}) {label}".rstrip()
 
     def part(self, text: str) -> str:
         """What belongs to the entry above it, behind a dash."""

@@ -30,7 +30,6 @@ from centrode.report.chapters.followers.sizing import base_radius_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
 from centrode.report.chapters.forces.given import masses_and_loads
 from centrode.report.chapters.forces.polygons import polygons_chapter
-from centrode.report.chapters.linkages.centres import centres_chapter
 from centrode.report.chapters.linkages.constraints import constraints_chapter
 from centrode.report.chapters.linkages.data import data_chapter
 from centrode.report.chapters.linkages.derivation import derivation_chapter
@@ -43,7 +42,7 @@ from centrode.report.chapters.linkages.tables import tables_chapter
 from centrode.report.chapters.linkages.turning import turning_chapter
 from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.chapters.sphere.data import sphere_data_chapter
-from centrode.report.chapters.sphere.pictures import axes_chapter, sphere_plots_chapter
+from centrode.report.chapters.sphere.pictures import sphere_plots_chapter
 from centrode.report.chapters.sphere.relations import sphere_equations_chapter
 from centrode.report.chapters.sphere.tables import sphere_tables_chapter
 from centrode.report.study import ReportStudy
@@ -84,9 +83,7 @@ OWN: Mapping[str, Kind] = {
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
-    "centres": Kind(mark("Instant centres of velocity"), centres_chapter),
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
-    "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
     "lift": Kind(mark("Motion of the follower"), lift_chapter),
