@@ -6,3 +6,4 @@ from .files import write_summary as write_summary
 from .files import write_tables as write_tables
 from .terminal import aligned as aligned
 from .terminal import facts_text as facts_text
+from .terminal import sheet_text as sheet_text

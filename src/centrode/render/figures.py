@@ -16,8 +16,9 @@ from centrode.present.abscissa import Abscissa as DrawnAbscissa
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.saving import save_figures
 from centrode.present.style import DASHES, INK, PALETTE, Decimals, Pen, house_style
+from centrode.render.span_plots import span_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
-from centrode.sheets.plots import Abscissa, CurvePanel, Diagram, EventKind, Plot, Trace, TraceKind
+from centrode.sheets.plots import Abscissa, CurvePanel, Diagram, EventKind, Plot, SpanPlot, Trace, TraceKind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -60,6 +61,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return _plot(picture, display)
             case Diagram():
                 return _diagram(picture, display)
+            case SpanPlot():
+                return span_figure(picture, display)
             case _:
                 assert_never(picture)
 

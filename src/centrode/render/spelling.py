@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
 
 from centrode.locale import _, ngettext
 from centrode.present.shown import formula, plain, shown_as
@@ -25,6 +28,19 @@ from centrode.sheets.texts import (
 if TYPE_CHECKING:
     from centrode.model.asked import Display
     from centrode.sheets.plots import AxisLabel
+    from centrode.sheets.sheet import Column
+
+
+def holds_numbers(column: Column) -> bool:
+    """Whether the cells of a column are numbers, with or without words behind them."""
+    return isinstance(column.values, np.ndarray) or all(
+        isinstance(cell, Number) or (isinstance(cell, Joined) and isinstance(cell.parts[0], Number))
+        for cell in column.values
+    )
+
+
+DASH = "–"
+"""Stands for a number that is not there."""
 
 
 class Spelling(ABC):
@@ -100,8 +116,13 @@ class PlainSpelling(Spelling):
     def number(self, number: Number) -> str:
         """A number with its unit behind a blank."""
         factor, unit = self.shown_unit(number)
-        digits = format(number.value * factor if factor != 1.0 else number.value, number.digits or ".6g")
+        digits = self._digits(number.value * factor if factor != 1.0 else number.value, number.digits)
+        if number.degrees_too and unit == "rad" and number.value:
+            return f"{digits} rad ({self._digits(math.degrees(number.value), number.digits)} deg)"
         return digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
+
+    def _digits(self, value: float, digits: str) -> str:
+        return DASH if math.isnan(value) else format(value, digits if len(digits) > 1 else f"{digits}.6g")
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""

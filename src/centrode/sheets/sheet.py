@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from centrode.sheets.plots import Diagram, Plot
+from centrode.sheets.plots import Diagram, Plot, SpanPlot
 from centrode.sheets.texts import NOTHING, Leaf, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
-Picture: TypeAlias = Plot | Diagram
+Picture: TypeAlias = Plot | Diagram | SpanPlot
+Part = TypeVar("Part")
 
 
 @dataclass(frozen=True)
@@ -153,7 +154,10 @@ class Sheet:
 
     Attributes
     ----------
+    heading : of the facts, where a terminal prints several sheets of one description
     facts : what a terminal prints
+    printed : tables that it prints below them, each under its caption
+    failures : what the mechanism cannot do of what its description wants: a command ends with 3
     scalars : name -> number, as `summary.json` holds them
     tables : name of a file without its ending -> table
     datasets : name of a file without its ending -> dataset, as netCDF
@@ -167,6 +171,33 @@ class Sheet:
     datasets: Mapping[str, xarray.Dataset] = field(default_factory=dict)
     pictures: Mapping[str, Picture] = field(default_factory=dict)
     chapters: Mapping[str, Chapter] = field(default_factory=dict)
+    heading: Text = NOTHING
+    printed: tuple[Table, ...] = ()
+    failures: tuple[Text, ...] = ()
+
+
+class Deferred(Mapping[str, Part]):
+    """Parts of a sheet by name, each made when it is looked up: a command without figures makes none.
+
+    Parameters
+    ----------
+    makers : name -> what makes the part
+    """
+
+    def __init__(self, makers: Mapping[str, Callable[[], Part]]) -> None:
+        self._makers = makers
+
+    def __getitem__(self, name: str) -> Part:
+        return self._makers[name]()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._makers)
+
+    def __len__(self) -> int:
+        return len(self._makers)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._makers
 
 
 def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:

@@ -13,6 +13,7 @@ from centrode.render.document import blocks
 from centrode.render.document.figures import picture
 from centrode.render.document.numbers import Numbers, spelled_number
 from centrode.render.document.spelling import ROUNDING, DocumentSpelling
+from centrode.render.spelling import holds_numbers
 from centrode.sheets.sheet import (
     Block,
     Check,
@@ -71,7 +72,7 @@ def _block(block: Block, pictures: Pictures, spelling: DocumentSpelling) -> bloc
 def _table(table: Table, spelling: DocumentSpelling) -> blocks.Table:
     heads = tuple(map(spelling.head, table.columns))
     cells = [_cells(column, table.rows, spelling) for column in table.columns]
-    numbers = tuple(isinstance(column.values, np.ndarray) for column in table.columns)
+    numbers = tuple(map(holds_numbers, table.columns))
     return blocks.Table(heads, tuple(zip(*cells, strict=True)), spelling.text(table.caption), numbers)
 
 

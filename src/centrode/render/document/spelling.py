@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, assert_never
 from centrode.present.equations.typst import quoted, shown
 from centrode.render.document.numbers import Numbers, spelled_number, spelled_unit
 from centrode.render.spelling import Spelling
-from centrode.sheets.texts import Expression, Factor, Leaf, Name, Number, Symbol
+from centrode.sheets.texts import Expression, Factor, Leaf, Name, Number, Sentence, Symbol
 
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Column
@@ -48,8 +48,8 @@ class DocumentSpelling(Spelling):
 
     def _digits(self, value: float, digits: str) -> str:
         """A number in the format that its sentence wants, with no more digits than the document has."""
-        if not digits or not math.isfinite(value):
-            return self.numbers.plain(value)
+        if digits in ("", "+") or not math.isfinite(value):
+            return ("+" if digits == "+" and value > 0.0 else "") + self.numbers.plain(value)
         text = format(value, digits)
         sign = text[0] if text[0] in "+-" else ""
         body, percent = (text[len(sign) :].removesuffix("%"), "%" if text.endswith("%") else "")
@@ -82,6 +82,8 @@ class DocumentSpelling(Spelling):
                 return f"({size})" if number.value < 0 or "dot" in size else size
             case Name(text):
                 return quoted(text)
+            case Sentence():
+                return quoted(self.text(leaf))
             case _:
                 assert_never(leaf)
 
