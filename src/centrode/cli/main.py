@@ -69,7 +69,7 @@ COMMANDS: tuple[click.Command, ...] = (
     variants,
     limits,
     region,
-    *map(topic_command, TOPICS),
+    *(topic_command(topic) for topic in TOPICS if topic.subject == "mechanism"),
     simulate,
     balance,
     cam,

@@ -21,7 +21,7 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
     """
-    if study.is_cam or not topic.concerns(study.mechanism):
+    if study.is_cam != (topic.subject == "cam") or not topic.concerns(study.description):
         return None
     try:
         return document_chapter(chapter.name, _sheet(topic, study), study.numbers)
@@ -35,8 +35,10 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
     """The sheet of a topic at the instants of the report, computed once."""
 
     def compute() -> Sheet:
-        instants = tuple(moment.at for moment in moments_of(study))
-        return cast("Sheet", topic.view(topic.compute(study.mechanism, instants=instants)))
+        instants = study.wishes.instants
+        if not study.is_cam:
+            instants = tuple(moment.at for moment in moments_of(study))
+        return cast("Sheet", topic.view(topic.compute(study.description, instants=instants)))
 
     return study.once(("sheet", topic.name), compute)
 

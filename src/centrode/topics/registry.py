@@ -31,5 +31,28 @@ FLYWHEEL = Topic(
     ),
 )
 
-TOPICS: tuple[Topic, ...] = (FLYWHEEL,)
+FOLLOWER_MOTION = Topic(
+    name="follower-motion",
+    help=mark("Find the motion of a cam's follower over a turn."),
+    compute=Lazily("centrode.cams.followers.motion_results", "follower_motion_results"),
+    result=Lazily("centrode.cams.followers.motion_results", "FollowerMotionResults"),
+    view=Lazily("centrode.views.follower_motion", "sheet"),
+    concerns=Lazily("centrode.model.cams.files", "has_follower"),
+    chapters=(ChapterOfTopic("lift", mark("Motion of the follower")),),
+    subject="cam",
+)
+
+MOTION_LAWS = Topic(
+    name="motion-laws",
+    help=mark("Compare laws of motion for the first rise of a cam's follower."),
+    compute=Lazily("centrode.cams.followers.motion_results", "motion_law_results"),
+    result=Lazily("centrode.cams.followers.motion_results", "MotionLawResults"),
+    view=Lazily("centrode.views.motion_laws", "sheet"),
+    concerns=Lazily("centrode.cams.followers.motion_results", "has_rise"),
+    chapters=(ChapterOfTopic("laws", mark("Laws of motion for one rise")),),
+    subject="cam",
+    flag="laws",
+)
+
+TOPICS: tuple[Topic, ...] = (FLYWHEEL, FOLLOWER_MOTION, MOTION_LAWS)
 """Every topic."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 
 @dataclass(frozen=True)
@@ -51,19 +51,21 @@ class ChapterOfTopic:
 
 @dataclass(frozen=True)
 class Topic:
-    """One analysis of a mechanism.
+    """One analysis of a mechanism or of a cam.
 
     Attributes
     ----------
     name : of the command
     help : what the command does, marked for the catalogues
-    compute : (mechanism, samples, **options, instants=...) -> result
+    compute : (mechanism or cam, samples, **options, instants=...) -> result
     result : class of what is computed
     view : result -> Sheet
     concerns : whether a mechanism has what the topic is about
     needs : raises InputError where a mechanism lacks what the command needs, although a document does without
     options : of the computation and the command
     chapters : of documents, in the order of the document
+    subject : "mechanism", or "cam": those of cams have one command together
+    flag : option of that command without which it leaves the topic out
     """
 
     name: str
@@ -75,3 +77,5 @@ class Topic:
     needs: Lazily | None = None
     options: tuple[Choice, ...] = ()
     chapters: tuple[ChapterOfTopic, ...] = ()
+    subject: Literal["mechanism", "cam"] = "mechanism"
+    flag: str = ""

@@ -23,8 +23,6 @@ from centrode.report.chapters.cams.chapters import (
 from centrode.report.chapters.cams.contact import cam_choice_chapter, cam_contact_chapter
 from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
-from centrode.report.chapters.followers.laws import laws_chapter
-from centrode.report.chapters.followers.lift import lift_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.followers.sizing import base_radius_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
@@ -74,12 +72,13 @@ def either(*makers: Make) -> Make:
     return make
 
 
-def topic_chapters() -> dict[str, Kind]:
-    """The chapters of every topic of the registry."""
+def topic_chapters(subject: str) -> dict[str, Kind]:
+    """The chapters of the topics of the registry that are about mechanisms, or about cams."""
     return {
         chapter.name: Kind(chapter.title, functools.partial(topic_chapter, topic, chapter))
         for topic in TOPICS
         for chapter in topic.chapters
+        if topic.subject == subject
     }
 
 
@@ -102,13 +101,12 @@ CHAPTERS: Mapping[str, Kind] = {
     "axes": Kind(mark("Instantaneous axes"), axes_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "reduction": Kind(mark("Reduction to the drive"), reduction_chapter),
-    **topic_chapters(),
+    **topic_chapters("mechanism"),
     "simulation": Kind(mark("Motion under loads"), simulation_chapter),
     "reactions": Kind(mark("Reactions in the joints"), reactions_chapter),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
     "balance": Kind(mark("Shaking forces and balance"), balance_chapter),
-    "lift": Kind(mark("Motion of the follower"), lift_chapter),
-    "laws": Kind(mark("Laws of motion for one rise"), laws_chapter),
+    **topic_chapters("cam"),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),
