@@ -122,6 +122,8 @@ from .cams.cam import cam as cam
 from .cams.cam import cam_routes as cam_routes
 from .cams.path_series import path_of as path_of
 from .study.cams.results import cam_results as cam_results
+from .cams.followers.motion_results import follower_motion_results as follower_motion_results
+from .cams.followers.motion_results import motion_law_results as motion_law_results
 from .cams.followers.motion import follower_motion as follower_motion
 from .cams.followers.motion import cam_laws as cam_laws
 from .cams.followers.motion import compare_laws as compare_laws
@@ -132,9 +134,6 @@ from .present import cam_path_figure as cam_path_figure
 from .present import cam_curves_figure as cam_curves_figure
 from .present import cam_routes_figure as cam_routes_figure
 from .present import cam_figures as cam_figures
-from .present import write_cam_motion_csv as write_cam_motion_csv
-from .present import write_cam_laws_csv as write_cam_laws_csv
-from .present import cam_motion_figure as cam_motion_figure
 from .cams.followers.base_circle import follower_cam as follower_cam
 from .cams.followers.base_circle import least_cam as least_cam
 from .cams.followers.manufacture import follower_outlines as follower_outlines
@@ -151,7 +150,6 @@ from .present import write_cam_forces_csv as write_cam_forces_csv
 from .present import cam_forces_figure as cam_forces_figure
 from .present import animate_cam_body as animate_cam_body
 from .present import animate_follower as animate_follower
-from .present import laws_figure as laws_figure
 
 # Profiles of cams, walking wheels
 from .cams.results import cam_profile as cam_profile

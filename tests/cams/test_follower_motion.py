@@ -355,7 +355,7 @@ def test_what_is_drawn_does_not_depend_on_samples() -> None:
 
 def test_jumps_are_drawn_as_such() -> None:
     plate = narrow()
-    figure = ct.cam_motion_figure(plate, ct.cam(plate, samples=3))
+    figure = ct.figures(ct.follower_motion_results(plate, samples=3))["cam-motion"]
     dashed = [[line for line in axes.lines if line.get_linestyle() == "--"] for axes in figure.axes]
     # Of the lift none; of the velocity two, at both ends of the turn and at 150 deg.
     assert [len(lines) for lines in dashed][:2] == [0, 3]

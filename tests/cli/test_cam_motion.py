@@ -63,7 +63,7 @@ def test_the_motion_is_printed(centrode: Centrode, cam: Path) -> None:
     assert said["lift"] == "0 mm to 25 mm at 90 deg"
     # 2 h/beta and, in time, that times 20 pi: 2 m/s.
     assert said["greatest velocity"] == "31.831 mm/rad, 2000 mm/s at 45 deg"
-    assert said["greatest acceleration"] == "63.662 mm/rad^2, 251327 mm/s^2 at 22.5 deg"
+    assert said["greatest acceleration"] == "63.662 mm/rad², 251327 mm/s² at 22.5 deg"
     assert said["continuous"] == "up to the acceleration; the jerk jumps"
     lines = [line.split() for line in done.out.splitlines()]
     assert ["3", "180", "…", "270", "25", "…", "0", "polynomial", "1.875", "5.7735", "60"] in lines

@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 import centrode as ct
+from centrode.cams.followers import motion_results
+from centrode.cams.followers.curve_formulas import CURVES, PEAKS, shares_of
 from centrode.cams.followers.motion import FollowerMotion
 from centrode.laws import CURVES as LAWS
 from centrode.laws import LawSegment, SegmentedLaw
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Moving, Outline, Paragraph, Table
 from centrode.report.chapters import CHAPTERS
-from centrode.report.chapters.followers import forces_checks, lift_checks, profile_checks
-from centrode.report.chapters.followers.curves import CURVES, PEAKS, shares_of
-from centrode.report.chapters.followers.parts import body_of, motion_of
+from centrode.report.chapters.followers import forces_checks, profile_checks
+from centrode.report.chapters.followers.parts import body_of
 from centrode.report.chapters.followers.spelled import Spelled
 from centrode.report.chapters.followers.textbook import Textbook
 from centrode.report.options import ReportOptions, settled
@@ -229,10 +230,12 @@ def test_cycloidal_case_of_the_literature() -> None:
 
 
 def test_a_wrong_motion_is_found(indexing: ReportStudy, monkeypatch: pytest.MonkeyPatch) -> None:
-    cam, motion = indexing.plate, motion_of(indexing)
-    assert all(one.holds for one in lift_checks.proved(cam, motion))
-    monkeypatch.setattr(lift_checks, "shares_of", lambda curve, u: shares_of(curve, u) * (1 + 1e-11))
-    assert not any(one.holds for one in lift_checks.proved(cam, motion))
+    def formulas_check() -> Check:
+        return blocks_of(CHAPTERS["lift"].make(study_of(indexing.plate)), Check)[0]
+
+    assert "The formulas, with numbers put in" in formulas_check().text and formulas_check().holds
+    monkeypatch.setattr(motion_results, "shares_of", lambda curve, u: shares_of(curve, u) * (1 + 1e-11))
+    assert not formulas_check().holds
 
 
 def test_a_wrong_profile_is_found(indexing: ReportStudy) -> None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,11 +16,13 @@ from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, no_figures_option, samples_option, written_option
 from centrode.cli.expected import announce_samples
 from centrode.cli.progress import Progress
-from centrode.cli.tables import tables_options
+from centrode.cli.tables import asked_spelling, tables_options
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark
+from centrode.topics.presentation import sheets_of
 
 if TYPE_CHECKING:
+    from centrode.sheets.sheet import Sheet
     from centrode.study.cams.results import CamResults
     from centrode.study.cams.said import CamPart
 
@@ -71,16 +72,19 @@ def cam(
     announce_samples(samples or 0)
     with about(cam), Progress() as progress:
         progress.say(_("solving"))
+        sheets = list(sheets_of(description, samples, ["laws"] if laws else []).values())
         if out is None:
-            results = ct.cam_results(description, samples, terms, groove=groove, laws=laws)
+            results = ct.cam_results(description, samples, terms, groove=groove)
         else:
             with output.output_folder(out) as draft:
-                results = ct.cam_results(description, samples, terms, groove=groove, front=True, laws=laws)
-                _write(results, draft, progress, groove=groove, figures=not no_figures, dark=dark)
+                results = ct.cam_results(description, samples, terms, groove=groove, front=True)
+                _write(results, sheets, draft, progress, groove=groove, figures=not no_figures, dark=dark)
                 if animate:
                     _animate(results, draft, progress, dark=dark)
                 names = output.finished(draft)
     click.echo(_(description.title) or cam)
+    for sheet in sheets:
+        click.echo("\n" + render.sheet_text(sheet, description.display))
     for part in results.parts.values():
         click.echo("\n" + _text(part))
     if out is not None:
@@ -122,10 +126,20 @@ def _text(part: CamPart) -> str:
 
 
 def _write(
-    results: CamResults, folder: Path, progress: Progress, *, groove: bool, figures: bool, dark: bool
+    results: CamResults,
+    sheets: Sequence[Sheet],
+    folder: Path,
+    progress: Progress,
+    *,
+    groove: bool,
+    figures: bool,
+    dark: bool,
 ) -> None:
     """Write tables, numbers and figures into a folder."""
     progress.say(_("writing tables"))
+    display = results.cam.display
+    for sheet in sheets:
+        render.write_tables(sheet, folder, display, asked_spelling())
     datasets = {name: data for part in results.parts.values() for name, data in part.datasets.items()}
     ct.write_cam_tables(results.cam, datasets, folder)
     for name, data in datasets.items():
@@ -133,12 +147,14 @@ def _write(
     if "choice" in results.objects:
         ct.write_choice(results.objects["choice"], folder)
     ct.write_cam_outlines(results.cam, results.objects, folder, groove=groove, dxf=_DXF)
-    scalars = {name: one.as_dict() for name, one in results.scalars.items()}
-    text = json.dumps(scalars, indent=2, allow_nan=False) + "\n"
-    (folder / "summary.json").write_text(text, encoding="utf-8")
+    scalars = {name: one for sheet in sheets for name, one in sheet.scalars.items()} | results.scalars
+    render.write_summary(scalars, folder / "summary.json")
     if figures:
         progress.say(_("drawing"))
-        drawn = ct.cam_figures(results.cam, datasets)
+        drawn = {
+            name: one for sheet in sheets for name, one in render.figures_of(sheet.pictures, display).items()
+        }
+        drawn |= ct.cam_figures(results.cam, datasets)
         drawn |= ct.cam_body_figures(results.cam, results.objects, groove=groove)
         if "choice" in results.objects:
             drawn |= ct.choice_figures(results.objects["choice"])

@@ -76,6 +76,11 @@ def require_curvature_cam(cam: AnyCam) -> Cam:
     raise InputError("", what, _("its lift is that of follower_motion"))
 
 
+def has_follower(cam: AnyCam) -> bool:
+    """Whether a follower's lift gives the cam."""
+    return isinstance(cam, PlateCam)
+
+
 def with_follower(cam: AnyCam) -> PlateCam:
     """The cam itself if a follower's lift gives it; InputError if it is one by a curvature law."""
     if isinstance(cam, PlateCam):

@@ -40,8 +40,6 @@ from .cams.drawing import cam_figures as cam_figures
 from .cams.drawing import cam_path_figure as cam_path_figure
 from .cams.drawing import cam_routes_figure as cam_routes_figure
 from .cams.forces import cam_forces_figure as cam_forces_figure
-from .cams.motion_drawing import cam_motion_figure as cam_motion_figure
-from .cams.motion_drawing import laws_figure as laws_figure
 from .cams.outline_dxf import write_outlines_dxf as write_outlines_dxf
 from .cams.outline_files import write_cam_outlines as write_cam_outlines
 from .cams.outline_svg import write_outlines_svg as write_outlines_svg
@@ -52,8 +50,6 @@ from .cams.profile_tables import write_profile_csv as write_profile_csv
 from .cams.tables import write_cam_contact_csv as write_cam_contact_csv
 from .cams.tables import write_cam_csv as write_cam_csv
 from .cams.tables import write_cam_forces_csv as write_cam_forces_csv
-from .cams.tables import write_cam_laws_csv as write_cam_laws_csv
-from .cams.tables import write_cam_motion_csv as write_cam_motion_csv
 from .cams.tables import write_cam_routes_csv as write_cam_routes_csv
 from .cams.tables import write_cam_tables as write_cam_tables
 from .cams.walking_drawing import walking_figure as walking_figure

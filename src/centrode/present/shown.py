@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 MATHEMATICAL = str.maketrans(
     {
+        "β": r"\beta ",
         "φ": r"\varphi ",
         "θ": r"\theta ",
         "ω": r"\omega ",
@@ -24,6 +25,8 @@ MATHEMATICAL = str.maketrans(
         "″": "''",
         "‴": "'''",
         "⁗": "''''",
+        "²": "^2",
+        "³": "^3",
     }
 )
 

@@ -22,6 +22,7 @@ from centrode.render.areas import area_figure
 from centrode.render.charts import bar_figure, hodograph_figure, linkage_figure
 from centrode.render.panel_grids import grid_figure
 from centrode.render.scenes import scene_figure
+from centrode.render.span_plots import span_figure
 from centrode.render.spelling import FigureSpelling, PlainSpelling
 from centrode.render.vector_pages import vector_page
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
@@ -36,6 +37,7 @@ from centrode.sheets.plots import (
     Overlay,
     PanelGrid,
     Plot,
+    SpanPlot,
     Trace,
     TraceKind,
     VectorPage,
@@ -104,6 +106,8 @@ def figure_of(picture: Picture, display: Display) -> Figure:
                 return area_figure(picture, display)
             case Scene():
                 return scene_figure(picture, display)
+            case SpanPlot():
+                return span_figure(picture, display)
             case _:
                 assert_never(picture)
 

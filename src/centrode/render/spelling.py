@@ -32,6 +32,10 @@ if TYPE_CHECKING:
     from centrode.sheets.plots import AxisLabel
 
 
+DASH = "–"
+"""Stands for a number that is not there."""
+
+
 class Spelling(ABC):
     """Turns texts into strings of one medium, in the language that is spoken at the moment.
 
@@ -133,11 +137,14 @@ class PlainSpelling(Spelling):
     def number(self, number: Number) -> str:
         """A number with its unit behind a blank."""
         factor, unit = self.shown_unit(number)
-        digits = format(number.value * factor if factor != 1.0 else number.value, number.digits or ".6g")
+        digits = self._digits(number.value * factor if factor != 1.0 else number.value, number.digits)
         text = digits if number.unit_hidden or unit in ("", "1") else f"{digits} {typeset_unit(unit)}"
         if number.degrees_too and unit == "rad":
             return f"{text} ({math.degrees(number.value):.6g} deg)"
         return text
+
+    def _digits(self, value: float, digits: str) -> str:
+        return DASH if math.isnan(value) else format(value, digits if len(digits) > 1 else f"{digits}.6g")
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""

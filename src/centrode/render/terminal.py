@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, assert_never
 
-import numpy as np
-
 from centrode.quantities import typeset_unit
 from centrode.render.plain_table import aligned, listing
 from centrode.render.spelling import PlainSpelling
@@ -49,7 +47,9 @@ def plain_text(text: Text, display: Display) -> str:
 def sheet_text(sheet: Sheet, display: Display) -> str:
     """What a terminal prints of a sheet: its facts and what it prints below them, a blank line between the parts."""
     spelling = PlainSpelling(display)
-    parts = [facts_text(sheet.facts, display)] if sheet.facts else []
+    heading = spelling.text(sheet.heading)
+    parts = [heading] if heading else []
+    parts += [facts_text(sheet.facts, display)] if sheet.facts else []
     for block in sheet.printed:
         text = _section(block, spelling) if isinstance(block, Section) else _block(block, spelling)
         if isinstance(block, Items) and parts:
@@ -108,6 +108,6 @@ def _head(column: Column, spelling: PlainSpelling) -> str:
 
 
 def _stands_right(column: Column) -> bool:
-    return isinstance(column.values, np.ndarray) or any(
+    return column.is_numeric or any(
         isinstance(text, Number) and (text.unit_hidden or text.unit in ("", "1")) for text in column.values
     )

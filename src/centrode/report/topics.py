@@ -22,7 +22,7 @@ def topic_chapter(topic: Topic, chapter: ChapterOfTopic, study: ReportStudy) -> 
     A chapter that nobody has chosen and that cannot be computed says why, and is no failure.
     """
     concerns = topic.concerns if chapter.concerns is None else chapter.concerns
-    if study.is_cam or (concerns is not None and not concerns(study.mechanism)):
+    if study.is_cam != (topic.subject == "cam") or (concerns is not None and not concerns(study.description)):
         return None
     try:
         sheet = _sheet(topic, study)
@@ -44,11 +44,13 @@ def _sheet(topic: Topic, study: ReportStudy) -> Sheet:
         document = topic.document
         arguments = dict(document.arguments)
         if document.instants:
-            arguments["instants"] = tuple(moment.at for moment in moments_of(study))
+            arguments["instants"] = (
+                study.wishes.instants if study.is_cam else tuple(moment.at for moment in moments_of(study))
+            )
         done = None if document.add_instants is None else study.study.results.get(topic.name)
         if document.add_instants is not None and done is not None:
             return cast("Sheet", topic.view(document.add_instants(done, **arguments)))
-        return cast("Sheet", topic.view(topic.compute(study.mechanism, **arguments)))
+        return cast("Sheet", topic.view(topic.compute(study.description, **arguments)))
 
     return study.once(("sheet", topic.name), compute)
 

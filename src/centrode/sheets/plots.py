@@ -362,3 +362,46 @@ class AreaDiagram:
     areas: tuple[Area, ...]
     paths: tuple[Path, ...]
     places: tuple[tuple[Text, float, float], ...]
+
+
+@dataclass(frozen=True)
+class SpanPanel:
+    """Curves of one quantity over an abscissa that is parted into spans.
+
+    Attributes
+    ----------
+    label : of the vertical axis; its unit is that of the curves
+    curves : in the order of the legend
+    jumps : (abscissa, from, to) of curves that jump where spans meet
+    bounds : values that are admissible at most or at least
+    heading : above the panel
+    """
+
+    label: AxisLabel
+    curves: tuple[Curve, ...]
+    jumps: tuple[tuple[float, float, float], ...] = ()
+    bounds: tuple[float, ...] = ()
+    heading: Text = NOTHING
+
+
+@dataclass(frozen=True)
+class SpanPlot:
+    """Panels below each other over an abscissa that is parted into spans: the segments of a cam, one rise.
+
+    Attributes
+    ----------
+    title, mechanism : as of a plot
+    label : of the abscissa
+    values : (place) in the unit of the label; where two places are equal a span ends, and no line joins them
+    ends : (spans + 1) where spans begin, and the last one ends
+    names : of the spans; none where there is one alone
+    panels : from the top
+    """
+
+    title: Sentence
+    mechanism: Title
+    label: AxisLabel
+    values: Array
+    ends: tuple[float, ...]
+    names: tuple[Text, ...]
+    panels: tuple[SpanPanel, ...]

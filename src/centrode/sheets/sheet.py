@@ -2,25 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from centrode.sheets.charts import BarChart, Hodograph, LinkageWithDiscs
-from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, VectorPage
+from centrode.sheets.plots import AreaDiagram, Diagram, PanelGrid, Plot, SpanPlot, VectorPage
 from centrode.sheets.scenes import Scene
-from centrode.sheets.texts import NOTHING, Leaf, Number, Sentence, Text
+from centrode.sheets.texts import NOTHING, Joined, Leaf, Number, Sentence, Text
 
 if TYPE_CHECKING:
     import xarray
 
 Picture: TypeAlias = (
-    Plot | Diagram | PanelGrid | VectorPage | Hodograph | BarChart | LinkageWithDiscs | AreaDiagram | Scene
+    Plot
+    | Diagram
+    | PanelGrid
+    | VectorPage
+    | Hodograph
+    | BarChart
+    | LinkageWithDiscs
+    | AreaDiagram
+    | Scene
+    | SpanPlot
 )
+Part = TypeVar("Part")
 
 
 @dataclass(frozen=True)
@@ -59,11 +69,14 @@ class Column:
 
     @property
     def is_numeric(self) -> bool:
-        """Whether it holds numbers alone, which stand flush right."""
+        """Whether it holds numbers, with or without words behind them, which stand flush right."""
         if isinstance(self.values, np.ndarray):
             return True
         known = [text for text in self.values if text != NOTHING]
-        return bool(known) and all(isinstance(text, Number) for text in known)
+        return bool(known) and all(
+            isinstance(text, Number) or (isinstance(text, Joined) and isinstance(text.parts[0], Number))
+            for text in known
+        )
 
     @property
     def is_empty(self) -> bool:
@@ -201,6 +214,7 @@ class Sheet:
 
     Attributes
     ----------
+    heading : of the facts, where a terminal prints several sheets of one description
     facts : what a terminal prints
     scalars : name -> number, as `summary.json` holds them
     tables : name of a file without its ending -> table
@@ -223,6 +237,31 @@ class Sheet:
     files: Mapping[str, str] = field(default_factory=dict)
     record: Mapping[str, Any] | None = None
     failure: Failure | None = None
+    heading: Text = NOTHING
+
+
+class Deferred(Mapping[str, Part]):
+    """Parts of a sheet by name, each made when it is looked up: a command without figures makes none.
+
+    Parameters
+    ----------
+    makers : name -> what makes the part
+    """
+
+    def __init__(self, makers: Mapping[str, Callable[[], Part]]) -> None:
+        self._makers = makers
+
+    def __getitem__(self, name: str) -> Part:
+        return self._makers[name]()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._makers)
+
+    def __len__(self) -> int:
+        return len(self._makers)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._makers
 
 
 def illustrations(pictures: Iterable[str], captions: Mapping[str, Text] = MappingProxyType({})) -> Section:

@@ -37,7 +37,8 @@ class Number:
         SI unit ("kg m^2", "1" for a plain number); lengths and angles appear in the units of the display.
     digits : str
         Python's format of the number: ".6g", ".1e", "+.2%"; a document never shows more digits than it is set to, and
-        formulas and columns have a rule of their own. Empty: as many digits as the document is set to.
+        formulas and columns have a rule of their own. Empty: as many digits as the document is set to; "+": so many,
+        with the sign of a positive number as well. A value that is no number is shown as a dash.
     unit_fixed : bool
         The unit stays whatever the display says: speeds of machines in rad/s, terms of one formula in SI.
     unit_hidden : bool
@@ -188,9 +189,12 @@ class Indexed:
     index: str
 
 
-Leaf: TypeAlias = "str | Number | Factor | Name | Expression"
-"""A piece of a formula; a string is notation without leaves of its own."""
-Text: TypeAlias = "Name | Title | Number | Sentence | Counted | Joined | Symbol | Expression | Unit | Part | Place | Indexed"
+Leaf: TypeAlias = "str | Number | Factor | Name | Expression | Sentence"
+"""A piece of a formula; a string is notation without leaves of its own, a sentence is words among the letters."""
+Text: TypeAlias = (
+    "Name | Title | Number | Sentence | Counted | Joined | Symbol"
+    " | Expression | Unit | Part | Place | Indexed"
+)
 
 NOTHING = Joined(())
 """An empty text."""

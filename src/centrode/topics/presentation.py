@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -10,11 +10,13 @@ from centrode import render
 from centrode.errors import InputError
 from centrode.files.drafts import draft_folder
 from centrode.locale import _
+from centrode.model.mechanism import Display, Mechanism
 from centrode.topics.registry import TOPICS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from centrode.model.cam_files import AnyCam
     from centrode.sheets.sheet import Sheet, Table
 
 
@@ -32,9 +34,39 @@ def sheet_of(result: Any) -> Sheet:
     )
 
 
+def sheets_of(
+    description: Mechanism | AnyCam, samples: int | None = None, flags: Collection[str] = ()
+) -> dict[str, Sheet]:
+    """The sheets of all topics that a description has something for, by the name of the topic.
+
+    Parameters
+    ----------
+    samples : int
+        As of each computation.
+    flags : collection of str
+        Topics that are left out otherwise; they refuse a description that has nothing for them.
+    """
+    subject = "mechanism" if isinstance(description, Mechanism) else "cam"
+    return {
+        topic.name: topic.view(topic.compute(description, samples))
+        for topic in TOPICS
+        if topic.subject == subject
+        and (topic.flag in flags if topic.flag else topic.concerns is None or topic.concerns(description))
+    }
+
+
+def display_of(result: Any) -> Display:
+    """The units of the description that a result knows: that of its mechanism or of its cam."""
+    description = result.mechanism if hasattr(result, "mechanism") else result.cam
+    return cast("Display", description.display)
+
+
 def summary(result: Any) -> str:
-    """What a command prints of a result, in the language that is spoken and the units of its description."""
-    return render.sheet_text(sheet_of(result), result.mechanism.display)
+    """The facts of a result as lines of text, with the tables that a terminal prints.
+
+    They are in the language that is spoken and the units of the result's description.
+    """
+    return render.sheet_text(sheet_of(result), display_of(result))
 
 
 def tables(result: Any) -> Mapping[str, Table]:
@@ -44,7 +76,7 @@ def tables(result: Any) -> Mapping[str, Table]:
 
 def figures(result: Any) -> dict[str, Figure]:
     """The figures of a result by name; needs matplotlib."""
-    return render.figures_of(sheet_of(result).pictures, result.mechanism.display)
+    return render.figures_of(sheet_of(result).pictures, display_of(result))
 
 
 def write(result: Any, folder: str | Path) -> None:
@@ -52,9 +84,8 @@ def write(result: Any, folder: str | Path) -> None:
 
     Raises InputError where the folder cannot be written.
     """
-    sheet, display = sheet_of(result), result.mechanism.display
+    sheet, display = sheet_of(result), display_of(result)
     with draft_folder(Path(folder)) as draft:
         render.write_tables(sheet, draft, display)
         render.write_pictures(sheet.pictures, draft, display)
-        if sheet.scalars:
-            render.write_summary(sheet.scalars, draft / "summary.json")
+        render.write_summary(sheet.scalars, draft / "summary.json")

@@ -377,6 +377,27 @@ CENTRODES = Topic(
     ),
 )
 
+FOLLOWER_MOTION = Topic(
+    name="follower-motion",
+    compute=Lazily("centrode.cams.followers.motion_results", "follower_motion_results"),
+    result=Lazily("centrode.cams.followers.motion_results", "FollowerMotionResults"),
+    view=Lazily("centrode.views.follower_motion", "sheet"),
+    concerns=Lazily("centrode.model.cam_files", "has_follower"),
+    document=InDocuments(chapters=(ChapterOfTopic("lift", mark("Motion of the follower")),)),
+    subject="cam",
+)
+
+MOTION_LAWS = Topic(
+    name="motion-laws",
+    compute=Lazily("centrode.cams.followers.motion_results", "motion_law_results"),
+    result=Lazily("centrode.cams.followers.motion_results", "MotionLawResults"),
+    view=Lazily("centrode.views.motion_laws", "sheet"),
+    concerns=Lazily("centrode.cams.followers.motion_results", "has_rise"),
+    document=InDocuments(chapters=(ChapterOfTopic("laws", mark("Laws of motion for one rise")),)),
+    subject="cam",
+    flag="laws",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -390,5 +411,7 @@ TOPICS: tuple[Topic, ...] = (
     REACTIONS,
     BALANCE,
     SHAKING,
+    FOLLOWER_MOTION,
+    MOTION_LAWS,
 )
 """Every topic."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 
 @dataclass(frozen=True)
@@ -183,17 +183,19 @@ class InDocuments:
 
 @dataclass(frozen=True)
 class Topic:
-    """One analysis of a mechanism.
+    """One analysis of a mechanism or of a cam.
 
     Attributes
     ----------
     name : of the command
-    compute : (mechanism, samples=..., instants=..., **arguments) -> result
+    compute : (mechanism or cam, samples=..., instants=..., **arguments) -> result
     result : class of what is computed
     view : result -> Sheet
     concerns : whether a mechanism has what the topic is about; every one has if None
     command : None where only documents and Python have the topic
     document : its chapters
+    subject : "mechanism", or "cam": those of cams have one command together
+    flag : option of that command without which it leaves the topic out
     """
 
     name: str
@@ -203,3 +205,5 @@ class Topic:
     concerns: Lazily | None = None
     command: Command | None = None
     document: InDocuments = InDocuments()
+    subject: Literal["mechanism", "cam"] = "mechanism"
+    flag: str = ""

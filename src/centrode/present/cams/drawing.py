@@ -18,7 +18,6 @@ from centrode.locale import _
 from centrode.present.abscissa import Abscissa, angle_ticks
 from centrode.present.cams.contact import contact_figure
 from centrode.present.cams.forces import cam_forces_figure
-from centrode.present.cams.motion_drawing import cam_motion_figure, laws_figure
 from centrode.present.cams.plate_curves import plate_curves_figure
 from centrode.present.curves import Panel, sheet, write_legend, write_title
 from centrode.present.shown import formula, labelled, shown_as
@@ -196,9 +195,7 @@ CAM_FIGURES: Mapping[str, tuple[str, Callable[[Any, xarray.Dataset], Figure]]] =
     "cam-routes": ("cam-routes", cam_routes_figure),
     "cam-contact": ("cam-contact", contact_figure),
     "cam-forces": ("cam-forces", cam_forces_figure),
-    "cam-motion": ("cam-motion", cam_motion_figure),
     "cam-curvature": ("cam-profile", plate_curves_figure),
-    "cam-laws": ("cam-laws", lambda cam, dataset: laws_figure(dataset, _(cam.title))),
 }
 """Figures of a cam's results: name of the file -> name of the dataset, and what draws it."""
 

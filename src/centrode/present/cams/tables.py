@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -76,28 +75,11 @@ def write_cam_contact_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path
     write_columns(path, _columns(dataset, CONTACT), dataset["status"], cam.display)
 
 
-def write_cam_motion_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
-    """Write the motion of a cam's follower (`ct.cam`) as CSV in the units of its display, one row a sample."""
+def write_cam_forces_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
+    """Write the forces on cam and follower (`ct.cam_forces`) as CSV, forces and stresses in SI, one row a sample."""
     names = [name for name, one in dataset.data_vars.items() if one.dims == ("sample",) and name != "status"]
     columns = [(str(name), unit_of(dataset[name]), dataset[name]) for name in ("cam_angle", *names)]
     write_columns(path, columns, dataset["status"], cam.display)
-
-
-def write_cam_forces_csv(cam: AnyCam, dataset: xarray.Dataset, path: str | Path) -> None:
-    """Write the forces on cam and follower (`ct.cam_forces`) as CSV, forces and stresses in SI, one row a sample."""
-    write_cam_motion_csv(cam, dataset, path)
-
-
-def write_cam_laws_csv(dataset: xarray.Dataset, path: str | Path) -> None:
-    """Write laws of motion beside each other (`ct.cam_laws`, `ct.compare_laws`) as CSV, in shares of the rise."""
-    shares = dataset["rise_share"]
-    names = ("s", "v", "a", "j")
-    header = ["share", *(f"{symbol} {law}" for law in shares["law"].values.tolist() for symbol in names)]
-    columns = shares.transpose("law", "derivative", "sample").values.reshape(-1, shares.sizes["sample"])
-    with Path(path).open("w", encoding="utf-8", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows(zip(dataset["share"].values.tolist(), *columns.tolist(), strict=True))
 
 
 CAM_TABLES: Mapping[str, Callable[[AnyCam, xarray.Dataset, Path], None]] = {
@@ -105,8 +87,6 @@ CAM_TABLES: Mapping[str, Callable[[AnyCam, xarray.Dataset, Path], None]] = {
     "cam-routes": write_cam_routes_csv,
     "cam-contact": write_cam_contact_csv,
     "cam-forces": write_cam_forces_csv,
-    "cam-motion": write_cam_motion_csv,
-    "cam-laws": lambda cam, dataset, path: write_cam_laws_csv(dataset, path),
     "cam-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "cam-points": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),
     "shoe-profile": lambda cam, dataset, path: write_profile_csv(dataset, path, cam.display),

@@ -10,7 +10,7 @@ from centrode.present.equations.typst import quoted, shown
 from centrode.render.document.formulas import in_si
 from centrode.render.document.numbers import NARROW, Numbers, spelled_number, spelled_unit
 from centrode.render.spelling import Spelling
-from centrode.sheets.texts import Expression, Factor, Indexed, Leaf, Name, Number, Symbol
+from centrode.sheets.texts import Expression, Factor, Indexed, Leaf, Name, Number, Sentence, Symbol
 
 if TYPE_CHECKING:
     from centrode.sheets.sheet import Column
@@ -52,8 +52,8 @@ class DocumentSpelling(Spelling):
 
     def _digits(self, value: float, digits: str) -> str:
         """A number in the format that its sentence wants, with no more digits than the document has."""
-        if not digits or not math.isfinite(value):
-            return self.numbers.plain(value)
+        if digits in ("", "+") or not math.isfinite(value):
+            return ("+" if digits == "+" and value > 0.0 else "") + self.numbers.plain(value)
         if not value and digits.endswith("e"):
             return "0"
         text = format(value, digits)
@@ -105,6 +105,8 @@ class DocumentSpelling(Spelling):
                 return f"({size})" if number.value < 0 or "dot" in size else size
             case Name(text):
                 return quoted(text)
+            case Sentence():
+                return quoted(self.text(leaf))
             case _:
                 assert_never(leaf)
 

@@ -23,8 +23,6 @@ from centrode.report.chapters.cams.chapters import (
 from centrode.report.chapters.cams.contact import cam_choice_chapter, cam_contact_chapter
 from centrode.report.chapters.followers.forces import cam_forces_chapter
 from centrode.report.chapters.followers.given import follower_data_chapter
-from centrode.report.chapters.followers.laws import laws_chapter
-from centrode.report.chapters.followers.lift import lift_chapter
 from centrode.report.chapters.followers.profile import follower_profile_chapter
 from centrode.report.chapters.followers.sizing import base_radius_chapter
 from centrode.report.chapters.followers.turning import follower_motion_chapter
@@ -86,8 +84,6 @@ OWN: Mapping[str, Kind] = {
     "rotatability": Kind(mark("Rotatability"), turning_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
-    "lift": Kind(mark("Motion of the follower"), lift_chapter),
-    "laws": Kind(mark("Laws of motion for one rise"), laws_chapter),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),
     "path": Kind(mark("Path of the roller's centre"), cam_path_chapter),
     "routes": Kind(mark("Three routes to the path"), cam_routes_chapter),

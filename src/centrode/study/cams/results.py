@@ -17,8 +17,6 @@ from centrode.sheets.sheet import Scalar
 from centrode.study.cams.choice import choice_part
 from centrode.study.cams.contact import contact_part
 from centrode.study.cams.forces import forces_part
-from centrode.study.cams.laws import laws_part
-from centrode.study.cams.motion import motion_part
 from centrode.study.cams.path import path_part
 from centrode.study.cams.plate import plate_part
 from centrode.study.cams.profile import profile_part
@@ -50,8 +48,6 @@ PARTS: Mapping[str, MakesPart] = {
 """Parts by name, in the order in which they are computed and shown."""
 
 FOLLOWER_PARTS: Mapping[str, MakesFollowerPart] = {
-    "motion": motion_part,
-    "laws": laws_part,
     "profile": plate_part,
     "forces": forces_part,
 }
@@ -88,9 +84,8 @@ def cam_results(
     *,
     groove: bool = False,
     front: bool = False,
-    laws: bool = False,
 ) -> CamResults:
-    """Everything about the cam of a description.
+    """Everything about the cam of a description but for the motion of its follower.
 
     Parameters
     ----------
@@ -103,15 +98,13 @@ def cam_results(
         Also the outer wall of a groove that the roller runs in.
     front : bool
         Also the front of best designs where `[choose] trade_off` names a measure; it takes some seconds.
-    laws : bool
-        Also other laws of motion for the first rise of a follower.
 
     Raises
     ------
     InputError
         What `ct.cam` and `ct.cam_routes` refuse.
     """
-    asked = Asked(samples, terms, groove, front, laws)
+    asked = Asked(samples, terms, groove, front)
     found: dict[str, CamPart | None]
     if isinstance(cam, PlateCam):
         found = {name: make(cam, asked) for name, make in FOLLOWER_PARTS.items()}

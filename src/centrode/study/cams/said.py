@@ -20,14 +20,13 @@ Rows: TypeAlias = list[tuple[str, str]]
 class Asked:
     """What is asked for besides the description.
 
-    Numbers of samples and of terms of the series, a groove, a front, other laws of motion.
+    Numbers of samples and of terms of the series, a groove, a front.
     """
 
     samples: int | None = None
     terms: int | None = None
     groove: bool = False
     front: bool = False
-    laws: bool = False
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from centrode.locale import _
 from centrode.render.document.blocks import Block, Chapter, Section, Table
 from centrode.render.document.numbers import NARROW, spelled_unit
 from centrode.report.chapters.forces.tables import Column, over_samples
-from centrode.study.cams.motion import CONTACTS, KINDS
+from centrode.views.followers import CONTACTS, KINDS
 
 if TYPE_CHECKING:
     from centrode.model.cam import Material
@@ -49,7 +49,10 @@ def given_rows(cam: PlateCam, numbers: Numbers) -> Iterator[tuple[str, str]]:
         yield _("thickness of the cam"), numbers.measured(body.thickness, "m")
     yield from _material(_("material of the cam"), body.material, numbers)
     kind = _("{kind}, with {contact}")
-    yield _("follower"), kind.format(kind=_(KINDS[follower.kind]), contact=_(CONTACTS[follower.contact]))
+    yield (
+        _("follower"),
+        kind.format(kind=_(KINDS[follower.kind].message), contact=_(CONTACTS[follower.contact].message)),
+    )
     sizes = (
         (_("radius of the roller"), follower.roller_radius),
         (_("offset of the follower's axis"), follower.offset or None),

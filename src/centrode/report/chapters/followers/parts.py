@@ -35,7 +35,7 @@ def part_of(study: ReportStudy, name: str) -> CamPart | None:
     """One part of the results; None where the description does not ask for it."""
     if not study.is_plate_cam:
         return None
-    return study.once(("follower", name), lambda: FOLLOWER_PARTS[name](study.plate, Asked(laws=True)))
+    return study.once(("follower", name), lambda: FOLLOWER_PARTS[name](study.plate, Asked()))
 
 
 def motion_of(study: ReportStudy) -> FollowerMotion:

@@ -6,13 +6,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from centrode.cams.followers.base_circle import stretches_text
+from centrode.cams.followers.motion import derivative, extremes_of, greatest_size
 from centrode.locale import _
 from centrode.present.cams.bodies import cam_body_figures
 from centrode.present.cams.plate_curves import plate_curves_figure
 from centrode.render.document.blocks import Block, Chapter, Check, Formula, Paragraph
 from centrode.render.document.figures import picture
 from centrode.render.document.rows import rows_table, told
-from centrode.report.chapters.followers.parts import course, part_of, sections_of, told_failures
+from centrode.report.chapters.followers.parts import course, motion_of, part_of, sections_of, told_failures
 from centrode.report.chapters.followers.profile_checks import by_formulas, by_instant_centre, not_undercut
 from centrode.report.chapters.followers.spelled import Spelled
 
@@ -88,9 +89,7 @@ def _shown_angle(study: ReportStudy, body: FollowerCam) -> float:
         return study.wishes.instants[0]
     found = body.pressure
     if found.greatest == found.least == 0.0:
-        part = part_of(study, "motion")
-        assert part is not None
-        return part.scalars["follower_greatest_velocity_at"].value
+        return greatest_size(extremes_of(motion_of(study).law, 2, derivative(1)))[1]
     return found.at_greatest
 
 
