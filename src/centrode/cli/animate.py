@@ -8,13 +8,13 @@ import click
 
 import centrode as ct
 from centrode import render
-from centrode.analysis.instant_centres.results import read_pair
 from centrode.cli import output
 from centrode.cli.about import about
 from centrode.cli.arguments import dark_option, range_option, start_option, stop_option
 from centrode.cli.progress import Progress
 from centrode.errors import InputError, MotionError
 from centrode.locale import _, mark, ngettext
+from centrode.topics.registry import READ_PAIRS_OF_BODIES
 
 ENDINGS = (".gif", ".mp4")
 SIZE = "800x600"
@@ -153,7 +153,7 @@ def _shown(
         ("paths",) if show is None else _names(show),
         None if points is None else _names(points),
         growing,
-        [read_pair(None, text, "--pair") for text in pairs] or None,
+        READ_PAIRS_OF_BODIES(None, pairs, "--pair") or None,
         link,
         against or "frame",
     )

@@ -55,7 +55,8 @@ def topic_command(topic: Topic, command: Command) -> click.Command:
         description = _in_range(description, given)
         _check_instants(command, description, samples, given)
         written = {name: given.pop(name, False) for name in ("force", "no_figures", "dark", "animate")}
-        arguments = _arguments(command, description, given)
+        with about(mechanism):
+            arguments = _arguments(command, description, given)
         if command.samples:
             arguments["samples"] = samples
         if command.kinds:

@@ -144,7 +144,7 @@ class PlainSpelling(Spelling):
         return text
 
     def _digits(self, value: float, digits: str) -> str:
-        return DASH if math.isnan(value) else format(value, digits if len(digits) > 1 else f"{digits}.6g")
+        return DASH if math.isnan(value) else format(value, f"{digits}.6g" if digits in ("", "+") else digits)
 
     def symbol(self, symbol: Symbol) -> str:
         """A letter with its index behind a low line."""

@@ -10,14 +10,17 @@ from centrode import render
 from centrode.errors import InputError
 from centrode.files.drafts import draft_folder
 from centrode.locale import _
-from centrode.model.mechanism import Display, Mechanism
 from centrode.topics.registry import TOPICS
+from centrode.topics.topic import Lazily
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from centrode.model.cam_files import AnyCam
+    from centrode.model.mechanism import Display, Mechanism
     from centrode.sheets.sheet import Sheet, Table
+
+MECHANISM = Lazily("centrode.model.mechanism", "Mechanism")
 
 
 def sheet_of(result: Any) -> Sheet:
@@ -46,7 +49,7 @@ def sheets_of(
     flags : collection of str
         Topics that are left out otherwise; they refuse a description that has nothing for them.
     """
-    subject = "mechanism" if isinstance(description, Mechanism) else "cam"
+    subject = "mechanism" if isinstance(description, cast("type", MECHANISM.load())) else "cam"
     return {
         topic.name: topic.view(topic.compute(description, samples))
         for topic in TOPICS

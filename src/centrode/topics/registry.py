@@ -17,6 +17,7 @@ from centrode.topics.topic import (
 )
 
 READ_PAIRS = Lazily("centrode.cli.option_readers", "read_pairs")
+READ_PAIRS_OF_BODIES = Lazily("centrode.cli.option_readers", "read_pairs_of_bodies")
 READ_RANGES = Lazily("centrode.cli.option_readers", "read_ranges")
 READ_INSTANTS = Lazily("centrode.cli.option_readers", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_readers", "read_instant")
@@ -325,7 +326,7 @@ CENTRES = Topic(
                 mark('Two links ("AC,frame"); all pairs if left out. As often as needed.'),
                 several=True,
                 parameter="pairs",
-                read=Lazily("centrode.cli.option_readers", "read_pairs_of_bodies"),
+                read=READ_PAIRS_OF_BODIES,
             ),
         ),
         samples=False,
