@@ -163,7 +163,9 @@ class Moves:
         code = source.is_python or (source.path.suffix == ".md" and PACKAGE in source.text)
         named = any(re.search(rf"\b{method}\b", source.text) for method in self.methods)
         ours = {*self.new_modules, *(module for module, _name in self.table.names)}
-        return code and (source.module in ours or named or bool(self._relevant.search(source.text)))
+        # a stub names the modules of its own room without the room
+        stub = source.path.suffix == ".pyi" and bool(self._relevant.search(source.package))
+        return code and (source.module in ours or named or stub or bool(self._relevant.search(source.text)))
 
     def target(self, source: Source, imported: Imported) -> Target | None:
         """What an import means; None if it is not of the package."""
