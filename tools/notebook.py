@@ -34,10 +34,9 @@ CELLS: tuple[tuple[str, str], ...] = (
     ),
     (
         "code",
-        'locked = ct.example("slider-between-cranks-locked")\nfound = ct.repair(locked)\n'
-        'for label, text in ct.repair_rows(locked, found):\n    print(f"{label:16} {text}")',
+        'locked = ct.example("slider-between-cranks-locked")\nfound = ct.repair(locked)\nprint(ct.summary(found))',
     ),
-    ("code", "found.mechanism"),
+    ("code", "found.repaired"),
 )
 
 

@@ -14,6 +14,8 @@ import tomllib
 from pathlib import Path
 
 import centrode as ct
+from centrode.render.terminal import plain_text
+from centrode.views.rotatability import impossibility_text
 
 ROWS = Path(__file__).parents[1] / "tests" / "reference" / "planar-variants.csv"
 LINKS = ("AC", "CB", "BD")
@@ -33,7 +35,9 @@ def line(row: dict[str, str], least_angle: str | None) -> str:
     found = ct.repair(variant(row), least_transmission_angle=least_angle)
     limits = ", ".join(f"{limit.value:.4f} ({limit.condition})" for limit in found.before.limits)
     if not found.changes:
-        said = "as it is" if found.found else found.impossible or "none found"
+        said = "as it is" if found.found else "none found"
+        if found.impossible is not None:
+            said = plain_text(impossibility_text(found.impossible), found.mechanism.display)
     else:
         angles = ", ".join(f"{change.after:.4f}" for change in found.changes)
         said = f"change {found.size:.4f}: phi2, phi3, phi4 = {angles}"

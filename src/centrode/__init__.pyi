@@ -67,10 +67,6 @@ from .study.limiting import limits_sentence as limits_sentence
 from .study.running import range_value as range_value
 from .study.limiting import repair_of_range as repair_of_range
 from .study.running import with_range as with_range
-from .study.turning import rotatability_rows as rotatability_rows
-from .study.turning import rotatability_text as rotatability_text
-from .study.repairing import repair_rows as repair_rows
-from .study.repairing import repair_text as repair_text
 from .study.summary import check_rows as check_rows
 from .study.summary import motion_rows as motion_rows
 

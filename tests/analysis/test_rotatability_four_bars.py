@@ -9,6 +9,7 @@ import numpy.typing as npt
 import pytest
 
 import centrode as ct
+from centrode.analysis.rotatability.circuits import Uncounted
 from mechanisms import four_bar
 
 Array = npt.NDArray[np.float64]
@@ -279,4 +280,4 @@ def test_branches_end_at_the_limits() -> None:
 def test_circuits_that_no_sign_tells_are_not_counted() -> None:
     turning = ct.rotatability(ct.example("third-class-triad")).one
     assert turning.circuits is None
-    assert "higher class" in turning.circuits_missing
+    assert turning.circuits_missing == Uncounted.HIGHER_CLASS

@@ -80,7 +80,7 @@ def test_sentences_take_the_report_s_digits_and_marks() -> None:
 def test_what_stops_a_locking_mechanism_and_its_repair() -> None:
     found = made("rotatability", ct.example("slider-between-cranks-locked"))
     cells = [cell for table in blocks(found, Table) for row in table.rows for cell in row]
-    assert any("$sin (phi_(3) - phi_(4)) = 0$" in cell for cell in cells)
+    assert any("$sin(phi_(3) - phi_(4)) = 0$" in cell for cell in cells)
     assert any("OA = 1.7999 rad (103.13°)" in cell for cell in cells)
     assert [section.title for section in found.sections] == ["", "Transmission angles", "Repair"]
     assert all(check.holds for check in blocks(found, Check)) and blocks(found, Check)

@@ -32,7 +32,6 @@ from centrode.cli.export import export
 from centrode.cli.plan import plan
 from centrode.cli.polygons import polygons
 from centrode.cli.report import report
-from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
 from centrode.cli.schema import schema
 from centrode.cli.sweep import sweep
@@ -53,7 +52,6 @@ OWN: tuple[click.Command, ...] = (
     check,
     describe,
     equations,
-    rotatability,
     polygons,
     variants,
     cam,

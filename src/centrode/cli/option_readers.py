@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import centrode as ct
 from centrode.analysis.instant_centres.results import read_pair
 from centrode.cli.pairs import pairs, ranges
+from centrode.errors import InputError
+from centrode.locale import _
 
 if TYPE_CHECKING:
     from centrode.model.mechanism import Mechanism
@@ -36,3 +38,14 @@ def read_pairs_of_bodies(mechanism: Mechanism, texts: Iterable[str], where: str)
 def read_instants(mechanism: Mechanism, texts: Iterable[str], where: str) -> list[float]:
     """Values of the drive [rad or m], or times [s] where the drive is a law."""
     return [ct.range_value(mechanism, text, where) for text in texts]
+
+
+def read_varied(_mechanism: Mechanism, texts: Iterable[str], where: str) -> dict[str, tuple[str, str] | None]:
+    """Paths of numbers of texts PATH or PATH=LOW:HIGH, with their bounds where they have some."""
+    texts = tuple(texts)
+    bounds = ranges([text for text in texts if "=" in text], where)
+    paths = [text.partition("=")[0].strip() for text in texts]
+    for number, path in enumerate(paths):
+        if path in paths[:number]:
+            raise InputError(where, _("{name} is given twice").format(name=path), _("keep one of them"))
+    return {path: bounds.get(path) for path in paths}

@@ -27,7 +27,7 @@ from centrode.cli.expected import announce_size, announce_turns
 from centrode.cli.progress import Progress
 from centrode.cli.tables import asked_spelling, need_table, table_files, tables_options
 from centrode.errors import InputError, MotionError
-from centrode.locale import _, mark, speaking
+from centrode.locale import _, chosen_language, mark, speaking
 from centrode.topics.topic import Choice, Command, Flag, Given, InstantsOption, MotionRange, Option
 
 if TYPE_CHECKING:
@@ -35,12 +35,6 @@ if TYPE_CHECKING:
     from centrode.sheets.sheet import Sheet
     from centrode.topics.topic import Topic
 
-file_option = click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    metavar=mark("FILE"),
-    help=mark("Also write FILE.json or FILE.csv, by the ending of its name."),
-)
 force_option = click.option("--force", is_flag=True, help=mark("Replace FILE where it exists."))
 
 
@@ -85,6 +79,12 @@ def _parameters(command: Command) -> Iterator[click.Parameter]:
     for option in command.options:
         yield from _of_option(option)
     if command.kinds:
+        file_option = click.option(
+            "--out",
+            type=click.Path(path_type=Path),
+            metavar=mark("FILE"),
+            help=command.file_help or mark("Also write FILE.json or FILE.csv, by the ending of its name."),
+        )
         yield from _made_by(
             [file_option, *([tables_options] if "csv" in command.kinds else []), force_option]
         )
@@ -247,22 +247,44 @@ def _beside_file(
         kind = None if out is None else _kind(out, cast("Command", topic.command).kinds)
         result = _result(topic, mechanism, arguments, progress)
         sheet = topic.view(result)
-        if out is None:
+        if kind is None or out is None:
             return result, sheet, ""
-        with speaking("en"):  # what files hold is English
-            english = topic.view(_result(topic, mechanism, arguments, progress))
+        known = tuple(_kinds_of(sheet))
+        if kind not in known and sheet.failure is not None:
+            return result, sheet, ""  # what would be written was not found
+        kind = _kind(out, known)
+        english = sheet
+        if chosen_language() != "en":
+            with speaking("en"):  # what files hold is English
+                english = topic.view(_result(topic, mechanism, arguments, progress))
     with output.output_table(out, force=force) as draft:
         if kind == "json":
             render.write_record(english.record, draft)
-        else:
+        elif kind == "csv":
             (table,) = english.tables.values()
             render.write_table(table, draft, mechanism.display)
+        else:
+            text = next(text for name, text in english.files.items() if _ending(name) == kind)
+            draft.write_text(text, encoding="utf-8", newline="\n")
     return result, sheet, output.wrote(table_files(out))
+
+
+def _kinds_of(sheet: Sheet) -> Iterator[str]:
+    """The kinds of the one file that a sheet can be written as."""
+    if sheet.record is not None:
+        yield "json"
+    if sheet.tables:
+        yield "csv"
+    yield from map(_ending, sheet.files)
+
+
+def _ending(name: str) -> str:
+    return Path(name).suffix[1:].lower()
 
 
 def _kind(out: Path, known: tuple[str, ...]) -> str:
     """Kind of a file by the end of its name; InputError for one that the topic does not write."""
-    kind = out.suffix[1:].lower()
+    kind = _ending(out.name)
     if kind not in known:
         raise InputError(
             "--out",

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from centrode.locale import speaking
 from centrode.present.shown import shown_as
 from centrode.present.spelled_tables import PLAIN, TableSpelling
 from centrode.present.tables import write_motion_netcdf
@@ -45,8 +46,11 @@ def write_summary(scalars: Mapping[str, Scalar], path: Path) -> None:
 
 
 def write_record(record: Mapping[str, Any], path: Path) -> None:
-    """Write a result as JSON, names in their own letters."""
-    text = json.dumps(record, indent=2, ensure_ascii=False, allow_nan=False)
+    """Write a result as JSON, names in their own letters; texts of a sheet in English, with numbers in SI."""
+    with speaking("en"):
+        text = json.dumps(
+            record, indent=2, ensure_ascii=False, allow_nan=False, default=PlainSpelling(None).text
+        )
     path.write_text(text + "\n", encoding="utf-8", newline="\n")
 
 

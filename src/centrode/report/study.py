@@ -7,7 +7,6 @@ from typing import Any, TypeVar, cast
 
 import xarray as xr
 
-from centrode.analysis.rotatability.rotatability import Rotatability, rotatability
 from centrode.equations.derivation import Equations, equations
 from centrode.model.cam import Cam
 from centrode.model.cam_files import AnyCam
@@ -121,11 +120,6 @@ class ReportStudy:
     def points(self) -> tuple[str, ...]:
         """Points whose velocities and paths are told: those asked for, else those on guides of the frame."""
         return self.equations.sliding if self.wishes.points is None else self.wishes.points
-
-    @property
-    def rotatability(self) -> Rotatability:
-        """Whether the drives turn fully, and what stops them."""
-        return self.once("rotatability", lambda: rotatability(self.mechanism))
 
     @property
     def cam_results(self) -> CamResults:

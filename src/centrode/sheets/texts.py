@@ -189,7 +189,7 @@ class Indexed:
     index: str
 
 
-Leaf: TypeAlias = "str | Number | Factor | Name | Expression | Sentence"
+Leaf: TypeAlias = "str | Number | Factor | Name | Expression | Sentence | Symbol | Indexed"
 """A piece of a formula; a string is notation without leaves of its own, a sentence is words among the letters."""
 Text: TypeAlias = (
     "Name | Title | Number | Sentence | Counted | Joined | Symbol"

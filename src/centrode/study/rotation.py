@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from centrode.analysis.rotatability.rotatability import LimitFound, rotatability
-from centrode.kinematics.preparation import Ready
+from centrode.analysis.rotatability.rotatability import rotatability
+from centrode.locale import _
+from centrode.quantities import display_unit
+from centrode.sheets.texts import Joined, Name, Number, Sentence
+from centrode.views.rotatability import cause_text
+
+if TYPE_CHECKING:
+    from centrode.kinematics.preparation import Ready
+    from centrode.model.settings import Display
+    from centrode.sheets.texts import Text
 
 
 @dataclass(frozen=True)
@@ -41,15 +51,31 @@ def rotation_of(prepared: Ready) -> Rotation:
         return Rotation(found.turns_fully)
     first = limits[0].value
     met = [limit for limit in limits if limit.value == first]
+    display = prepared.mechanism.display
     return Rotation(
         found.turns_fully,
         first,
         found.one.unit,
-        _joined(met, "group"),
-        _joined(met, "cause"),
-        _joined(met, "condition"),
+        _joined(limit.group for limit in met),
+        _joined(_spoken(cause_text(limit.cause), display) for limit in met),
+        _joined(str(limit.condition) for limit in met),
     )
 
 
-def _joined(limits: list[LimitFound], attribute: str) -> str:
-    return "; ".join(dict.fromkeys(getattr(limit, attribute) for limit in limits))
+def _joined(texts: Iterable[str]) -> str:
+    return "; ".join(dict.fromkeys(texts))
+
+
+def _spoken(text: Text, display: Display) -> str:
+    """The sentence of a cause in the language that is spoken."""
+    match text:
+        case Name(name):
+            return name
+        case Number(value, unit, digits):
+            factor, shown = display_unit(unit, display.length, display.angle)
+            return f"{value * factor:{digits}} {shown}"
+        case Joined(parts, between):
+            return between.join(_spoken(part, display) for part in parts)
+        case Sentence(message, values):
+            return _(message).format(**{hole: _spoken(value, display) for hole, value in values.items()})
+    raise TypeError(type(text).__name__)

@@ -19,6 +19,7 @@ from centrode.topics.topic import (
 READ_PAIRS = Lazily("centrode.cli.option_readers", "read_pairs")
 READ_PAIRS_OF_BODIES = Lazily("centrode.cli.option_readers", "read_pairs_of_bodies")
 READ_RANGES = Lazily("centrode.cli.option_readers", "read_ranges")
+READ_VARIED = Lazily("centrode.cli.option_readers", "read_varied")
 READ_INSTANTS = Lazily("centrode.cli.option_readers", "read_instants")
 READ_INSTANT = Lazily("centrode.cli.option_readers", "read_instant")
 
@@ -399,6 +400,50 @@ MOTION_LAWS = Topic(
     flag="laws",
 )
 
+ROTATABILITY = Topic(
+    name="rotatability",
+    compute=Lazily("centrode.analysis.redesign.results", "rotatability_results"),
+    result=Lazily("centrode.analysis.rotatability.rotatability", "Rotatability"),
+    view=Lazily("centrode.views.rotatability", "sheet"),
+    command=Command(
+        help=mark("Tell whether a mechanism turns fully, and repair it."),
+        needs=Lazily("centrode.analysis.redesign.results", "need_repair"),
+        options=(
+            Flag("repair", mark("Seek the smallest change after which it turns fully.")),
+            Given(
+                "vary",
+                mark("PATH[=LOW:HIGH]"),
+                mark('A number that may change ("links.CB.angle=200 deg:300 deg"); as often as needed.'),
+                several=True,
+                read=READ_VARIED,
+            ),
+            Given(
+                "least_transmission_angle",
+                mark("ANGLE"),
+                mark("What every dyad keeps over the turn; 1 deg if left out."),
+            ),
+        ),
+        progress=mark("seeking a repair, %"),
+        kinds=("json", "toml"),
+        file_help=mark("Also write FILE.json, what was found, or FILE.toml, the repaired mechanism."),
+        samples=False,
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("rotatability", mark("Rotatability")),),
+        arguments={"complete": True},
+        instants=False,
+    ),
+)
+
+REPAIR = Topic(
+    name="repair",
+    compute=Lazily("centrode.analysis.redesign.results", "repair_results"),
+    result=Lazily("centrode.analysis.redesign.repair", "Repair"),
+    view=Lazily("centrode.views.rotatability", "repair_sheet"),
+    concerns=Lazily("centrode.analysis.redesign.repair", "needs_repair"),
+    flag="repair",
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -414,5 +459,7 @@ TOPICS: tuple[Topic, ...] = (
     SHAKING,
     FOLLOWER_MOTION,
     MOTION_LAWS,
+    ROTATABILITY,
+    REPAIR,
 )
 """Every topic."""

@@ -118,11 +118,13 @@ class Command:
     complete : parameter of the computation that is False where nothing is written: then only what is printed is needed
     ending : result -> raises where it is not whole, once it has been shown
     folder : what ends the name of the folder that is always written; if empty `--out` names a folder where it is given
-    kinds : of the one file that `--out` names in place of a folder ("json", "csv"); none where it names a folder
+    kinds : of the one file that `--out` names in place of a folder ("json", "csv", or that of a further file of the
+        sheet); none where it names a folder
     summary : whether the scalars of the sheet are written as `summary.json`
     pictures, dark : whether it draws, and on a dark ground as well
     animation : (result, file, dark) writes an animation, with `--animate`
     animation_help : what the animation shows, marked for the catalogues
+    file_help : what the one file holds, marked for the catalogues; JSON or CSV if empty
     """
 
     help: str
@@ -141,6 +143,7 @@ class Command:
     dark: bool = False
     animation: Lazily | None = None
     animation_help: str = ""
+    file_help: str = ""
 
 
 @dataclass(frozen=True)

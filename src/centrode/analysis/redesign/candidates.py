@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import cos, degrees, pi, sqrt
+from math import cos, pi, sqrt
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -409,17 +409,38 @@ class VariedRange:
     high: float
 
 
-def impossible(candidates: Candidates, least_angle: float) -> str:
-    """Why no change within the bounds makes it turn, with the inequality; empty where none of these says so."""
+@dataclass(frozen=True)
+class Impossibility:
+    """An inequality that no change within the bounds fulfils, so that the drive cannot turn.
+
+    Attributes
+    ----------
+    crank : the driven link
+    rods : the link behind the crank, whose end a guide leads; or both links of the dyad behind such a slider
+    least_angle : transmission angle that every dyad is to keep [rad]
+    low, high : least length that is needed, and the greatest that the rods reach [m]
+    offset : of the guide from the crank's pivot, which is part of `low`; 0 where something may change it [m]
+    """
+
+    crank: str
+    rods: tuple[str, ...]
+    least_angle: float
+    low: float
+    high: float
+    offset: float = 0.0
+
+
+def impossible(candidates: Candidates, least_angle: float) -> Impossibility | None:
+    """The inequality that no change within the bounds fulfils; None where none of these says so."""
     prepared = candidates.prepared
     if prepared.mechanism.space != "plane":
-        return ""
+        return None
     lengths = _Lengths(candidates)
     crank = next(
         (g for g in prepared.structure.groups if isinstance(g, TurnedLink) and g.kind == "crank"), None
     )
     if crank is None or crank.pivot not in prepared.mechanism.frame.points:
-        return ""
+        return None
     for group in prepared.structure.groups:
         if isinstance(group, Meet) and group.carriage is None:
             reason = _behind_crank(lengths, crank.link, group, least_angle) or _behind_slider(
@@ -427,7 +448,7 @@ def impossible(candidates: Candidates, least_angle: float) -> str:
             )
             if reason:
                 return reason
-    return ""
+    return None
 
 
 class _Lengths:
@@ -457,7 +478,7 @@ def _on_crank(lengths: _Lengths, crank: str, point: str) -> bool:
     )
 
 
-def _behind_crank(lengths: _Lengths, crank: str, group: Meet, least_angle: float) -> str:
+def _behind_crank(lengths: _Lengths, crank: str, group: Meet, least_angle: float) -> Impossibility | None:
     """Crank, coupler and slider on a line of the frame: the pin's distance from the line reaches the crank's length."""
     rods, rails = _rods(group), [locus for locus in group.loci if isinstance(locus, Rail)]
     if (
@@ -466,27 +487,14 @@ def _behind_crank(lengths: _Lengths, crank: str, group: Meet, least_angle: float
         or rails[0].on != FRAME
         or not _on_crank(lengths, crank, rods[0].centre)
     ):
-        return ""
+        return None
     short, rod = lengths.of(crank), lengths.of(rods[0].link)
     if short is None or rod is None:
-        return ""
+        return None
     reach, offset = rod.high * cos(least_angle), _offset(lengths.candidates, crank, rails[0])
     if short.low + offset <= reach * (1.0 + MARGIN):
-        return ""
-    left, most = (f"{crank} + e", _(" (e = {e:.6g} m, which nothing changes)").format(e=offset))
-    if not offset:
-        left, most = crank, ""
-    return _(
-        "{left} > {rod} cos {angle}: {low:.6g} m > {high:.6g} m{most}; over a turn the crank's pin comes so far from"
-        " the guide, and {rod} does not reach so far"
-    ).format(
-        left=left,
-        rod=rods[0].link,
-        angle=_degrees(least_angle),
-        low=short.low + offset,
-        high=reach,
-        most=most,
-    )
+        return None
+    return Impossibility(crank, (rods[0].link,), least_angle, short.low + offset, reach, offset)
 
 
 def _offset(candidates: Candidates, crank: str, rail: Rail) -> float:
@@ -505,33 +513,28 @@ def _offset(candidates: Candidates, crank: str, rail: Rail) -> float:
     return first if float(np.max(np.abs(offsets - first))) <= MARGIN * scale else 0.0
 
 
-def _behind_slider(prepared: Ready, lengths: _Lengths, crank: str, group: Meet, least_angle: float) -> str:
+def _behind_slider(
+    prepared: Ready, lengths: _Lengths, crank: str, group: Meet, least_angle: float
+) -> Impossibility | None:
     """A dyad whose end is carried by a slider-crank's slider: its stroke is at least twice the crank."""
     rods = _rods(group)
     if len(rods) != 2:
-        return ""
+        return None
     fixed = [rod for rod in rods if rod.centre in prepared.mechanism.frame.points]
     moving = [rod for rod in rods if rod.centre not in prepared.mechanism.frame.points]
     if len(fixed) != 1 or len(moving) != 1:
-        return ""
+        return None
     if not _is_slider(prepared, lengths, crank, moving[0].centre):
-        return ""
+        return None
     ranges = [lengths.of(rod.link) for rod in rods]
     short = lengths.of(crank)
     if short is None or None in ranges:
-        return ""
+        return None
     one, other = (one for one in ranges if one is not None)
     reach = 2.0 * sqrt(one.high * other.high * cos(least_angle))
     if short.low <= reach * (1.0 + MARGIN):
-        return ""
-    names = [rod.link for rod in rods]
-    return _(
-        "{crank} > 2 sqrt({one} {other} cos {angle}): {low:.6g} m > {high:.6g} m; the slider's stroke is at least"
-        " twice the crank, and no way so long and straight lies between the least and the greatest reach of {one}"
-        " and {other}"
-    ).format(
-        crank=crank, one=names[0], other=names[1], angle=_degrees(least_angle), low=short.low, high=reach
-    )
+        return None
+    return Impossibility(crank, tuple(rod.link for rod in rods), least_angle, short.low, reach)
 
 
 def _is_slider(prepared: Ready, lengths: _Lengths, crank: str, point: str) -> bool:
@@ -542,7 +545,3 @@ def _is_slider(prepared: Ready, lengths: _Lengths, crank: str, point: str) -> bo
             on_frame = len(rails) == 1 and rails[0].on == FRAME
             return on_frame and len(rods) == 1 and _on_crank(lengths, crank, rods[0].centre)
     return False
-
-
-def _degrees(angle: float) -> str:
-    return f"{degrees(angle):.4g} deg"

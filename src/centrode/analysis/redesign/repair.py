@@ -16,6 +16,7 @@ from centrode.analysis.redesign.candidates import (
     Batch,
     Bounds,
     Candidates,
+    Impossibility,
     Value,
     Varying,
     impossible,
@@ -311,8 +312,6 @@ TIGHTENINGS = 4
 ENOUGH = 1e-9
 """By how much [rad] the verified least transmission angle may fall short of the one asked for."""
 
-_PARTS = ("mechanism", "changes", "varying", "before", "after")
-
 
 @dataclass(frozen=True)
 class Change:
@@ -337,42 +336,33 @@ class Repair:
 
     Attributes
     ----------
+    mechanism : the one given
+    repaired : the one found; the one given if that turns already; None if none was found
     found : whether a mechanism was found that turns fully with the transmission angle asked for
-    mechanism : it; the one given if that turns already; None if none was found
-    changes : of every number that may vary
     size : root of the sum of the squares of the changes' sizes
-    varying : what could change, with its bounds
     least_transmission_angle, reached : asked for, and that of the mechanism found (exact) [rad]
     tried : candidates evaluated
     spread, turning : candidates of the first spread over the bounds, and how many of these turn
-    impossible : why there can be none, with the inequality; empty where nothing says so
+    impossible : the inequality that excludes any; None where nothing says so
+    changes : of every number that may vary
+    varying : what could change, with its bounds
     before, after : Rotatability of the mechanism given and of the one found
     """
 
+    mechanism: Mechanism
+    repaired: Mechanism | None
     found: bool
-    mechanism: Mechanism | None
-    changes: tuple[Change, ...]
     size: float
-    varying: tuple[Varying, ...]
     least_transmission_angle: float
     reached: float | None
     tried: int
     spread: int
     turning: int
-    impossible: str
+    impossible: Impossibility | None
+    changes: tuple[Change, ...]
+    varying: tuple[Varying, ...]
     before: Rotatability
     after: Rotatability | None
-
-    def as_dict(self) -> dict[str, Any]:
-        """For JSON, in SI."""
-        plain = {k: v for k, v in vars(self).items() if k not in _PARTS}
-        return {
-            **plain,
-            "changes": [vars(change) for change in self.changes],
-            "varying": [vars(one) for one in self.varying],
-            "before": self.before.as_dict(),
-            "after": self.after.as_dict() if self.after else None,
-        }
 
 
 def repair(
@@ -415,14 +405,23 @@ def repair(
     least_angle = _angle(least_transmission_angle)
     varying = varyings(prepared, vary, bounds)
     before = rotatability(mechanism)
-    asked = Repair(False, None, (), 0.0, varying, least_angle, None, 0, 0, 0, "", before, None)
+    asked = Repair(mechanism, None, False, 0.0, least_angle, None, 0, 0, 0, None, (), varying, before, None)
     if turns_well(before, least_angle):
-        return replace(asked, found=True, mechanism=mechanism, reached=_least_angle(before), after=before)
+        return replace(asked, found=True, repaired=mechanism, reached=_least_angle(before), after=before)
     candidates = Candidates(prepared, varying)
     reason = impossible(candidates, least_angle)
-    if reason:
+    if reason is not None:
         return replace(asked, impossible=reason)
     return _search_repair(candidates, asked, progress)
+
+
+def needs_repair(mechanism: Mechanism) -> bool:
+    """Whether its one drive does not turn fully, and a repair can be sought."""
+    try:
+        _check_repairable(ready(mechanism))
+    except CentrodeError:
+        return False
+    return rotatability(mechanism).turns_fully is False
 
 
 def turns_well(found: Rotatability, least_angle: float) -> bool:
@@ -490,7 +489,7 @@ def _search_repair(candidates: Candidates, asked: Repair, progress: Progress | N
             return replace(
                 effort,
                 found=True,
-                mechanism=mechanism,
+                repaired=mechanism,
                 changes=_changes(candidates.varying, change),
                 size=float(np.linalg.norm(change)),
                 reached=_least_angle(after),

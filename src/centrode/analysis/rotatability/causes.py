@@ -1,10 +1,11 @@
-"""Why a group stops a mechanism, or lets its assemblies meet: in a sentence, and in symbols."""
+"""Why a group stops a mechanism, or lets its assemblies meet: what happens to it, and the condition in symbols."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 from math import atan2, pi, remainder
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -16,10 +17,8 @@ from centrode.geometry.sphere import cross, dot, tangent
 from centrode.kinematics.dyads import aim_curve, loci_of
 from centrode.kinematics.path import JETS
 from centrode.kinematics.plan_evaluation import FixedSigns, Kinematics, SideChoices
-from centrode.locale import _
 from centrode.model.mechanism import Mechanism
 from centrode.numerics.arrays import ARRAYS
-from centrode.quantities import display_unit
 from centrode.structure.assur import name_of
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
@@ -35,16 +34,64 @@ HIGHER = "determinant = 0"
 
 
 @dataclass(frozen=True)
+class AngleSymbol:
+    """The angle of a link by its number in the description (phi3), or of a cylinder by its points (psi_KA)."""
+
+    letter: Literal["phi", "psi"]
+    index: str
+
+    def __str__(self) -> str:
+        return f"phi{self.index}" if self.letter == "phi" else f"psi_{self.index}"
+
+
+@dataclass(frozen=True)
+class AngleCondition:
+    """A sine or cosine of a sum of angles that is zero.
+
+    Attributes
+    ----------
+    plus, minus : angles of the sum, by their signs
+    constant : that is added [rad]
+    """
+
+    function: Literal["sin", "cos"]
+    plus: tuple[AngleSymbol, ...]
+    minus: tuple[AngleSymbol, ...]
+    constant: float = 0.0
+
+    def __str__(self) -> str:
+        text = " + ".join(map(str, self.plus)) + "".join(f" - {angle}" for angle in self.minus)
+        if self.constant:
+            text += f" {'+' if self.constant > 0 else '-'} {abs(self.constant):.6g}"
+        return f"{self.function}({text}) = 0"
+
+
+@dataclass(frozen=True)
+class SlideCondition:
+    """The displacement along a guide at which the group locks [m]."""
+
+    guide: str
+    value: float
+
+    def __str__(self) -> str:
+        return f"s_{self.guide} = {f'{self.value:.6g} m' if self.value else 0}"
+
+
+Condition: TypeAlias = AngleCondition | SlideCondition | str
+"""What holds of the group's own geometry; a string is a condition without numbers, in names alone."""
+
+
+@dataclass(frozen=True)
 class PivotSymbol:
     """The direction of a line as a sum: symbols of angles, and a constant [rad]."""
 
-    symbols: tuple[str, ...] = ()
+    symbols: tuple[AngleSymbol, ...] = ()
     constant: float = 0.0
 
 
-def symbol_of(mechanism: Mechanism, link: str) -> str:
+def symbol_of(mechanism: Mechanism, link: str) -> AngleSymbol:
     """Symbol of a link's angle: links count from 1, in the order of the description."""
-    return f"phi{mechanism.link_names.index(link) + 1}"
+    return AngleSymbol("phi", str(mechanism.link_names.index(link) + 1))
 
 
 def bearing_of(mechanism: Mechanism, body: str, direction: Vector) -> PivotSymbol:
@@ -62,20 +109,20 @@ def bearing_between(
     return bearing_of(mechanism, link, subtract(local[last], local[first]))
 
 
-def parallel(one: PivotSymbol, other: PivotSymbol) -> str:
+def parallel(one: PivotSymbol, other: PivotSymbol) -> Condition:
     """The condition that two lines have the same direction, or opposite ones."""
     return _vanishes(one, other, square=False)
 
 
-def square(one: PivotSymbol, other: PivotSymbol) -> str:
+def square(one: PivotSymbol, other: PivotSymbol) -> Condition:
     """The condition that two lines stand square to each other."""
     return _vanishes(one, other, square=True)
 
 
-def _vanishes(one: PivotSymbol, other: PivotSymbol, *, square: bool) -> str:
+def _vanishes(one: PivotSymbol, other: PivotSymbol, *, square: bool) -> Condition:
     """The sine or cosine of the difference = 0; a quarter turn between the two changes one into the other."""
-    plus = [name for name in one.symbols if name not in other.symbols]
-    minus = [name for name in other.symbols if name not in one.symbols]
+    plus = tuple(angle for angle in one.symbols if angle not in other.symbols)
+    minus = tuple(angle for angle in other.symbols if angle not in one.symbols)
     if not plus and not minus:
         return HIGHER
     constant = one.constant - other.constant
@@ -84,51 +131,81 @@ def _vanishes(one: PivotSymbol, other: PivotSymbol, *, square: bool) -> str:
     constant = remainder(constant, pi)  # half a turn changes the sign alone
     if abs(abs(constant) - 0.5 * pi) <= NOTHING:
         constant, square = 0.0, not square
-    name = "cos" if square else "sin"
-    return f"{name}({_sum(plus, minus, constant)}) = 0"
-
-
-def _sum(plus: list[str], minus: list[str], constant: float) -> str:
-    text = " + ".join(plus) + "".join(f" - {name}" for name in minus)
-    if abs(constant) <= NOTHING:
-        return text
-    return f"{text} {'+' if constant > 0 else '-'} {abs(constant):.6g}"
+    return AngleCondition(
+        "cos" if square else "sin", plus, minus, 0.0 if abs(constant) <= NOTHING else constant
+    )
 
 
 Number: TypeAlias = Any
 
 
+class CauseKind(StrEnum):
+    """What happens to a group at its limit, or at its change point."""
+
+    TURNS_BACK = "its positions turn back"
+    POSITIONS_MEET = "its positions meet"
+    RODS_IN_LINE = "two rods fall in line"
+    RODS_PARALLEL = "two rods with a body between them stand parallel"
+    RODS_ON_GREAT_CIRCLE = "two arcs lie on one great circle"
+    ROD_SQUARE = "a rod stands square to a line"
+    ROD_ALONG = "a rod lies along a line"
+    LINES_PARALLEL = "two lines are parallel"
+    CIRCLES_TOUCH = "two circles touch"
+    WHEEL_NEAREST = "a link comes no nearer to a wheel"
+    ARC_SQUARE = "an arc stands square to a guide"
+    PIN_AT_PIVOT = "a pin comes to a pivot"
+    ARM_SQUARE = "an arm stands square to a guide"
+    NO_LENGTH = "a cylinder has no length"
+
+
+class Tracer(StrEnum):
+    """What moves a point along a locus."""
+
+    LINK = "link"
+    CYLINDER = "cylinder"
+    GUIDE = "guide"
+    WHEEL = "wheel"
+
+
 @dataclass(frozen=True)
 class Cause:
-    """Why: a sentence, and the condition of the group's own geometry that holds there ("sin(phi3 - phi4) = 0")."""
+    """Why a group is at a limit or at a change point.
 
-    sentence: str
-    condition: str
+    Attributes
+    ----------
+    bodies : what draws the group's loci, each with its name; a wheel has none
+    points : two centres of rods; of a link that aims with its guide the pivot and the target
+    stretched : whether two rods are stretched out, not folded over each other; None of other groups
+    distance : of the two points [m, on the sphere rad]; of an aiming link that of its guide from the pivot
+    """
+
+    kind: CauseKind
+    bodies: tuple[tuple[Tracer, str], ...] = ()
+    points: tuple[str, ...] = ()
+    stretched: bool | None = None
+    distance: float | None = None
 
 
-def cause_of(tour: DriveSweep, group: Group, index: int, value: float, *, crossing: bool = False) -> Cause:
-    """Why a group is at a limit, or at a change point (`crossing`), at a value of the drive."""
+def cause_of(
+    tour: DriveSweep, group: Group, index: int, value: float, *, crossing: bool = False
+) -> tuple[Cause, Condition]:
+    """Why a group is at a limit, or at a change point (`crossing`), at a value of the drive, and what holds there."""
     mechanism, numbers = tour.prepared.mechanism, tour.continuation.kinematics.numbers
-    about = _About(tour, mechanism, numbers, index, value)
+    place = _Place(tour, mechanism, numbers, index, value)
     if isinstance(group, Aim):
-        return _cause_of_aim(about, group)
+        return _cause_of_aim(place, group)
     if not isinstance(group, Meet):
-        sentence = (
-            _("positions of the group meet: the determinant of its equations is zero")
-            if crossing
-            else _("the positions of the group turn back: the determinant of its equations is zero")
-        )
-        return Cause(sentence, HIGHER)
+        return Cause(CauseKind.POSITIONS_MEET if crossing else CauseKind.TURNS_BACK), HIGHER
     if group.kind == "RRR":
-        return _of_two_rods(about, group)
+        return _of_two_rods(place, group)
     if group.kind == "RRP":
-        return _of_rod_and_line(about, group)
-    return _of_two_lines(about, group)
+        return _of_rod_and_line(place, group)
+    return _of_two_lines(place, group)
 
 
 @dataclass(frozen=True)
-class _About:
-    """What a cause is told of."""
+class _Place:
+    """A group's limit or change point: the mechanism with its dimensions, and the drive's value there."""
 
     tour: DriveSweep
     mechanism: Mechanism
@@ -140,27 +217,24 @@ class _About:
     def on_sphere(self) -> bool:
         return self.mechanism.space == "sphere"
 
-    def length(self, value: float) -> str:
-        """A length, on the sphere an arc, in the units of the reader."""
-        value = 0.0 if abs(value) <= 1e-12 * float(self.numbers.scale) else value
-        display = self.mechanism.display
-        factor, shown = display_unit(self.numbers.space.unit, display.length, display.angle)
-        return f"{value * factor:.6g} {shown}"
+    def length(self, value: float) -> float:
+        """A length, on the sphere an arc; what is zero but for rounding as zero."""
+        return 0.0 if abs(value) <= 1e-12 * float(self.numbers.scale) else value
 
 
 def _as_float(x: Number) -> float:
     return float(np.reshape(x, -1)[0])
 
 
-def body_of(locus: Locus) -> str:
-    """A locus by what draws it: a link, a cylinder or a guide."""
+def body_of(locus: Locus) -> tuple[Tracer, str]:
+    """A locus by what draws it: a link, a cylinder, a guide or a wheel."""
     if isinstance(locus, Rod):
-        return locus.link
+        return Tracer.LINK, locus.link
     if isinstance(locus, CylinderCircle):
-        return _("cylinder {name}").format(name=locus.drive)
+        return Tracer.CYLINDER, locus.drive
     if isinstance(locus, (Rail, Slot, Stop)):
-        return _("guide {name}").format(name=locus.guide)
-    return _("the track of a wheel")
+        return Tracer.GUIDE, locus.guide
+    return Tracer.WHEEL, ""
 
 
 def bearing_of_locus(
@@ -170,7 +244,7 @@ def bearing_of_locus(
     if isinstance(locus, Rod):
         return bearing_between(mechanism, numbers, locus.link, locus.centre, locus.point)
     if isinstance(locus, CylinderCircle):
-        return PivotSymbol(("psi_" + locus.drive.replace("-", ""),))
+        return PivotSymbol((AngleSymbol("psi", locus.drive.replace("-", "")),))
     if isinstance(locus, Rail):
         return bearing_of(mechanism, locus.on, numbers.direction[locus.guide])
     if isinstance(locus, Slot):
@@ -181,46 +255,42 @@ def bearing_of_locus(
     return None
 
 
-def _conditions(about: _About, group: Meet) -> tuple[PivotSymbol | None, PivotSymbol | None]:
+def _bearings(place: _Place, group: Meet) -> tuple[PivotSymbol, PivotSymbol] | None:
+    """Bearings of both lines of a group; None where a wheel draws one of them."""
     carriage = group.carriage or ""
-    one, other = (bearing_of_locus(about.mechanism, about.numbers, locus, carriage) for locus in group.loci)
-    return one, other
+    one, other = (bearing_of_locus(place.mechanism, place.numbers, locus, carriage) for locus in group.loci)
+    return None if one is None or other is None else (one, other)
 
 
-def _of_two_rods(about: _About, group: Meet) -> Cause:
+def _of_two_rods(place: _Place, group: Meet) -> tuple[Cause, Condition]:
     """The centres and the point where the rods meet lie on one line: stretched out, or folded."""
-    one, other = (body_of(locus) for locus in group.loci)
-    stretched, apart = _circle_contact(about, group)
+    stretched, apart = _circle_contact(place, group)
     first, second = (getattr(locus, "centre", "") for locus in group.loci)
-    if about.on_sphere:
+    condition: Condition
+    if place.on_sphere:
+        kind = CauseKind.RODS_ON_GREAT_CIRCLE
         condition = f"sin(angle {first}-{group.points[0]}-{second}) = 0"
-        line = _("{one} and {other} lie on one great circle")
     else:
-        bearings = _conditions(about, group)
-        condition = HIGHER if None in bearings else parallel(*bearings)  # type: ignore[arg-type]
-        line = (
-            _("{one} and {other} stand parallel") if group.carriage else _("{one} and {other} fall in line")
-        )
-    how = _("stretched out") if stretched else _("folded over each other")
-    sentence = _("{line}, {how}").format(line=line.format(one=one, other=other), how=how)
+        kind = CauseKind.RODS_PARALLEL if group.carriage else CauseKind.RODS_IN_LINE
+        bearings = _bearings(place, group)
+        condition = HIGHER if bearings is None else parallel(*bearings)
+    bodies = tuple(map(body_of, group.loci))
     if first and second and not group.carriage:
-        sentence = _("{sentence} ({first} and {second} are {apart} apart)").format(
-            sentence=sentence, first=first, second=second, apart=about.length(apart)
-        )
-    return Cause(sentence, condition)
+        return Cause(kind, bodies, (first, second), stretched, place.length(apart)), condition
+    return Cause(kind, bodies, stretched=stretched), condition
 
 
-def _circle_contact(about: _About, group: Meet) -> tuple[bool, float]:
+def _circle_contact(place: _Place, group: Meet) -> tuple[bool, float]:
     """Whether two circles touch from outside, and how far apart their centres are."""
-    at = about.tour.positions_at(about.value, ARRAYS)
-    choices = SideChoices(FixedSigns(ARRAYS, {about.index: 0.0}), about.index)
-    space = about.numbers.space
+    at = place.tour.positions_at(place.value, ARRAYS)
+    choices = SideChoices(FixedSigns(ARRAYS, {place.index: 0.0}), place.index)
+    space = place.numbers.space
     with np.errstate(all="ignore"):
-        one, other = loci_of(group, ARRAYS, about.numbers, at, choices)
+        one, other = loci_of(group, ARRAYS, place.numbers, at, choices)
         apart = _as_float(space.distance(ARRAYS, one.centre, other.centre))
     radii = [_radius(circle) for circle in (one, other)]
     total, difference = sum(radii), abs(radii[0] - radii[1])
-    total = min(total, 2.0 * np.pi - total) if about.on_sphere else total
+    total = min(total, 2.0 * np.pi - total) if place.on_sphere else total
     return abs(apart - total) <= abs(apart - difference), apart
 
 
@@ -232,58 +302,43 @@ def _radius(circle: Any) -> float:
     return abs(_as_float(circle.radius))
 
 
-def _of_rod_and_line(about: _About, group: Meet) -> Cause:
+def _of_rod_and_line(place: _Place, group: Meet) -> tuple[Cause, Condition]:
     """The rod stands square to the line on which its end moves."""
     rod, line = group.loci
-    names = {"rod": body_of(rod), "guide": body_of(line)}
-    if about.on_sphere:
+    bodies = body_of(rod), body_of(line)
+    if place.on_sphere:
         on = getattr(line, "guide", "")
-        condition = f"cos(angle between {names['rod']} and guide {on}) = 0"
-        return Cause(_("{rod} stands square to {guide}").format(**names), condition)
-    bearings = _conditions(about, group)
-    condition = HIGHER if None in bearings else square(*bearings)  # type: ignore[arg-type]
-    if isinstance(line, Stop):
-        return Cause(_("{rod} lies along {guide}").format(**names), condition)
-    return Cause(_("{rod} stands square to {guide}").format(**names), condition)
+        return Cause(CauseKind.ROD_SQUARE, bodies), f"cos(angle between {bodies[0][1]} and guide {on}) = 0"
+    bearings = _bearings(place, group)
+    kind = CauseKind.ROD_ALONG if isinstance(line, Stop) else CauseKind.ROD_SQUARE
+    return Cause(kind, bodies), HIGHER if bearings is None else square(*bearings)
 
 
-def _of_two_lines(about: _About, group: Meet) -> Cause:
+def _of_two_lines(place: _Place, group: Meet) -> tuple[Cause, Condition]:
     """Two lines are parallel: where they meet goes to infinity."""
-    one, other = (body_of(locus) for locus in group.loci)
-    if about.on_sphere:
-        return Cause(_("the circles of {one} and {other} touch").format(one=one, other=other), HIGHER)
-    bearings = _conditions(about, group)
-    condition = HIGHER if None in bearings else parallel(*bearings)  # type: ignore[arg-type]
-    sentence = _("{one} and {other} are parallel: where they meet goes to infinity")
-    return Cause(sentence.format(one=one, other=other), condition)
+    bodies = tuple(map(body_of, group.loci))
+    if place.on_sphere:
+        return Cause(CauseKind.CIRCLES_TOUCH, bodies), HIGHER
+    bearings = _bearings(place, group)
+    return Cause(CauseKind.LINES_PARALLEL, bodies), HIGHER if bearings is None else parallel(*bearings)
 
 
-def _cause_of_aim(about: _About, group: Aim) -> Cause:
+def _cause_of_aim(place: _Place, group: Aim) -> tuple[Cause, Condition]:
     """The target is as near to the pivot as the line in the aimed link: the arm to it stands square to the line."""
-    names = {"pivot": group.pivot, "target": group.target, "link": group.link, "guide": group.guide}
+    bodies = ((Tracer.LINK, group.link), (Tracer.GUIDE, group.guide))
+    points = (group.pivot, group.target)
     if group.contact is not None:
-        return Cause(_("{link} cannot come nearer to the wheel about {target}").format(**names), HIGHER)
-    if about.on_sphere:
+        return Cause(CauseKind.WHEEL_NEAREST, bodies, points), HIGHER
+    if place.on_sphere:
         condition = f"cos(angle between arc {group.pivot}-{group.target} and guide {group.guide}) = 0"
-        return Cause(
-            _("the arc from {pivot} to {target} stands square to guide {guide}").format(**names), condition
-        )
-    through, direction = aim_curve(group, about.numbers)
-    to_pivot = subtract(about.numbers.local[group.link][group.pivot], through)
-    foot = float(plane_dot(direction, to_pivot))
-    slide = f"s_{group.guide}"
-    condition = (
-        f"{slide} = {about.length(foot)}"
-        if abs(foot) > 1e-12 * float(about.numbers.scale)
-        else f"{slide} = 0"
-    )
-    offset = abs(float(direction[0] * to_pivot[1] - direction[1] * to_pivot[0]))
-    if offset <= 1e-12 * float(about.numbers.scale):
-        return Cause(_("{target} comes to the pivot {pivot} of {link}").format(**names), condition)
-    sentence = _(
-        "the line from {pivot} to {target} stands square to guide {guide}: {target} comes no nearer than {by}"
-    )
-    return Cause(sentence.format(**names, by=about.length(offset)), condition)
+        return Cause(CauseKind.ARC_SQUARE, bodies, points), condition
+    through, direction = aim_curve(group, place.numbers)
+    to_pivot = subtract(place.numbers.local[group.link][group.pivot], through)
+    condition_of_slide = SlideCondition(group.guide, place.length(float(plane_dot(direction, to_pivot))))
+    offset = place.length(abs(float(direction[0] * to_pivot[1] - direction[1] * to_pivot[0])))
+    if not offset:
+        return Cause(CauseKind.PIN_AT_PIVOT, bodies, points), condition_of_slide
+    return Cause(CauseKind.ARM_SQUARE, bodies, points, distance=offset), condition_of_slide
 
 
 # Transmission angles of the dyads: how well each passes motion on, from 0 (it locks) to a right angle.

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from enum import Enum, StrEnum
 from itertools import combinations, permutations, product
 from math import pi, remainder, tau
 from typing import TypeAlias
@@ -25,11 +26,9 @@ from centrode.kinematics.events import EventScan
 from centrode.kinematics.path import OFF_GRID
 from centrode.kinematics.plan_evaluation import Branches, Event
 from centrode.kinematics.preparation import Ready
-from centrode.locale import _, mark
+from centrode.locale import mark
 from centrode.model.mechanism import FRAME, Guide, Mechanism
-from centrode.model.reading import body_word
 from centrode.numerics.arrays import ARRAYS
-from centrode.quantities import display_unit
 from centrode.structure.constraints import Positions
 from centrode.structure.dimensions import Dimensions
 from centrode.structure.groups import Newton
@@ -185,18 +184,32 @@ class Circuits:
         return len(self.circuits[self.own])
 
 
-def circuits_of(tour: DriveSweep) -> tuple[Circuits | None, str]:
+class Uncounted(Enum):
+    """Why the circuits of a mechanism are not counted."""
+
+    HIGHER_CLASS = mark("not counted: a group of higher class has assemblies that no sign tells")
+    WHEELS = mark("not counted: wheels may mesh in any position")
+    TOO_MANY = mark("not counted: more than {most} groups with two sides")
+    STANDING = mark("not counted: the mechanism moves too little to be followed")
+
+    @property
+    def word(self) -> str:
+        """The reason in English; {most} is `MOST_DYADS`."""
+        return self.value
+
+
+def circuits_of(tour: DriveSweep) -> tuple[Circuits | None, Uncounted | None]:
     """Circuits of a mechanism for a drive, or why they are not counted."""
     structure, mechanism = tour.prepared.structure, tour.prepared.mechanism
     signed = [index for index, group in enumerate(structure.groups) if group.signed]
     if any(isinstance(group, Newton) for group in structure.groups):
-        return None, _("not counted: a group of higher class has assemblies that no sign tells")
+        return None, Uncounted.HIGHER_CLASS
     if mechanism.gears or mechanism.rolling:
-        return None, _("not counted: wheels may mesh in any position")
+        return None, Uncounted.WHEELS
     if len(signed) > MOST_DYADS:
-        return None, _("not counted: more than {most} groups with two sides").format(most=MOST_DYADS)
+        return None, Uncounted.TOO_MANY
     found = _Search(tour, signed).run()
-    return found, "" if found else _("not counted: the mechanism moves too little to be followed")
+    return found, None if found else Uncounted.STANDING
 
 
 class _Search:
@@ -337,16 +350,47 @@ class _Search:
 ROUNDING = 16 * 2.0**-52
 """Sums of lengths that differ by less than this part of them are equal."""
 
-CRANK_ROCKER, DOUBLE_CRANK = mark("crank-rocker"), mark("double crank")
-DOUBLE_ROCKER, ROCKER_CRANK = mark("double rocker, the coupler turns fully"), mark("rocker-crank")
-TRIPLE_ROCKER, CHANGE_POINT = mark("triple rocker"), mark("change-point linkage")
-TURNS = mark("the shortest link turns fully")
-NONE_TURNS = mark("no link turns fully against another")
-SLIDER_CRANK = mark("slider-crank, the crank turns fully")
-SLIDER_COUPLER = mark("slider-crank, the coupler turns fully, the crank swings")
-SLIDER_ROCKER = mark("slider-crank, no link turns fully")
-TURNING_GUIDE, SWINGING_GUIDE = mark("crank and turning guide"), mark("crank and swinging guide")
-SWINGING_ALL = mark("swinging guide, no link turns fully")
+
+class LoopType(StrEnum):
+    """The type of a loop by the rule of Grashof."""
+
+    CRANK_ROCKER = mark("crank-rocker")
+    DOUBLE_CRANK = mark("double crank")
+    DOUBLE_ROCKER = mark("double rocker, the coupler turns fully")
+    ROCKER_CRANK = mark("rocker-crank")
+    TRIPLE_ROCKER = mark("triple rocker")
+    CHANGE_POINT = mark("change-point linkage")
+    TURNS = mark("the shortest link turns fully")
+    NONE_TURNS = mark("no link turns fully against another")
+    SLIDER_CRANK = mark("slider-crank, the crank turns fully")
+    SLIDER_COUPLER = mark("slider-crank, the coupler turns fully, the crank swings")
+    SLIDER_ROCKER = mark("slider-crank, no link turns fully")
+    TURNING_GUIDE = mark("crank and turning guide")
+    SWINGING_GUIDE = mark("crank and swinging guide")
+    SWINGING_ALL = mark("swinging guide, no link turns fully")
+
+    @property
+    def word(self) -> str:
+        """The type in English."""
+        return self.value
+
+
+@dataclass(frozen=True)
+class LengthRule:
+    """The sums of lengths that the rule of Grashof compares [m, on the sphere rad].
+
+    Attributes
+    ----------
+    short : of the shortest and the longest link; in a loop with a slider of the shorter link and the offset
+    long : of the others
+    unit : "m" or "rad"
+    longest : name of the longest link; empty in a loop with a slider
+    """
+
+    short: float
+    long: float
+    unit: str
+    longest: str = ""
 
 
 @dataclass(frozen=True)
@@ -360,7 +404,7 @@ class FourBar:
     reduced : on the sphere the arcs by which the rule decides, otherwise the lengths
     grashof : whether the shortest link turns fully against all others; None at a change point
     shortest : its name; in a change-point loop the first of the shortest
-    kind : the type in words, as seen from the fixed link (and the drive, if it belongs to the loop)
+    kind : the type, as seen from the fixed link (and the drive, if it belongs to the loop)
     inequality : the rule with the numbers in it
     """
 
@@ -369,8 +413,8 @@ class FourBar:
     reduced: tuple[float, ...]
     grashof: bool | None
     shortest: str
-    kind: str
-    inequality: str
+    kind: LoopType
+    inequality: LengthRule
 
 
 def four_bars_of(prepared: Ready) -> tuple[FourBar, ...]:
@@ -422,15 +466,9 @@ def _hinged_four_bar(
     shortest, longest = order[0], order[3]
     short, long = reduced[shortest] + reduced[longest], reduced[order[1]] + reduced[order[2]]
     verdict = _is_smaller_sum(short, long)
-    sign = "=" if verdict is None else "<" if verdict else ">"
-    inequality = (
-        f"{_length_text(mechanism, numbers, short)} {sign} {_length_text(mechanism, numbers, long)}: "
-        + _("shortest and longest ({one}, {other}) against the others").format(
-            one=body_word(bodies[shortest]), other=body_word(bodies[longest])
-        )
-    )
+    rule = LengthRule(short, long, numbers.space.unit, bodies[longest])
     kind = _kind(mechanism, bodies, shortest, verdict)
-    return FourBar(bodies, lengths, reduced, verdict, bodies[shortest], kind, inequality)
+    return FourBar(bodies, lengths, reduced, verdict, bodies[shortest], kind, rule)
 
 
 def reduced_arcs(arcs: Sequence[float]) -> tuple[float, ...]:
@@ -443,12 +481,6 @@ def reduced_arcs(arcs: Sequence[float]) -> tuple[float, ...]:
         found[first], found[second] = pi - found[first], pi - found[second]
 
 
-def _length_text(mechanism: Mechanism, numbers: Dimensions, length: float) -> str:
-    """A length, on the sphere an arc, in the units of the reader."""
-    factor, unit = display_unit(numbers.space.unit, mechanism.display.length, mechanism.display.angle)
-    return f"{length * factor:.6g} {unit}"
-
-
 def _is_smaller_sum(short: float, long: float) -> bool | None:
     """Whether a sum is the smaller one; None where both are equal but for rounding."""
     if abs(short - long) <= ROUNDING * (abs(short) + abs(long)):
@@ -456,20 +488,22 @@ def _is_smaller_sum(short: float, long: float) -> bool | None:
     return short < long
 
 
-def _kind(mechanism: Mechanism, bodies: tuple[str, ...], shortest: int, verdict: bool | None) -> str:
+def _kind(mechanism: Mechanism, bodies: tuple[str, ...], shortest: int, verdict: bool | None) -> LoopType:
     if verdict is None:
-        return CHANGE_POINT
+        return LoopType.CHANGE_POINT
     if bodies[0] != FRAME:
-        return TURNS if verdict else NONE_TURNS
+        return LoopType.TURNS if verdict else LoopType.NONE_TURNS
     if not verdict:
-        return TRIPLE_ROCKER
+        return LoopType.TRIPLE_ROCKER
     if shortest == 0:
-        return DOUBLE_CRANK
+        return LoopType.DOUBLE_CRANK
     if shortest == 2:
-        return DOUBLE_ROCKER
+        return LoopType.DOUBLE_ROCKER
     driven = {drive.link for drive in mechanism.drives if drive.relative_to == FRAME}
     other = bodies[4 - shortest]
-    return ROCKER_CRANK if other in driven and bodies[shortest] not in driven else CRANK_ROCKER
+    return (
+        LoopType.ROCKER_CRANK if other in driven and bodies[shortest] not in driven else LoopType.CRANK_ROCKER
+    )
 
 
 def _distance(numbers: Dimensions, body: str, first: str, second: str) -> float:
@@ -516,26 +550,22 @@ def _sliding_four_bar(
     short, long = min(one, other) + offset, max(one, other)
     verdict = _is_smaller_sum(short, long)
     shortest = crank if one <= other else coupler
-    sign = "=" if verdict is None else "<" if verdict else ">"
-    inequality = (
-        f"{_length_text(mechanism, numbers, short)} {sign} {_length_text(mechanism, numbers, long)}: "
-        + _("shorter link {one} and offset against the longer one").format(one=shortest)
-    )
     bodies, lengths = (carrier, crank, coupler, f"{guide.id}"), (offset, one, other)
     kind = _slider_kind(loop, shortest, verdict)
-    return FourBar(bodies, lengths, lengths, verdict, shortest, kind, inequality)
+    rule = LengthRule(short, long, numbers.space.unit)
+    return FourBar(bodies, lengths, lengths, verdict, shortest, kind, rule)
 
 
-def _slider_kind(loop: tuple[str, str, str], shortest: str, verdict: bool | None) -> str:
+def _slider_kind(loop: tuple[str, str, str], shortest: str, verdict: bool | None) -> LoopType:
     carrier, crank, _coupler = loop
     if verdict is None:
-        return CHANGE_POINT
+        return LoopType.CHANGE_POINT
     if FRAME not in loop:
-        return TURNS if verdict else NONE_TURNS
+        return LoopType.TURNS if verdict else LoopType.NONE_TURNS
     if carrier == FRAME:
         if not verdict:
-            return SLIDER_ROCKER
-        return SLIDER_CRANK if shortest == crank else SLIDER_COUPLER
+            return LoopType.SLIDER_ROCKER
+        return LoopType.SLIDER_CRANK if shortest == crank else LoopType.SLIDER_COUPLER
     if not verdict:
-        return SWINGING_ALL
-    return TURNING_GUIDE if shortest == FRAME else SWINGING_GUIDE
+        return LoopType.SWINGING_ALL
+    return LoopType.TURNING_GUIDE if shortest == FRAME else LoopType.SWINGING_GUIDE

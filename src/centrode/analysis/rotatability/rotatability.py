@@ -7,13 +7,28 @@ positions the zeros of rates, both found as roots and not among samples.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from centrode.analysis.rotatability.causes import Transmission, cause_of, transmissions_of, watched_dyads
-from centrode.analysis.rotatability.circuits import Circuits, FourBar, circuits_of, four_bars_of
+from centrode.analysis.rotatability.causes import (
+    Cause,
+    CauseKind,
+    Condition,
+    Tracer,
+    Transmission,
+    cause_of,
+    transmissions_of,
+    watched_dyads,
+)
+from centrode.analysis.rotatability.circuits import (
+    Circuits,
+    FourBar,
+    Uncounted,
+    circuits_of,
+    four_bars_of,
+)
 from centrode.analysis.rotatability.tours import (
     DriveSweep,
     LinkStroke,
@@ -30,6 +45,11 @@ from centrode.model.mechanism import Mechanism
 from centrode.structure.assur import name_of
 from centrode.structure.groups import links_of
 
+if TYPE_CHECKING:
+    from centrode.analysis.redesign.repair import Repair
+    from centrode.analysis.transmission import TransmissionResults
+    from centrode.errors import CentrodeError
+
 
 @dataclass(frozen=True)
 class LimitFound:
@@ -42,7 +62,7 @@ class LimitFound:
     end : "low" or "high": the side of the initial position on which it lies
     group : name of the group
     links : its links
-    cause : a sentence
+    cause : what happens to the group there
     condition : what holds there, in the angles phi of the links by their numbers in the description
     """
 
@@ -51,8 +71,8 @@ class LimitFound:
     end: Literal["low", "high"]
     group: str
     links: tuple[str, ...]
-    cause: str
-    condition: str
+    cause: Cause
+    condition: Condition
 
 
 @dataclass(frozen=True)
@@ -62,8 +82,8 @@ class ChangePoint:
     value: float
     drive: str
     group: str
-    cause: str
-    condition: str
+    cause: Cause
+    condition: Condition
 
 
 @dataclass(frozen=True)
@@ -99,7 +119,7 @@ class LinkTurning:
     swings : of every link and slider
     dead_points : of every member as the drive
     transmissions : of every dyad whose transmission angle is defined
-    circuits : None where it is not computed, for the reason in `circuits_missing`
+    circuits : None where they are not counted, for the reason in `circuits_missing`
     """
 
     drive: str
@@ -114,7 +134,7 @@ class LinkTurning:
     dead_points: tuple[DeadPoint, ...]
     transmissions: tuple[Transmission, ...]
     circuits: Circuits | None
-    circuits_missing: str
+    circuits_missing: Uncounted | None
 
 
 @dataclass(frozen=True)
@@ -123,25 +143,29 @@ class Rotatability:
 
     Attributes
     ----------
+    mechanism : Mechanism
     turns_fully : whether the one drive turns fully; None with several drives, and for displacements
     limits : of all drives
     drives : LinkTurning of each drive, the others held
     four_bars : every four-bar and slider-crank loop with its type
+    repair : the smallest change after which the drive turns fully; None where none was sought
+    refusal : why none could be sought
+    angles : transmission angles over the motion, for documents; None where no group has one
     """
 
+    mechanism: Mechanism
     turns_fully: bool | None
     limits: tuple[LimitFound, ...]
     drives: tuple[LinkTurning, ...]
     four_bars: tuple[FourBar, ...]
+    repair: Repair | None = None
+    refusal: CentrodeError | None = None
+    angles: TransmissionResults | None = None
 
     @property
     def one(self) -> LinkTurning:
         """What is found for the first drive."""
         return self.drives[0]
-
-    def as_dict(self) -> dict[str, Any]:
-        """For JSON, in SI."""
-        return asdict(self)
 
 
 def rotatability(mechanism: Mechanism) -> Rotatability:
@@ -172,6 +196,7 @@ def rotatability(mechanism: Mechanism) -> Rotatability:
             turnings.append(_link_turning(prepared, tour_of(prepared, drive.id, held)))
     alone = len(turnings) == 1
     return Rotatability(
+        mechanism,
         turnings[0].turns_fully if alone else None,
         tuple(limit for turning in turnings for limit in turning.limits),
         tuple(turnings),
@@ -210,17 +235,25 @@ def _limits(prepared: Ready, tour: DriveSweep) -> tuple[LimitFound, ...]:
         if event.at == value
     ]
     if tour.drive.kind == "distance" and tour.low == 0.0 and not any(limit.value == 0.0 for limit in found):
-        name = _("cylinder {name} of no length").format(name=tour.drive.id)
-        found.insert(0, LimitFound(0.0, tour.drive.id, "low", name, (), name, f"{tour.drive.id} = 0"))
+        name = tour.drive.id
+        group, cause = (
+            _("cylinder {name} of no length").format(name=name),
+            Cause(CauseKind.NO_LENGTH, ((Tracer.CYLINDER, name),)),
+        )
+        found.insert(0, LimitFound(0.0, name, "low", group, (), cause, f"{name} = 0"))
     return tuple(found)
 
 
 def _limit(prepared: Ready, tour: DriveSweep, event: Event, end: str) -> LimitFound:
     group = prepared.structure.groups[event.group]
-    cause = cause_of(tour, group, event.group, event.at)
     side: Literal["low", "high"] = "low" if end == "low" else "high"
     return LimitFound(
-        event.at, tour.drive.id, side, name_of(group), links_of(group), cause.sentence, cause.condition
+        event.at,
+        tour.drive.id,
+        side,
+        name_of(group),
+        links_of(group),
+        *cause_of(tour, group, event.group, event.at),
     )
 
 
@@ -229,10 +262,8 @@ def _change_points(prepared: Ready, tour: DriveSweep) -> tuple[ChangePoint, ...]
     for event in tour.events("change point"):
         if tour.low <= event.at <= tour.high:
             group = prepared.structure.groups[event.group]
-            cause = cause_of(tour, group, event.group, event.at, crossing=True)
-            found[ChangePoint(event.at, tour.drive.id, name_of(group), cause.sentence, cause.condition)] = (
-                None
-            )
+            why = cause_of(tour, group, event.group, event.at, crossing=True)
+            found[ChangePoint(event.at, tour.drive.id, name_of(group), *why)] = None
     return tuple(found)
 
 

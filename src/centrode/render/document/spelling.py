@@ -107,6 +107,10 @@ class DocumentSpelling(Spelling):
                 return quoted(text)
             case Sentence():
                 return quoted(self.text(leaf))
+            case Symbol():
+                return self.symbol(leaf).strip("$")
+            case Indexed(letter, index):
+                return f"{letter}_({index if index.isdecimal() else quoted(index)})"
             case _:
                 assert_never(leaf)
 

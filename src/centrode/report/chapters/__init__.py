@@ -37,7 +37,6 @@ from centrode.report.chapters.linkages.plots import plots_chapter
 from centrode.report.chapters.linkages.positions import positions_chapter
 from centrode.report.chapters.linkages.structure import structure_chapter
 from centrode.report.chapters.linkages.tables import tables_chapter
-from centrode.report.chapters.linkages.turning import turning_chapter
 from centrode.report.chapters.linkages.words import words_chapter
 from centrode.report.chapters.sphere.data import sphere_data_chapter
 from centrode.report.chapters.sphere.pictures import sphere_plots_chapter
@@ -81,7 +80,6 @@ OWN: Mapping[str, Kind] = {
     "plots": Kind(mark("Plots of the motion"), either(plots_chapter, sphere_plots_chapter)),
     "positions": Kind(mark("Plan of positions"), positions_chapter),
     "graphic": Kind(mark("Graph-analytic check"), graphic_chapter),
-    "rotatability": Kind(mark("Rotatability"), turning_chapter),
     "masses-and-loads": Kind(mark("Masses and loads"), masses_and_loads),
     "force-polygons": Kind(mark("Force polygons"), polygons_chapter),
     "base-radius": Kind(mark("Choice of the base radius"), base_radius_chapter),

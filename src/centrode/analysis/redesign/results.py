@@ -1,0 +1,106 @@
+"""Rotatability with the repair: whether the drives turn fully, and the smallest change after which they do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from centrode.analysis.redesign.repair import repair as find_repair
+from centrode.analysis.rotatability.rotatability import rotatability
+from centrode.analysis.transmission import transmission_results
+from centrode.errors import CentrodeError, InputError
+from centrode.locale import _
+
+if TYPE_CHECKING:
+    from centrode.analysis.redesign.candidates import Value
+    from centrode.analysis.redesign.repair import Repair
+    from centrode.analysis.rotatability.rotatability import Rotatability
+    from centrode.analysis.transmission import TransmissionResults
+    from centrode.model.mechanism import Mechanism
+
+
+def rotatability_results(
+    mechanism: Mechanism,
+    samples: int | None = None,
+    *,
+    repair: bool = False,
+    vary: Mapping[str, tuple[Value, Value] | None] | None = None,
+    least_transmission_angle: Value | None = None,
+    complete: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Rotatability:
+    """Whether a mechanism turns fully, on demand with the repair of it.
+
+    Parameters
+    ----------
+    samples : int or None
+        Of the motion over which documents show the transmission angles.
+    repair : bool
+        Seek the smallest change after which it turns fully.
+    vary : mapping of path -> bounds or None, optional
+        Numbers that may change, as `repair` has them.
+    least_transmission_angle : float [rad] or text, optional
+        As `repair` has it.
+    complete : bool
+        As documents have it: with the transmission angles over the motion, and with the repair of one drive that
+        does not turn fully, or the reason why none is sought.
+    progress : function of the share that is done
+
+    Raises
+    ------
+    InputError, NotComputedYet
+        As `rotatability` and, with `repair`, `repair` do.
+    """
+    if repair:
+        wanted = vary or {}
+        bounds = {path: both for path, both in wanted.items() if both is not None}
+        found = find_repair(
+            mechanism,
+            list(wanted) or None,
+            bounds,
+            least_transmission_angle,
+            None if progress is None else lambda done, of: progress(done / of),
+        )
+        return replace(found.before, repair=found)
+    turning = rotatability(mechanism)
+    if not complete:
+        return turning
+    mended, refusal = None, None
+    if turning.turns_fully is False:
+        mended, refusal = _repair_or_refusal(mechanism)
+    return replace(turning, repair=mended, refusal=refusal, angles=_angles(mechanism, samples))
+
+
+def repair_results(mechanism: Mechanism, samples: int | None = None) -> Repair:
+    """The smallest change after which a mechanism turns fully, of what `repair` varies where nothing is named."""
+    return find_repair(mechanism)
+
+
+def need_repair(
+    _mechanism: Mechanism,
+    *,
+    repair: bool = False,
+    vary: Mapping[str, tuple[Value, Value] | None] | None = None,
+    least_transmission_angle: Value | None = None,
+) -> None:
+    """Raise InputError for what belongs to a repair where none is sought."""
+    given = {"--vary": vary, "--least-transmission-angle": least_transmission_angle}
+    for option, value in given.items():
+        if value is not None and not repair:
+            raise InputError(option, _("it belongs to a repair"), _("add --repair"))
+
+
+def _repair_or_refusal(mechanism: Mechanism) -> tuple[Repair | None, CentrodeError | None]:
+    try:
+        return find_repair(mechanism), None
+    except CentrodeError as refusal:
+        return None, refusal
+
+
+def _angles(mechanism: Mechanism, samples: int | None) -> TransmissionResults | None:
+    """Transmission angles over the motion; None where no group has one."""
+    try:
+        return transmission_results(mechanism, samples)
+    except CentrodeError:
+        return None
