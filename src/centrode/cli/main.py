@@ -30,7 +30,6 @@ from centrode.cli.equations import equations
 from centrode.cli.examples import examples
 from centrode.cli.export import export
 from centrode.cli.plan import plan
-from centrode.cli.polygons import polygons
 from centrode.cli.report import report
 from centrode.cli.rotatability import rotatability
 from centrode.cli.run import run
@@ -54,7 +53,6 @@ OWN: tuple[click.Command, ...] = (
     describe,
     equations,
     rotatability,
-    polygons,
     variants,
     cam,
     diagrams,

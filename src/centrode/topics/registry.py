@@ -399,6 +399,33 @@ MOTION_LAWS = Topic(
     flag="laws",
 )
 
+FORCE_POLYGONS = Topic(
+    name="polygons",
+    compute=Lazily("centrode.dynamics.force_polygons.results", "force_polygon_results"),
+    result=Lazily("centrode.dynamics.force_polygons.results", "ForcePolygonResults"),
+    view=Lazily("centrode.views.force_polygons", "sheet"),
+    concerns=Lazily("centrode.dynamics.force_polygons.results", "has_force_polygons"),
+    command=Command(
+        help=mark("Find reactions and the balancing moment by force polygons."),
+        options=(
+            InstantsOption(
+                mark('Value of the drive ("pi/2 rad"), or a time ("1 s"); as often as needed.'), required=True
+            ),
+            Given(
+                "paper", mark("SIZE"), mark("Sheet that scales are chosen for: A5, A4 (if left out) or A3.")
+            ),
+        ),
+        samples=False,
+        folder="polygons",
+        dark=True,
+    ),
+    document=InDocuments(
+        chapters=(ChapterOfTopic("force-polygons", mark("Force polygons")),),
+        # drawings on a sheet of this size fit between the margins of a page
+        arguments={"paper": "A5", "complete": False},
+    ),
+)
+
 TOPICS: tuple[Topic, ...] = (
     INTEGRATE,
     LIMITS,
@@ -414,5 +441,6 @@ TOPICS: tuple[Topic, ...] = (
     SHAKING,
     FOLLOWER_MOTION,
     MOTION_LAWS,
+    FORCE_POLYGONS,
 )
 """Every topic."""
