@@ -14,9 +14,9 @@ from matplotlib.text import Text
 import centrode as ct
 from boxes import outside, overlapping
 from centrode.dynamics.force_polygons.polygons import PAPERS
-from centrode.present.forces.force_signs import force_name
 from centrode.present.page import INCH
 from centrode.render.force_pages import SHORT
+from centrode.render.force_signs import force_name
 from mechanisms import parts_of
 
 INSTANTS = {

@@ -12,15 +12,15 @@ from centrode.analysis.graphic.stage import round_scale as round_length
 from centrode.dynamics.force_polygons.polygons import PARTS, round_scale
 from centrode.locale import _
 from centrode.present.diagram_drawing import arrow, flat
-from centrode.present.forces.force_signs import force_name
 from centrode.present.page import Array, Page, View, new_page
 from centrode.present.pictures import caption
 from centrode.present.reading import scene_of
-from centrode.present.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
 from centrode.present.shown import shown_as
 from centrode.present.style import INK, MUTED, Pen, pens
 from centrode.render.force_groups import draw_group
+from centrode.render.force_signs import force_name
 from centrode.render.levers import lever_column
+from centrode.render.sheet_column import FOOT, GUTTER, LEFT, TOP, sheet_size, write_column, write_title
 from centrode.render.spelling import DrawingSpelling
 from centrode.sheets.force_pages import GroupPage
 

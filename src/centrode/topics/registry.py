@@ -224,7 +224,7 @@ REACTIONS = Topic(
             Flag("frictionless", mark("Leave out friction that is given by coefficients.")),
             MotionRange(),
         ),
-        ending=Lazily("centrode.study.forces.reached", "refuse_unreached"),
+        ending=Lazily("centrode.study.reached", "refuse_unreached"),
         summary=False,
         complete="complete",
     ),
